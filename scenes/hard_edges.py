@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: MIT
+"""hard_edges: a facade full of thin straight things, seen by a far camera; nothing moves.
+
+After the "hard edges" test of the Oliveros thesis: a brown pipe, a blue window with closed blinds whose slits
+are about one pixel wide at 480 x 270, a blue arched window with a door in it whose gaps are about as thin, and
+a white wall with black letters. The camera looks slightly from the side and is rolled by two degrees, so that
+hardly an edge is parallel to the pixel grid.
+
+usage: blender -b --python-exit-code 9 -P scenes/hard_edges.py -- --out build/scenes/hard_edges.blend
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import common as c  # noqa: E402  (the folder of this file is no package)
+
+METRES_PER_PIXEL = 0.034  # at the facade, 480 pixels wide
+
+
+def add_blinds_window(blue, dark, white) -> None:
+    """Frame of 2.9 m x 3.1 m with 24 slats; the slits between them are one pixel high and dark."""
+    x0, x1, z0, z1 = -7.2, -4.3, 1.9, 5.0
+    rim = 0.16
+    c.add_box("Blinds Recess", (x0, -0.02, z0), (x1, 0.02, z1), dark)
+    c.add_boxes(
+        "Blinds Frame",
+        [
+            ((x0 - rim, -0.28, z0 - rim), (x0, 0.0, z1 + rim)),
+            ((x1, -0.28, z0 - rim), (x1 + rim, 0.0, z1 + rim)),
+            ((x0, -0.28, z1), (x1, 0.0, z1 + rim)),
+            ((x0, -0.28, z0 - rim), (x1, 0.0, z0)),
+        ],
+        blue,
+    )
+    c.add_box("Blinds Sill", (x0 - 0.35, -0.42, z0 - rim - 0.14), (x1 + 0.35, 0.0, z0 - rim), white)
+    count, slit = 24, METRES_PER_PIXEL
+    pitch = (z1 - z0) / count
+    slats = [
+        ((x0, -0.12, z0 + index * pitch + slit / 2), (x1, -0.09, z0 + (index + 1) * pitch - slit / 2))
+        for index in range(count)
+    ]
+    c.add_boxes("Blinds Slats", slats, c.material("Slat Blue", (0.16, 0.36, 0.72)))
+
+
+def add_arched_window(blue, dark) -> None:
+    """Arched frame with a two-leaf door and a fan light: gaps and glazing bars of about one pixel."""
+    centre, half, sill, spring = 4.9, 1.5, 0.25, 3.3
+    c.add_arch_wall(
+        "Arch Frame",
+        (centre - half - 0.24, centre + half + 0.24),
+        (sill - 0.2, spring + half + 0.26),
+        (-0.22, 0.0),
+        [(centre, half, sill, spring)],
+        blue,
+        steps=32,
+    )
+    c.add_box("Arch Recess", (centre - half, -0.02, sill), (centre + half, 0.02, spring + half), dark)
+    gap = METRES_PER_PIXEL
+    leaf = c.material("Door Blue", (0.10, 0.27, 0.60))
+    panels = []
+    for side in (-1, 1):
+        near, far = centre + side * gap / 2, centre + side * (half - gap)
+        low_x, high_x = min(near, far), max(near, far)
+        rows = 4
+        height = (spring - sill - 0.2) / rows
+        for row in range(rows):
+            z = sill + row * height
+            panels.append(((low_x, -0.1, z + gap / 2), (high_x, -0.06, z + height - gap / 2)))
+    c.add_boxes("Arch Door", panels, leaf)
+    c.add_box("Arch Transom", (centre - half, -0.14, spring - 0.2), (centre + half, -0.05, spring - 0.06), blue)
+    for index, degrees in enumerate((30.0, 60.0, 90.0, 120.0, 150.0)):
+        angle = c.math.radians(degrees)
+        end = (centre + half * c.math.cos(angle), -0.08, spring - 0.06 + half * c.math.sin(angle))
+        c.add_cylinder(f"Fan Bar {index + 1}", (centre, -0.08, spring - 0.06), end, 0.022, 8, blue)
+    c.add_cylinder("Door Knob Left", (centre - 0.16, -0.2, 1.6), (centre - 0.16, -0.1, 1.6), 0.06, 12, dark)
+    c.add_cylinder("Door Knob Right", (centre + 0.16, -0.2, 1.6), (centre + 0.16, -0.1, 1.6), 0.06, 12, dark)
+
+
+def add_letters(black, white) -> None:
+    """White board with black letters, from large to a few pixels high."""
+    c.add_box("White Wall", (-3.1, -0.16, 2.3), (2.4, 0.0, 5.1), white)
+    c.add_text("Text Large", "HARD EDGES", (-0.35, -0.17, 4.45), 0.86, black)
+    c.add_text("Text Medium", "anti-aliasing 0123456789", (-0.35, -0.17, 3.65), 0.42, black)
+    c.add_text("Text Small", "the quick brown fox jumps over the lazy dog", (-0.35, -0.17, 3.1), 0.26, black)
+    c.add_text("Text Tiny", "THIN STROKES BREAK UP WHEN A PIXEL IS TOO COARSE FOR THEM", (-0.35, -0.17, 2.65), 0.16, black)
+
+
+def build(resolution) -> None:
+    """Makes the scene in the open (empty) file."""
+    scene = c.new_scene(resolution)
+    c.add_sky(scene, horizon=(0.62, 0.74, 0.90), zenith=(0.16, 0.34, 0.70))
+    blue = c.material("Window Blue", (0.055, 0.16, 0.46))
+    dark = c.material("Dark Inside", (0.012, 0.014, 0.02))
+    white = c.material("White", (0.80, 0.79, 0.76))
+    black = c.material("Letter Black", (0.012, 0.012, 0.012))
+    plaster = c.material("Plaster", (0.62, 0.47, 0.33))
+    stone = c.material("Stone", (0.46, 0.42, 0.37))
+    ground = c.material("Ground", (0.30, 0.33, 0.24))
+    pipe = c.material("Pipe Brown", (0.30, 0.125, 0.045))
+
+    c.add_box("Facade", (-8.6, 0.0, 0.0), (8.3, 3.0, 6.1), plaster)
+    c.add_box("Plinth", (-8.75, -0.18, 0.0), (3.1, 0.0, 0.75), stone)
+    c.add_box("Plinth Right", (6.7, -0.18, 0.0), (8.45, 0.0, 0.75), stone)
+    c.add_box("Cornice", (-8.9, -0.35, 6.1), (8.6, 3.2, 6.38), stone)
+    c.add_boxes(
+        "Cornice Teeth",
+        [((-8.5 + 0.3 * index, -0.24, 5.94), (-8.36 + 0.3 * index, 0.0, 6.1)) for index in range(56)],
+        stone,
+    )
+    c.add_box("Ground", (-60.0, -50.0, -0.2), (60.0, 60.0, 0.0), ground)
+    c.add_boxes("Steps", [((3.2, -1.1, 0.0), (6.6, 0.0, 0.1)), ((3.4, -0.6, 0.1), (6.4, 0.0, 0.2))], stone)
+    add_blinds_window(blue, dark, white)
+    add_arched_window(blue, dark)
+    add_letters(black, white)
+    c.add_cylinder("Pipe", (-3.6, -1.5, 0.22), (3.5, -1.1, 1.75), 0.3, 10, pipe)
+    c.add_cylinder("Pipe Collar Left", (-3.72, -1.507, 0.195), (-3.1, -1.472, 0.328), 0.37, 10, pipe)
+    c.add_cylinder("Pipe Collar Right", (3.0, -1.128, 1.642), (3.6, -1.094, 1.772), 0.37, 10, pipe)
+    c.add_cylinder("Down Pipe", (7.55, -0.14, 0.0), (7.55, -0.14, 6.1), 0.085, 10, pipe)
+    c.add_cylinder("Mast", (-9.7, -0.8, 0.0), (-9.45, -0.8, 7.2), 0.05, 8, stone)
+    wire = c.material("Wire", (0.02, 0.02, 0.02))
+    c.add_cylinder("Wire Upper", (-9.47, -0.8, 7.0), (-3.0, 0.2, 6.36), 0.014, 6, wire)
+    c.add_cylinder("Wire Lower", (-9.5, -0.8, 6.6), (-6.0, 0.2, 6.34), 0.014, 6, wire)
+
+    c.add_sun(scene, azimuth_degrees=-118.0, height_degrees=42.0)
+    c.add_camera(scene, location=(-9.5, -45.0, 5.6), target=(-0.45, 0.0, 3.25), lens_mm=100.0, roll_degrees=2.0)
+
+
+
+if __name__ == "__main__":
+    arguments = c.parse_arguments(__doc__)
+    build(arguments.resolution)
+    c.save(arguments.out)
