@@ -1,0 +1,37 @@
+// Still images on disk through OpenImageIO. Files are written under a temporary name and renamed when complete.
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "image/plane.h"
+
+namespace aa {
+
+// How the three channels of a file are to be read.
+enum class FileSpace {
+    encoded,  // 8/16-bit files: codes / max, sRGB
+    linear,   // float or half files: linear light
+};
+struct LoadedImage {
+    Rgb rgb;  // encoded in [0,1] or linear, by `space`
+    FileSpace space = FileSpace::linear;
+};
+
+// Reads the first three channels (one channel is repeated). Integer files are taken as sRGB codes, float files as
+// linear. Throws InputError: missing, not an image, truncated, no pixels.
+LoadedImage readImage(const std::filesystem::path& file);
+
+// Float EXR, ZIP, three channels R G B. `displayReferred` marks images that must not be tone mapped again.
+void writeExr(const std::filesystem::path& file, const Rgb& linear, bool displayReferred);
+// 8-bit codes floor(255 v + 0.5) of encoded values in [0,1].
+void writePng(const std::filesystem::path& file, const Rgb& encoded);
+
+// A path next to `file` to write to before renaming over it.
+std::filesystem::path temporaryName(const std::filesystem::path& file);
+void renameInto(const std::filesystem::path& temporary, const std::filesystem::path& file);  // throws InputError
+// Writes a text file through a temporary name. Throws InputError when it cannot.
+void writeText(const std::filesystem::path& file, const std::string& text);
+// Creates a folder (and its parents) and makes sure that files can be written there. Throws InputError.
+void makeWritableFolder(const std::filesystem::path& folder);
+
+}  // namespace aa

@@ -1,0 +1,26 @@
+#include "kernels/dispatch.h"
+
+namespace aa {
+
+bool isaSupported(Isa isa) {
+    switch (isa) {
+        case Isa::v4:
+            return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+                   __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+                   __builtin_cpu_supports("avx512vl");
+        case Isa::v3:
+            return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
+        case Isa::v2:
+            return __builtin_cpu_supports("sse4.2");
+    }
+    return false;
+}
+
+Isa bestIsa() {
+    static const Isa best = isaSupported(Isa::v4) ? Isa::v4 : isaSupported(Isa::v3) ? Isa::v3 : Isa::v2;
+    return best;
+}
+
+std::string_view name(Isa isa) { return isa == Isa::v4 ? "x86-64-v4" : isa == Isa::v3 ? "x86-64-v3" : "x86-64-v2"; }
+
+}  // namespace aa

@@ -1,0 +1,45 @@
+// Which text of a kernel runs: instruction set and precision, chosen at run time, and the scheduling of its rows.
+//
+// NAME.kernel.cpp is compiled once per instruction set (-march=x86-64-v2|v3|v4, AA_ARCH=v2|v3|v4) and exports one table
+// of RowKernels (kernels/table.h). All three instruction sets and both float precisions give the same bits.
+#pragma once
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <string_view>
+
+#include "kernels/table.h"
+
+namespace aa {
+
+Isa bestIsa();               // the widest set that this processor runs
+bool isaSupported(Isa isa);  // whether this processor runs it
+std::string_view name(Isa isa);
+
+// How work is executed; passed to every method, never global. The number of threads is the caller's TBB arena.
+struct Exec {
+    Isa isa = bestIsa();
+    Precision precision = Precision::fast;
+    bool parallel = true;  // false: the calling thread alone
+};
+
+// Runs a row function over [0, height) in blocks of rows; the result cannot depend on the split.
+template <class Fn>
+void forRows(const Exec& exec, int height, const Fn& rows, int grain = 8) {
+    if (!exec.parallel || height <= grain) {
+        rows(0, height);
+        return;
+    }
+    tbb::parallel_for(
+        tbb::blocked_range<int>(0, height, size_t(grain)), [&](const auto& r) { rows(r.begin(), r.end()); },
+        tbb::simple_partitioner{});
+}
+template <class Args>
+void runKernel(const RowKernel<Args>& kernel, const Exec& exec, const Args& args, int height) {
+    const auto fn = exec.precision == Precision::fast     ? kernel.fast
+                    : exec.precision == Precision::scalar ? kernel.scalar
+                                                          : kernel.oracle;
+    forRows(exec, height, [&](int y0, int y1) { fn(args, y0, y1); });
+}
+
+}  // namespace aa

@@ -1,0 +1,375 @@
+// Lanes<T, W>: W pixels at a time on compiler vector extensions; plain float and double are the one-lane case.
+//
+// Every algorithm is a template over R: Lanes<float, W> is the product, float the portable form, double the oracle.
+// On purpose there is no include guard against a second instruction set: each kernel translation unit defines AA_ARCH
+// (v2, v3, v4) and everything here lives in that namespace, so that the linker can never merge a function compiled for
+// one instruction set into code that runs on another (tests/nm_test guards it).
+//
+// Same input, same bits: only +, -, *, /, sqrt, floor and comparisons are used, all exactly rounded; contraction into
+// FMA is off for the whole build; roots and powers are our own polynomials because libm differs between machines.
+#pragma once
+#include <immintrin.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+#ifndef AA_ARCH
+#error "AA_ARCH names the instruction set's namespace: include lanes.h from *.kernel.cpp files only"
+#endif
+#ifndef AA_LANES
+#define AA_LANES 8
+#endif
+#define AA_INLINE inline __attribute__((always_inline))
+
+namespace AA_ARCH {
+
+// A struct of its own: GCC 12 loses a dependent vector_size on a typedef inside the class that overloads operators.
+template <class T, int W>
+struct vec_of {
+    typedef T type __attribute__((vector_size(W * sizeof(T))));
+    typedef T unaligned __attribute__((vector_size(W * sizeof(T)), aligned(sizeof(T)), may_alias));
+};
+template <int W>
+struct ints_of {
+    typedef int32_t type __attribute__((vector_size(W * 4)));
+    typedef int32_t unaligned __attribute__((vector_size(W * 4), aligned(4), may_alias));
+};
+
+template <class T, int W>
+struct Lanes {
+    using V = typename vec_of<T, W>::type;
+    using Vu = typename vec_of<T, W>::unaligned;
+    using Bits = typename ints_of<W>::type;  // meaningful for T = float
+    V v;
+    Lanes() = default;
+    AA_INLINE Lanes(V a) : v(a) {}
+    AA_INLINE Lanes(T a) : v(a - V{}) {}
+#define AA_OP(o) \
+    friend AA_INLINE Lanes operator o(Lanes a, Lanes b) { return a.v o b.v; }
+    AA_OP(+) AA_OP(-) AA_OP(*) AA_OP(/)
+#undef AA_OP
+    friend AA_INLINE Lanes operator-(Lanes a) { return -a.v; }
+#define AA_CMP(o) \
+    friend AA_INLINE auto operator o(Lanes a, Lanes b) { return a.v o b.v; }
+    AA_CMP(<) AA_CMP(>) AA_CMP(<=) AA_CMP(>=) AA_CMP(==) AA_CMP(!=)
+#undef AA_CMP
+    friend AA_INLINE Lanes min(Lanes a, Lanes b) { return b.v < a.v ? b.v : a.v; }  // min(x, NaN) == x
+    friend AA_INLINE Lanes max(Lanes a, Lanes b) { return a.v < b.v ? b.v : a.v; }  // max(x, NaN) == x
+    friend AA_INLINE Lanes abs(Lanes a) {
+        V r;
+        for (int i = 0; i < W; i++) r[i] = std::fabs(a.v[i]);
+        return r;
+    }
+    friend AA_INLINE Lanes sqrt(Lanes a) {
+        V r;
+        for (int i = 0; i < W; i++) r[i] = std::sqrt(a.v[i]);
+        return r;
+    }
+    friend AA_INLINE Lanes floor(Lanes a) {
+        V r;
+        for (int i = 0; i < W; i++) r[i] = std::floor(a.v[i]);
+        return r;
+    }
+};
+
+template <class R>
+struct lane_traits {
+    using T = R;
+    using Mask = bool;
+    static constexpr int n = 1;
+};
+template <class T_, int W>
+struct lane_traits<Lanes<T_, W>> {
+    using T = T_;
+    using Mask = decltype(Lanes<T_, W>{}.v < Lanes<T_, W>{}.v);
+    static constexpr int n = W;
+};
+template <class R>
+inline constexpr int N = lane_traits<R>::n;  // pixels per value
+template <class R>
+using Elem = typename lane_traits<R>::T;
+template <class R>
+using Mask = typename lane_traits<R>::Mask;
+
+AA_INLINE float min(float a, float b) { return b < a ? b : a; }
+AA_INLINE float max(float a, float b) { return a < b ? b : a; }
+AA_INLINE double min(double a, double b) { return b < a ? b : a; }
+AA_INLINE double max(double a, double b) { return a < b ? b : a; }
+AA_INLINE float abs(float a) { return std::fabs(a); }
+AA_INLINE double abs(double a) { return std::fabs(a); }
+AA_INLINE float sqrt(float a) { return std::sqrt(a); }
+AA_INLINE double sqrt(double a) { return std::sqrt(a); }
+AA_INLINE float floor(float a) { return std::floor(a); }
+AA_INLINE double floor(double a) { return std::floor(a); }
+
+template <class M, class R>
+AA_INLINE R select(M m, R a, R b) {
+    if constexpr (N<R> == 1)
+        return m ? a : b;
+    else
+        return m ? a.v : b.v;
+}
+AA_INLINE bool both(bool a, bool b) { return a && b; }
+AA_INLINE bool either(bool a, bool b) { return a || b; }
+AA_INLINE bool negate(bool a) { return !a; }
+template <class M>
+    requires(!std::is_same_v<M, bool>)
+AA_INLINE M both(M a, M b) {
+    return a & b;
+}
+template <class M>
+    requires(!std::is_same_v<M, bool>)
+AA_INLINE M either(M a, M b) {
+    return a | b;
+}
+template <class M>
+    requires(!std::is_same_v<M, bool>)
+AA_INLINE M negate(M a) {
+    return ~a;
+}
+// Bit i set when lane i of a mask is set.
+template <class R>
+AA_INLINE unsigned mask_bits(Mask<R> m) {
+    if constexpr (N<R> == 1)
+        return m ? 1u : 0u;
+#ifdef __AVX2__
+    else if constexpr (std::is_same_v<R, Lanes<float, 8>>)
+        return unsigned(_mm256_movemask_ps((__m256)m));
+#endif
+    else if constexpr (std::is_same_v<R, Lanes<float, 4>>)
+        return unsigned(_mm_movemask_ps((__m128)m));
+    else {
+        unsigned b = 0;
+        for (int i = 0; i < N<R>; i++) b |= unsigned(m[i] & 1) << i;
+        return b;
+    }
+}
+template <class R>
+AA_INLINE R clamp(R x, std::type_identity_t<R> lo, std::type_identity_t<R> hi) {
+    return min(max(x, lo), hi);
+}
+template <class R>
+AA_INLINE R saturate(R x) {
+    return clamp(x, R(Elem<R>(0)), R(Elem<R>(1)));
+}
+template <class R>
+AA_INLINE R mix(R a, R b, std::type_identity_t<R> t) {
+    return a + (b - a) * t;
+}
+
+template <class R>
+AA_INLINE R load(const float* p) {  // storage is float; arithmetic is Elem<R>
+    if constexpr (N<R> == 1)
+        return R(*p);
+    else if constexpr (std::is_same_v<Elem<R>, float>)
+        return typename R::V(*(const typename R::Vu*)p);
+    else {
+        R r;
+        for (int i = 0; i < N<R>; i++) r.v[i] = p[i];
+        return r;
+    }
+}
+template <class R, class O>
+AA_INLINE void store(R a, O* p) {
+    if constexpr (N<R> == 1)
+        *p = O(a);
+    else if constexpr (std::is_same_v<Elem<R>, O>)
+        *(typename R::Vu*)p = a.v;
+    else
+        for (int i = 0; i < N<R>; i++) p[i] = O(a.v[i]);
+}
+template <class R>
+AA_INLINE R iota() {
+    if constexpr (N<R> == 1)
+        return R(0);
+    else {
+        R r;
+        for (int i = 0; i < N<R>; i++) r.v[i] = Elem<R>(i);
+        return r;
+    }
+}
+template <class R>
+AA_INLINE void to_ints(R a, int* k) {
+    if constexpr (N<R> == 1)
+        k[0] = int(a);
+    else
+        for (int i = 0; i < N<R>; i++) k[i] = int(a.v[i]);
+}
+// Lane mask of ids[x + i] != other[x + i]; ids are compared as integers, never through float.
+template <class R>
+AA_INLINE Mask<R> ids_differ(const uint32_t* a, const uint32_t* b) {
+    if constexpr (N<R> == 1)
+        return *a != *b;
+    else if constexpr (std::is_same_v<Elem<R>, float>) {
+        using I = typename ints_of<N<R>>::unaligned;
+        return (Mask<R>)(typename ints_of<N<R>>::type(*(const I*)a) != typename ints_of<N<R>>::type(*(const I*)b));
+    } else {
+        Mask<R> m;
+        for (int i = 0; i < N<R>; i++) m[i] = a[i] != b[i] ? -1 : 0;
+        return m;
+    }
+}
+// The value's bits as float/double: used only to seed Newton iterations below.
+AA_INLINE float bits_scaled(float a, float mul, float add) {
+    int32_t i;
+    std::memcpy(&i, &a, 4);
+    i = int32_t(float(i) * mul + add);
+    std::memcpy(&a, &i, 4);
+    return a;
+}
+AA_INLINE double bits_scaled(double a, float mul, float add) { return double(bits_scaled(float(a), mul, add)); }
+template <class T, int W>
+AA_INLINE Lanes<T, W> bits_scaled(Lanes<T, W> a, float mul, float add) {
+    if constexpr (std::is_same_v<T, float>) {
+        using I = typename ints_of<W>::type;
+        I i = (I)a.v;
+        typename Lanes<T, W>::V f = __builtin_convertvector(i, typename Lanes<T, W>::V) * mul + add;
+        i = __builtin_convertvector(f, I);
+        return (typename Lanes<T, W>::V)i;
+    } else {
+        Lanes<T, W> r;
+        for (int k = 0; k < W; k++) r.v[k] = bits_scaled(a.v[k], mul, add);
+        return r;
+    }
+}
+// x^(1/3) and x^(1/5) for x > 0 by Newton's method from an exponent-halving seed; full precision of R.
+// Denormals are fine to 1e-30 absolute. x <= 0 gives a small positive number times zero: callers select.
+template <class R>
+AA_INLINE R cbrt_positive(R x) {
+    R y = bits_scaled(x, 1.0f / 3.0f, 709921077.0f);
+    constexpr int steps = std::is_same_v<Elem<R>, double> ? 5 : 3;
+    const R third(Elem<R>(1) / Elem<R>(3));
+    for (int i = 0; i < steps; i++) y = (y + y + x / (y * y)) * third;
+    return y;
+}
+template <class R>
+AA_INLINE R fifth_root_positive(R x) {
+    R y = bits_scaled(x, 1.0f / 5.0f, 851902892.0f);
+    constexpr int steps = std::is_same_v<Elem<R>, double> ? 5 : 3;
+    const R fifth(Elem<R>(1) / Elem<R>(5)), four(Elem<R>(4));
+    for (int i = 0; i < steps; i++) {
+        const R y2 = y * y;
+        y = (four * y + x / (y2 * y2)) * fifth;
+    }
+    return y;
+}
+
+template <class R>
+struct vec3 {
+    R x, y, z;
+    vec3() = default;
+    AA_INLINE vec3(R a, R b, R c) : x(a), y(b), z(c) {}
+    AA_INLINE explicit vec3(R a) : x(a), y(a), z(a) {}
+};
+#define AA_OP(o)                                                      \
+    template <class R>                                                \
+    AA_INLINE vec3<R> operator o(vec3<R> a, vec3<R> b) {              \
+        return {a.x o b.x, a.y o b.y, a.z o b.z};                     \
+    }                                                                 \
+    template <class R>                                                \
+    AA_INLINE vec3<R> operator o(vec3<R> a, std::type_identity_t<R> b) { \
+        return {a.x o b, a.y o b, a.z o b};                           \
+    }
+AA_OP(+) AA_OP(-) AA_OP(*) AA_OP(/)
+#undef AA_OP
+template <class R>
+AA_INLINE vec3<R> abs(vec3<R> a) {
+    return {abs(a.x), abs(a.y), abs(a.z)};
+}
+template <class R>
+AA_INLINE vec3<R> sqrt(vec3<R> a) {
+    return {sqrt(a.x), sqrt(a.y), sqrt(a.z)};
+}
+template <class R>
+AA_INLINE vec3<R> min(vec3<R> a, vec3<R> b) {
+    return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)};
+}
+template <class R>
+AA_INLINE vec3<R> max(vec3<R> a, vec3<R> b) {
+    return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)};
+}
+template <class M, class R>
+AA_INLINE vec3<R> select(M m, vec3<R> a, vec3<R> b) {
+    return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
+}
+template <class R>
+AA_INLINE vec3<R> mix(vec3<R> a, vec3<R> b, std::type_identity_t<R> t) {
+    return a + (b - a) * t;
+}
+template <class R>
+AA_INLINE vec3<R> saturate(vec3<R> a) {
+    return {saturate(a.x), saturate(a.y), saturate(a.z)};
+}
+template <class R>
+AA_INLINE R dot(vec3<R> a, vec3<R> b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class R>
+AA_INLINE R max_component(vec3<R> a) {
+    return max(a.x, max(a.y, a.z));
+}
+// Luminance of linear RGB, BT.709 (methods/00 s.4); SMAA, INSIDE and Uncharted apply the same weights to encoded RGB.
+template <class R>
+AA_INLINE R luma709(vec3<R> c) {
+    using T = Elem<R>;
+    return c.x * R(T(0.2126)) + c.y * R(T(0.7152)) + c.z * R(T(0.0722));
+}
+template <class R>
+AA_INLINE R luma601(vec3<R> c) {
+    using T = Elem<R>;
+    return c.x * R(T(0.299)) + c.y * R(T(0.587)) + c.z * R(T(0.114));
+}
+
+// W texels of an interleaved RGBA image at element offsets 4 * k[i]. The one place with intrinsics: one 128-bit load per
+// texel and 4x4 transposes is four times faster than planar gathers and costs the same whatever the motion.
+template <class R>
+AA_INLINE vec3<R> fetch_rgb(const float* p, const int* k) {
+    if constexpr (N<R> == 1) return {R(p[4l * k[0]]), R(p[4l * k[0] + 1]), R(p[4l * k[0] + 2])};
+#ifdef __AVX2__
+    else if constexpr (std::is_same_v<R, Lanes<float, 8>>) {
+        auto pair = [&](int i, int j) __attribute__((always_inline)) {
+            return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(p + 4l * k[i])), _mm_loadu_ps(p + 4l * k[j]),
+                                        1);
+        };
+        const __m256 a = pair(0, 4), b = pair(1, 5), c = pair(2, 6), d = pair(3, 7);
+        const __m256 lo = _mm256_unpacklo_ps(a, b), hi = _mm256_unpacklo_ps(c, d), zl = _mm256_unpackhi_ps(a, b),
+                     zh = _mm256_unpackhi_ps(c, d);
+        using V = typename R::V;
+        return {(V)_mm256_shuffle_ps(lo, hi, 0x44), (V)_mm256_shuffle_ps(lo, hi, 0xEE),
+                (V)_mm256_shuffle_ps(zl, zh, 0x44)};
+    }
+#endif
+    else if constexpr (std::is_same_v<R, Lanes<float, 4>>) {
+        const __m128 a = _mm_loadu_ps(p + 4l * k[0]), b = _mm_loadu_ps(p + 4l * k[1]), c = _mm_loadu_ps(p + 4l * k[2]),
+                     d = _mm_loadu_ps(p + 4l * k[3]);
+        const __m128 lo = _mm_unpacklo_ps(a, b), hi = _mm_unpacklo_ps(c, d), zl = _mm_unpackhi_ps(a, b),
+                     zh = _mm_unpackhi_ps(c, d);
+        using V = typename R::V;
+        return {(V)_mm_movelh_ps(lo, hi), (V)_mm_movehl_ps(hi, lo), (V)_mm_movelh_ps(zl, zh)};
+    } else {
+        vec3<R> r;
+        for (int i = 0; i < N<R>; i++) {
+            r.x.v[i] = p[4l * k[i]];
+            r.y.v[i] = p[4l * k[i] + 1];
+            r.z.v[i] = p[4l * k[i] + 2];
+        }
+        return r;
+    }
+}
+// The counterpart: W texels stored interleaved with alpha 1.
+template <class R>
+AA_INLINE void store_rgba(vec3<R> c, float* p) {
+    if constexpr (N<R> == 1) {
+        p[0] = float(c.x), p[1] = float(c.y), p[2] = float(c.z), p[3] = 1.0f;
+    } else
+        for (int i = 0; i < N<R>; i++) {
+            p[4 * i] = float(c.x.v[i]);
+            p[4 * i + 1] = float(c.y.v[i]);
+            p[4 * i + 2] = float(c.z.v[i]);
+            p[4 * i + 3] = 1.0f;
+        }
+}
+
+}  // namespace AA_ARCH

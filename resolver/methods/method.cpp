@@ -1,0 +1,60 @@
+#include "methods/method.h"
+
+#include <cctype>
+
+#include "image/error.h"
+
+namespace aa {
+
+const MethodDescriptor& findMethod(std::string_view id) {
+    std::vector<std::string_view> known;
+    for (const auto& m : registry()) {
+        if (m.id == id) return m;
+        known.push_back(m.id);
+    }
+    const std::string near = suggestion(id, known);
+    throw UsageError("unknown method '" + std::string(id) + "'" +
+                     (near.empty() ? "; `aaresolve list` shows all" : "; did you mean '" + near + "'?"));
+}
+
+MethodSpec parseMethod(std::string_view text) {
+    MethodSpec spec;
+    spec.text = std::string(text);
+    const size_t colon = text.find(':');
+    spec.method = &findMethod(text.substr(0, colon));
+    if (colon != std::string_view::npos) {
+        std::string_view rest = text.substr(colon + 1);
+        while (!rest.empty()) {
+            const size_t comma = rest.find(',');
+            const std::string_view item = rest.substr(0, comma);
+            rest = comma == std::string_view::npos ? std::string_view{} : rest.substr(comma + 1);
+            const size_t eq = item.find('=');
+            if (eq == std::string_view::npos || eq == 0)
+                throw UsageError("method '" + spec.text + "': expected name=value, found '" + std::string(item) + "'");
+            spec.given.emplace_back(item.substr(0, eq), item.substr(eq + 1));
+        }
+    }
+    spec.params();  // throws on a bad parameter
+    return spec;
+}
+
+PassSet MethodSpec::passes() const {
+    return method->morePasses ? method->passes | method->morePasses(params()) : method->passes;
+}
+
+std::string MethodSpec::folderName() const {
+    std::string s = text;
+    for (char& c : s)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && std::string_view("._=,+-").find(c) == std::string_view::npos) c = '_';
+    return s;
+}
+
+std::unique_ptr<Method> MethodSpec::create(const ShotInfo& shot) const { return method->create(params(), shot); }
+
+PassSet passesOf(const std::vector<MethodSpec>& methods) {
+    PassSet all;
+    for (const auto& m : methods) all |= m.passes();
+    return all;
+}
+
+}  // namespace aa

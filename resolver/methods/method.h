@@ -1,0 +1,79 @@
+// What every anti-aliasing method is to the rest of the program.
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "image/colour.h"
+#include "kernels/dispatch.h"
+#include "methods/params.h"
+#include "shot/frame.h"
+
+namespace aa {
+
+enum class Space { linear, encoded };  // scene-referred radiance, or display-encoded sRGB in [0,1] (methods/00 s.4)
+
+// What a method may know of a shot before its first frame.
+struct ShotInfo {
+    int width = 0, height = 0;
+    int jitterPeriod = 1;
+    bool isStatic = false;
+    size_t frameCount = 1;
+    std::vector<glm::dvec2> subSamplePositionsPx;  // offsets from the pixel centre, y down; empty without sub-samples
+};
+
+// An intermediate image for --debug-layers: 1 or 3 planes, any range.
+struct DebugLayer {
+    std::string name;
+    std::vector<PlaneF> planes;
+};
+
+// A running method with its state. Same frames in, same bits out, for every Exec of float precision.
+class Method {
+  public:
+    virtual ~Method() = default;
+    // Resolves one frame into `out` (same size as the frame, in the method's output space; its border need not be
+    // filled). Temporal methods drop their history when frame.reset is set.
+    virtual void resolve(const Frame& frame, const Exec& exec, Rgb& out) = 0;
+    virtual size_t stateBytes() const { return 0; }  // history and scratch kept between frames
+    virtual std::vector<DebugLayer> debugLayers() const { return {}; }  // of the last frame; empty when there are none
+    bool keepDebugLayers = false;  // set by the driver before the first frame
+};
+
+struct MethodDescriptor {
+    std::string_view id, title, family;  // family: reference, spatial, geometry, temporal
+    std::string_view summary;            // one sentence
+    std::string_view source;             // paper or seed section
+    PassSet passes = {};
+    Space input = Space::linear, output = Space::linear;
+    bool temporal = false;  // keeps state between frames
+    std::vector<ParamSpec> params = {};
+    // Throws UsageError/InputError when the shot cannot serve the method (a static-only method on a moving shot).
+    std::function<std::unique_ptr<Method>(const Params&, const ShotInfo&)> create;
+    // Passes that depend on the parameters (depth edges need depth); may be empty.
+    std::function<PassSet(const Params&)> morePasses = {};
+    // Largest distance in px at which a pixel may influence another in one frame; 0 = unlimited or not meaningful.
+    int reachPx = 0;
+};
+
+// All methods, in the order of the documentation.
+const std::vector<MethodDescriptor>& registry();
+const MethodDescriptor& findMethod(std::string_view id);  // throws UsageError with a suggestion
+
+// A method as written on the command line: `smaa1x:preset=HIGH,edges=luma`.
+struct MethodSpec {
+    std::string text;  // as written; also the name of its output folder, with characters outside [A-Za-z0-9._=,+-] as '_'
+    const MethodDescriptor* method = nullptr;
+    std::vector<std::pair<std::string, std::string>> given;
+    Params params() const { return Params(method->id, method->params, given); }
+    PassSet passes() const;
+    std::string folderName() const;
+    std::unique_ptr<Method> create(const ShotInfo& shot) const;
+};
+// Throws UsageError: unknown method, malformed, bad parameter.
+MethodSpec parseMethod(std::string_view text);
+PassSet passesOf(const std::vector<MethodSpec>& methods);
+
+}  // namespace aa

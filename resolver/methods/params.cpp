@@ -1,0 +1,149 @@
+#include "methods/params.h"
+
+#include <algorithm>
+#include <cassert>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+#include "image/error.h"
+
+namespace aa {
+
+ParamSpec realParam(std::string_view name, std::string_view def, double min, double max, std::string_view help,
+                    std::string_view source, std::string_view onlyWhen) {
+    return {name, ParamSpec::Type::real, def, min, max, {}, help, source, onlyWhen};
+}
+ParamSpec intParam(std::string_view name, std::string_view def, int min, int max, std::string_view help,
+                   std::string_view source, std::string_view onlyWhen) {
+    return {name, ParamSpec::Type::integer, def, double(min), double(max), {}, help, source, onlyWhen};
+}
+ParamSpec choiceParam(std::string_view name, std::string_view def, std::vector<std::string_view> choices,
+                      std::string_view help, std::string_view source, std::string_view onlyWhen) {
+    return {name, ParamSpec::Type::choice, def, 0, 0, std::move(choices), help, source, onlyWhen};
+}
+ParamSpec flagParam(std::string_view name, bool def, std::string_view help, std::string_view source,
+                    std::string_view onlyWhen) {
+    return {name, ParamSpec::Type::flag, def ? "on" : "off", 0, 0, {"on", "off"}, help, source, onlyWhen};
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string_view>& candidates) {
+    size_t best = std::max<size_t>(2, word.size() / 3) + 1;
+    std::string_view found;
+    auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; };
+    for (std::string_view c : candidates) {
+        std::vector<size_t> row(c.size() + 1);
+        for (size_t j = 0; j <= c.size(); j++) row[j] = j;
+        for (size_t i = 1; i <= word.size(); i++) {
+            size_t diagonal = row[0];
+            row[0] = i;
+            for (size_t j = 1; j <= c.size(); j++) {
+                const size_t change = diagonal + (lower(word[i - 1]) != lower(c[j - 1]));
+                diagonal = row[j];
+                row[j] = std::min({change, row[j] + 1, row[j - 1] + 1});
+            }
+        }
+        if (row[c.size()] < best) best = row[c.size()], found = c;
+    }
+    return std::string(found);
+}
+
+namespace {
+std::string joined(const std::vector<std::string_view>& words) {
+    std::string s;
+    for (auto w : words) s += (s.empty() ? "" : ", ") + std::string(w);
+    return s;
+}
+std::string shortest(double v) {
+    std::ostringstream s;
+    s << v;
+    return s.str();
+}
+std::string didYouMean(std::string_view word, const std::vector<std::string_view>& candidates) {
+    const std::string near = suggestion(word, candidates);
+    return near.empty() ? "" : "; did you mean '" + near + "'?";
+}
+double parseNumber(const std::string& where, const ParamSpec& p, const std::string& text) {
+    double v = 0;
+    const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), v);
+    if (failed != std::errc{} || end != text.data() + text.size() || !std::isfinite(v))
+        throw UsageError(where + ": expected a number, found '" + text + "'");
+    if (p.type == ParamSpec::Type::integer && v != std::floor(v))
+        throw UsageError(where + ": expected a whole number, found '" + text + "'");
+    if (v < p.min || v > p.max)
+        throw UsageError(where + ": out of range; expected " + shortest(p.min) + " to " + shortest(p.max) + ", found " + text);
+    return v;
+}
+}  // namespace
+
+Params::Params(std::string_view method, const std::vector<ParamSpec>& table,
+               const std::vector<std::pair<std::string, std::string>>& given)
+    : table_(table) {
+    for (const auto& p : table_) values_[std::string(p.name)] = std::string(p.defaultValue);
+    for (const auto& [key, text] : given) {
+        const std::string where = std::string(method) + ": parameter '" + key + "'";
+        const auto p = std::find_if(table_.begin(), table_.end(), [&](const auto& s) { return s.name == key; });
+        if (p == table_.end()) {
+            std::vector<std::string_view> known;
+            for (const auto& s : table_) known.push_back(s.name);
+            throw UsageError(where + " does not exist" + didYouMean(key, known) +
+                             (known.empty() ? "; this method has no parameters" : " (known: " + joined(known) + ")"));
+        }
+        std::string value = text;
+        switch (p->type) {
+            case ParamSpec::Type::real:
+            case ParamSpec::Type::integer:
+                parseNumber(where, *p, text);
+                break;
+            case ParamSpec::Type::flag:
+                if (text == "1" || text == "true" || text == "yes") value = "on";
+                if (text == "0" || text == "false" || text == "no") value = "off";
+                [[fallthrough]];
+            case ParamSpec::Type::choice:
+                if (std::find(p->choices.begin(), p->choices.end(), value) == p->choices.end())
+                    throw UsageError(where + ": expected one of " + joined(p->choices) + ", found '" + text + "'" +
+                                     didYouMean(text, p->choices));
+        }
+        values_[key] = value;
+    }
+    for (const auto& [key, text] : given) {  // after all are set: does each one act?
+        const auto p = std::find_if(table_.begin(), table_.end(), [&](const auto& s) { return s.name == key; });
+        if (p->onlyWhen.empty()) continue;
+        const size_t eq = p->onlyWhen.find('=');
+        const auto& actual = values_.find(p->onlyWhen.substr(0, eq))->second;
+        std::istringstream allowed{std::string(p->onlyWhen.substr(eq + 1))};
+        bool acts = false;
+        for (std::string a; std::getline(allowed, a, '|');) acts = acts || a == actual;
+        if (!acts)
+            throw UsageError(std::string(method) + ": parameter '" + key + "' has no effect unless " +
+                             std::string(p->onlyWhen) + " (it is '" + actual + "'); leave it out");
+    }
+}
+
+const ParamSpec& Params::spec(std::string_view name, [[maybe_unused]] ParamSpec::Type type) const {
+    const auto p = std::find_if(table_.begin(), table_.end(), [&](const auto& s) { return s.name == name; });
+    assert(p != table_.end() && p->type == type);
+    return *p;
+}
+double Params::real(std::string_view name) const {
+    spec(name, ParamSpec::Type::real);
+    return std::stod(values_.find(name)->second);
+}
+int Params::integer(std::string_view name) const {
+    spec(name, ParamSpec::Type::integer);
+    return int(std::stod(values_.find(name)->second));
+}
+bool Params::flag(std::string_view name) const {
+    spec(name, ParamSpec::Type::flag);
+    return values_.find(name)->second == "on";
+}
+const std::string& Params::choice(std::string_view name) const {
+    spec(name, ParamSpec::Type::choice);
+    return values_.find(name)->second;
+}
+size_t Params::choiceIndex(std::string_view name) const {
+    const auto& choices = spec(name, ParamSpec::Type::choice).choices;
+    return size_t(std::find(choices.begin(), choices.end(), choice(name)) - choices.begin());
+}
+
+}  // namespace aa

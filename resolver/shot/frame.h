@@ -1,0 +1,47 @@
+// One frame of a shot in memory. Passes that were not asked for are empty planes. All borders are filled.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "image/plane.h"
+#include "shot/manifest.h"
+#include "shot/pass.h"
+
+namespace aa {
+
+// Values of methods/00 s.3 at one sub-sample position of every pixel.
+struct SubSample {
+    PlaneF depthView;  // as Frame::depthView
+    Rgb normalWorld;
+    PlaneU objectId;
+    Rgb colorLinear;  // only when Pass::subsampleColor was asked for
+};
+
+struct Frame {
+    int number = 1;
+    int width = 0, height = 0;
+    bool reset = false;
+    glm::dvec2 jitterPx{0.0};  // sample position minus pixel centre, y down
+    std::optional<Camera> camera;
+    std::optional<Camera> previousCamera;  // of the frame before, when there is one and no reset
+    PassSet passes;                        // what is present
+
+    Rgb colorLinear;
+    Rgb colorEncoded;  // D(colorLinear); filled by the driver when a method reads encoded colour
+    Rgb albedoLinear;
+    PlaneF depthView;  // planar z > 0, background 1e10
+    Rgb normalWorld;
+    PlaneU objectId;         // 0 = background
+    PlaneF motionXPx, motionYPx;  // current - previous, y down. In a static shot: zeros
+    std::vector<SubSample> subSamples;
+    std::vector<glm::dvec2> subSamplePositionsPx;  // offsets from the pixel centre, y down
+    PlaneU subSampleMask;                          // bit k: sub-sample k lies on the centre sample's surface
+    PlaneF edgeXPx, edgeYPx;
+};
+
+// Ground truth: two independent halves; the reference is their mean, the error bar MSE(a, b) / 4 (methods/07 s.9).
+struct Truth {
+    Rgb a, b;  // linear
+};
+
+}  // namespace aa

@@ -1,0 +1,60 @@
+// shot.json, version 1 (DESIGN.md "The shot"): what was rendered, with which jitter and camera, and where it lies.
+//
+// Optional members may be absent; unknown members are kept and ignored; a wrong type or a missing required member is an
+// InputError that names the member and the file.
+#pragma once
+#include <filesystem>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace aa {
+
+struct Camera {
+    std::string kind = "perspective";  // or "orthographic", "panorama"
+    glm::dmat4 view{1.0};              // world -> view, camera looks along -z, column vectors
+    glm::dmat4 projection{1.0};        // view -> clip, y up, WITHOUT jitter
+    double nearClip = 0.1, farClip = 100.0;
+};
+
+struct FrameEntry {
+    int frame = 1;
+    std::string file;   // relative to the shot's folder
+    std::string truth;  // relative; empty when this frame has no ground truth
+    bool reset = false; // history must be dropped before this frame (first frame, camera cut)
+    glm::dvec2 jitterPx{0.0};  // sample position minus pixel centre, y down
+    std::optional<Camera> camera;
+    std::map<std::string, double> renderSeconds;  // by pass group and "truth"
+};
+
+struct Manifest {
+    std::string name = "shot";
+    int width = 0, height = 0;
+    double fps = 24;
+    std::string jitterSequence = "none";
+    int jitterStart = 1, jitterPeriod = 1;
+    bool isStatic = false;  // camera and every object at rest
+    std::string subsamplePattern;
+    std::vector<glm::dvec2> subsamplePositionsPx;  // offsets from the pixel centre, y down
+    std::map<uint32_t, std::string> objects;
+    int truthSamplesPerHalf = 0;
+    std::string truthFilter = "box";
+    double truthFilterWidthPx = 1.0;
+    std::vector<FrameEntry> frames;
+    nlohmann::json extra = nlohmann::json::object();  // unknown members and `producer`, kept as they were
+    std::filesystem::path folder;                     // where shot.json lies; not part of the file
+
+    const FrameEntry* find(int frame) const;
+};
+
+// SHOT may be the folder or its shot.json. Throws InputError.
+Manifest readManifest(const std::filesystem::path& shot);
+nlohmann::json toJson(const Manifest& manifest);
+// Writes folder/shot.json through a temporary name.
+void writeManifest(const Manifest& manifest);
+
+}  // namespace aa

@@ -1,0 +1,38 @@
+// Reads a shot selectively: only the parts of the EXR that the asked passes need are decoded.
+#pragma once
+#include "shot/frame.h"
+
+namespace aa {
+
+// Counts of what the input sanitiser replaced (methods/08 s.8.0).
+struct SanitiseCounts {
+    uint64_t colourNan = 0, colourInf = 0, colourNegative = 0, depth = 0, normal = 0, motion = 0;
+    uint64_t total() const { return colourNan + colourInf + colourNegative + depth + normal + motion; }
+    SanitiseCounts& operator+=(const SanitiseCounts& o);
+};
+enum class InputPolicy {
+    strict,    // any NaN or Inf in a plane is an InputError naming plane, pixel and frame
+    sanitise,  // replaced by the rules of methods/08 s.8.0 and counted
+    raw,       // as stored (for `check`)
+};
+
+class ShotReader {
+  public:
+    explicit ShotReader(const std::filesystem::path& shot, InputPolicy policy = InputPolicy::sanitise);
+    const Manifest& manifest() const { return manifest_; }
+
+    // Passes that every frame of the shot offers, found in the header of the first frame's file. A static shot offers
+    // `motion` without storing it (zeros).
+    PassSet offered() const;
+    // Decodes the wanted passes of manifest().frames[index]. Thread-safe. Throws InputError: file missing, truncated,
+    // wrong resolution, missing part or channel (named), wrong type, NaN under InputPolicy::strict.
+    Frame read(size_t index, PassSet wanted, SanitiseCounts* counts = nullptr) const;
+    // Ground truth of a frame; nullopt when the frame has none.
+    std::optional<Truth> readTruth(size_t index) const;
+
+  private:
+    Manifest manifest_;
+    InputPolicy policy_;
+};
+
+}  // namespace aa
