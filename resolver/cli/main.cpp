@@ -1,3 +1,38 @@
 #include <cstdio>
-#include "methods/method.h"
-int main() { for (auto& m : aa::registry()) std::printf("%s\n", std::string(m.id).c_str()); }
+#include <iostream>
+
+#include "cli/cli.h"
+#include "image/error.h"
+
+int main(int argc, char** argv) {
+    CLI::App app{"aaresolve: runs every anti-aliasing method on a shot and measures it against ground truth.\n"
+                 "Exit codes: 0 ok, 1 a check failed or a difference was found, 2 wrong usage, 3 bad input."};
+    app.set_version_flag("--version", AA_VERSION);
+    app.require_subcommand(1);
+    app.fallthrough(false);
+    app.get_formatter()->column_width(34);
+    app.option_defaults()->always_capture_default();
+    aa::Context context;
+    const auto commands = {
+        aa::addList,
+        aa::addPlan,
+    };
+    for (const auto add : commands) add(app, context);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
+        std::cerr << "aaresolve: " << e.what() << " (see aaresolve --help)\n";
+        return 2;
+    } catch (const aa::UsageError& e) {
+        std::cerr << "aaresolve: " << e.what() << "\n";
+        return 2;
+    } catch (const aa::InputError& e) {
+        std::cerr << "aaresolve: " << e.what() << "\n";
+        return 3;
+    } catch (const std::bad_alloc&) {
+        std::cerr << "aaresolve: out of memory; use fewer methods or threads, or a smaller resolution\n";
+        return 3;
+    }
+    return context.exitCode;
+}

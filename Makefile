@@ -1,0 +1,57 @@
+# Two commands need nothing done before them: `make demo` and `make test`.
+SHELL := /bin/sh
+JOBS ?= $(shell nproc 2>/dev/null || echo 2)
+BLENDER ?= blender
+# A compiler cache is used where there is one.
+LAUNCHER := $(if $(shell command -v ccache 2>/dev/null),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache,)
+
+.PHONY: help deps build demo test sanitize bench addon reproduce fuzz format clean
+help:
+	@echo "make demo       build, render two scenes in Blender, run the methods, make contact sheets and reports"
+	@echo "make test       build and run every test"
+	@echo "make build      the program, at build/aaresolve"
+	@echo "make addon      the Blender add-on as one zip, at build/aa_resolve.zip"
+	@echo "make bench      speed of every method, ns per pixel"
+	@echo "make sanitize   unit and property tests under AddressSanitizer and UndefinedBehaviorSanitizer"
+	@echo "make fuzz       damaged manifests and EXR files against the reader"
+	@echo "make deps, reproduce, format, clean"
+
+deps:
+	@.ci/bootstrap
+
+build: deps
+	@cmake --preset release $(LAUNCHER) >build.log 2>&1 || { cat build.log; rm -f build.log; exit 1; }; mv build.log build/configure.log
+	@cmake --build --preset release -j $(JOBS)
+
+demo: build
+	@sh scenes/demo.sh build/aaresolve build/demo
+
+test: build
+	@ctest --preset release -j $(JOBS)
+
+sanitize: deps
+	@cmake --preset sanitize $(LAUNCHER) >/dev/null
+	@cmake --build --preset sanitize -j $(JOBS)
+	@ctest --preset sanitize -j $(JOBS)
+
+bench: build
+	@build/tests/benchmarks --benchmark_min_time=0.2
+
+addon:
+	@mkdir -p build
+	@python3 blender_addon/make_zip.py build/aa_resolve.zip
+
+reproduce: build
+	@sh scenes/reproduce.sh build/aaresolve build/reproduce
+
+fuzz: deps
+	@cmake --preset sanitize $(LAUNCHER) >/dev/null
+	@cmake --build --preset sanitize -j $(JOBS)
+	@ctest --test-dir build-sanitize -L fuzz --output-on-failure
+
+format:
+	@git ls-files 'resolver/*.cpp' 'resolver/*.h' 'tests/*.cpp' 'tests/*.h' | xargs clang-format -i
+	@git ls-files '*.py' | xargs black -q -l 100
+
+clean:
+	rm -rf build build-sanitize
