@@ -1,7 +1,7 @@
 // The command line: one file per subcommand, each adding itself to the application.
 //
-// Exit codes: 0 ok, 1 a check failed or a difference was found, 2 wrong usage, 3 bad input. UsageError and InputError are
-// caught once, in main.
+// Exit codes: 0 ok, 1 a check failed or a difference was found, 2 wrong usage, 3 bad input. UsageError and InputError
+// are caught once, in main.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <functional>
@@ -28,5 +28,6 @@ void withThreads(int threads, const std::function<void()>& body);
 // One line per subcommand here and in main's list.
 void addList(CLI::App& app, Context& context);
 void addPlan(CLI::App& app, Context& context);
+void addFilter(CLI::App& app, Context& context);
 
 }  // namespace aa

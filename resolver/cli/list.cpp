@@ -55,9 +55,15 @@ void printMethod(const MethodDescriptor& m, bool detail) {
 }  // namespace
 
 nlohmann::ordered_json describe(const MethodDescriptor& m) {
-    nlohmann::ordered_json j = {{"id", m.id},           {"title", m.title},       {"family", m.family},
-                                {"summary", m.summary}, {"source", m.source},     {"passes", names(m.passes)},
-                                {"input", name(m.input)}, {"output", name(m.output)}, {"temporal", m.temporal}};
+    nlohmann::ordered_json j = {{"id", m.id},
+                                {"title", m.title},
+                                {"family", m.family},
+                                {"summary", m.summary},
+                                {"source", m.source},
+                                {"passes", names(m.passes)},
+                                {"input", name(m.input)},
+                                {"output", name(m.output)},
+                                {"temporal", m.temporal}};
     j["parameters"] = nlohmann::ordered_json::array();
     for (const auto& p : m.params) {
         nlohmann::ordered_json q = {{"name", p.name}, {"type", name(p.type)}};
@@ -106,7 +112,8 @@ void addList(CLI::App& app, Context&) {
             for (const auto& m : registry()) printMethod(m, false);
         else
             for (const auto& id : o->ids) printMethod(findMethod(id), true);
-        if (o->ids.empty()) std::puts("\n`aaresolve list METHOD` shows its parameters; write them as METHOD:name=value,name=value");
+        if (o->ids.empty())
+            std::puts("\n`aaresolve list METHOD` shows its parameters; write them as METHOD:name=value,name=value");
     });
 }
 

@@ -5,8 +5,9 @@
 #include "image/error.h"
 
 int main(int argc, char** argv) {
-    CLI::App app{"aaresolve: runs every anti-aliasing method on a shot and measures it against ground truth.\n"
-                 "Exit codes: 0 ok, 1 a check failed or a difference was found, 2 wrong usage, 3 bad input."};
+    CLI::App app{
+        "aaresolve: runs every anti-aliasing method on a shot and measures it against ground truth.\n"
+        "Exit codes: 0 ok, 1 a check failed or a difference was found, 2 wrong usage, 3 bad input."};
     app.set_version_flag("--version", AA_VERSION);
     app.require_subcommand(1);
     app.fallthrough(false);
@@ -16,6 +17,7 @@ int main(int argc, char** argv) {
     const auto commands = {
         aa::addList,
         aa::addPlan,
+        aa::addFilter,
     };
     for (const auto add : commands) add(app, context);
     try {

@@ -19,7 +19,9 @@ Exec WorkOptions::exec() const {
     if (isa != "auto") e.isa = isa == "v4" ? Isa::v4 : isa == "v3" ? Isa::v3 : Isa::v2;
     if (!isaSupported(e.isa))
         throw UsageError("--isa " + isa + ": this processor lacks " + std::string(name(e.isa)) + "; leave --isa out");
-    e.precision = precision == "double" ? Precision::oracle : precision == "scalar" ? Precision::scalar : Precision::fast;
+    e.precision = precision == "double"   ? Precision::oracle
+                  : precision == "scalar" ? Precision::scalar
+                                          : Precision::fast;
     e.parallel = threads != 1;
     return e;
 }

@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "image/plane.h"
 
@@ -25,6 +26,13 @@ LoadedImage readImage(const std::filesystem::path& file);
 void writeExr(const std::filesystem::path& file, const Rgb& linear, bool displayReferred);
 // 8-bit codes floor(255 v + 0.5) of encoded values in [0,1].
 void writePng(const std::filesystem::path& file, const Rgb& encoded);
+
+// Named planes of one size as channels NAME or NAME.R/.G/.B of one float EXR.
+struct NamedPlanes {
+    std::string name;
+    std::vector<PlaneF> planes;  // 1 or 3
+};
+void writeLayers(const std::filesystem::path& file, const std::vector<NamedPlanes>& layers);
 
 // A path next to `file` to write to before renaming over it.
 std::filesystem::path temporaryName(const std::filesystem::path& file);

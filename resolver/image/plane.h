@@ -54,9 +54,7 @@ class Plane {
     const T* row(int y) const { return data_.data() + (ptrdiff_t(y + kBorderY) * stride_ + kBorderX) * Channels; }
     T& at(int x, int y) { return row(y)[ptrdiff_t(x) * Channels]; }
     const T& at(int x, int y) const { return row(y)[ptrdiff_t(x) * Channels]; }
-    const T& clamped(int x, int y) const {
-        return at(std::clamp(x, 0, width_ - 1), std::clamp(y, 0, height_ - 1));
-    }
+    const T& clamped(int x, int y) const { return at(std::clamp(x, 0, width_ - 1), std::clamp(y, 0, height_ - 1)); }
 
     // Repeats the edge pixels into the border and the row padding (clamp-to-edge, methods/00 s.1).
     void fillBorder() {

@@ -48,14 +48,21 @@ struct Lanes {
     AA_INLINE Lanes(T a) : v(a - V{}) {}
 #define AA_OP(o) \
     friend AA_INLINE Lanes operator o(Lanes a, Lanes b) { return a.v o b.v; }
-    AA_OP(+) AA_OP(-) AA_OP(*) AA_OP(/)
+    AA_OP(+)
+    AA_OP(-) AA_OP(*) AA_OP(/)
 #undef AA_OP
-    friend AA_INLINE Lanes operator-(Lanes a) { return -a.v; }
+        friend AA_INLINE Lanes
+        operator-(Lanes a) {
+        return -a.v;
+    }
 #define AA_CMP(o) \
     friend AA_INLINE auto operator o(Lanes a, Lanes b) { return a.v o b.v; }
-    AA_CMP(<) AA_CMP(>) AA_CMP(<=) AA_CMP(>=) AA_CMP(==) AA_CMP(!=)
+    AA_CMP(<)
+    AA_CMP(>) AA_CMP(<=) AA_CMP(>=) AA_CMP(==) AA_CMP(!=)
 #undef AA_CMP
-    friend AA_INLINE Lanes min(Lanes a, Lanes b) { return b.v < a.v ? b.v : a.v; }  // min(x, NaN) == x
+        friend AA_INLINE Lanes min(Lanes a, Lanes b) {
+        return b.v < a.v ? b.v : a.v;
+    }                                                                               // min(x, NaN) == x
     friend AA_INLINE Lanes max(Lanes a, Lanes b) { return a.v < b.v ? b.v : a.v; }  // max(x, NaN) == x
     friend AA_INLINE Lanes abs(Lanes a) {
         V r;
@@ -115,25 +122,15 @@ AA_INLINE bool both(bool a, bool b) { return a && b; }
 AA_INLINE bool either(bool a, bool b) { return a || b; }
 AA_INLINE bool negate(bool a) { return !a; }
 template <class M>
-    requires(!std::is_same_v<M, bool>)
-AA_INLINE M both(M a, M b) {
-    return a & b;
-}
+requires(!std::is_same_v<M, bool>) AA_INLINE M both(M a, M b) { return a & b; }
 template <class M>
-    requires(!std::is_same_v<M, bool>)
-AA_INLINE M either(M a, M b) {
-    return a | b;
-}
+requires(!std::is_same_v<M, bool>) AA_INLINE M either(M a, M b) { return a | b; }
 template <class M>
-    requires(!std::is_same_v<M, bool>)
-AA_INLINE M negate(M a) {
-    return ~a;
-}
+requires(!std::is_same_v<M, bool>) AA_INLINE M negate(M a) { return ~a; }
 // Bit i set when lane i of a mask is set.
 template <class R>
 AA_INLINE unsigned mask_bits(Mask<R> m) {
-    if constexpr (N<R> == 1)
-        return m ? 1u : 0u;
+    if constexpr (N<R> == 1) return m ? 1u : 0u;
 #ifdef __AVX2__
     else if constexpr (std::is_same_v<R, Lanes<float, 8>>)
         return unsigned(_mm256_movemask_ps((__m256)m));
@@ -263,19 +260,20 @@ struct vec3 {
     AA_INLINE vec3(R a, R b, R c) : x(a), y(b), z(c) {}
     AA_INLINE explicit vec3(R a) : x(a), y(a), z(a) {}
 };
-#define AA_OP(o)                                                      \
-    template <class R>                                                \
-    AA_INLINE vec3<R> operator o(vec3<R> a, vec3<R> b) {              \
-        return {a.x o b.x, a.y o b.y, a.z o b.z};                     \
-    }                                                                 \
-    template <class R>                                                \
+#define AA_OP(o)                                                         \
+    template <class R>                                                   \
+    AA_INLINE vec3<R> operator o(vec3<R> a, vec3<R> b) {                 \
+        return {a.x o b.x, a.y o b.y, a.z o b.z};                        \
+    }                                                                    \
+    template <class R>                                                   \
     AA_INLINE vec3<R> operator o(vec3<R> a, std::type_identity_t<R> b) { \
-        return {a.x o b, a.y o b, a.z o b};                           \
+        return {a.x o b, a.y o b, a.z o b};                              \
     }
-AA_OP(+) AA_OP(-) AA_OP(*) AA_OP(/)
+AA_OP(+)
+AA_OP(-) AA_OP(*) AA_OP(/)
 #undef AA_OP
-template <class R>
-AA_INLINE vec3<R> abs(vec3<R> a) {
+    template <class R>
+    AA_INLINE vec3<R> abs(vec3<R> a) {
     return {abs(a.x), abs(a.y), abs(a.z)};
 }
 template <class R>
@@ -322,16 +320,16 @@ AA_INLINE R luma601(vec3<R> c) {
     return c.x * R(T(0.299)) + c.y * R(T(0.587)) + c.z * R(T(0.114));
 }
 
-// W texels of an interleaved RGBA image at element offsets 4 * k[i]. The one place with intrinsics: one 128-bit load per
-// texel and 4x4 transposes is four times faster than planar gathers and costs the same whatever the motion.
+// W texels of an interleaved RGBA image at element offsets 4 * k[i]. The one place with intrinsics: one 128-bit load
+// per texel and 4x4 transposes is four times faster than planar gathers and costs the same whatever the motion.
 template <class R>
 AA_INLINE vec3<R> fetch_rgb(const float* p, const int* k) {
     if constexpr (N<R> == 1) return {R(p[4l * k[0]]), R(p[4l * k[0] + 1]), R(p[4l * k[0] + 2])};
 #ifdef __AVX2__
     else if constexpr (std::is_same_v<R, Lanes<float, 8>>) {
         auto pair = [&](int i, int j) __attribute__((always_inline)) {
-            return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(p + 4l * k[i])), _mm_loadu_ps(p + 4l * k[j]),
-                                        1);
+            return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(p + 4l * k[i])),
+                                        _mm_loadu_ps(p + 4l * k[j]), 1);
         };
         const __m256 a = pair(0, 4), b = pair(1, 5), c = pair(2, 6), d = pair(3, 7);
         const __m256 lo = _mm256_unpacklo_ps(a, b), hi = _mm256_unpacklo_ps(c, d), zl = _mm256_unpackhi_ps(a, b),

@@ -13,7 +13,7 @@ struct RgbOut {
     float* c[3];
 };
 
-enum class Isa { v2, v3, v4 };                    // x86-64-v2, -v3, -v4
+enum class Isa { v2, v3, v4 };                  // x86-64-v2, -v3, -v4
 enum class Precision { fast, scalar, oracle };  // float lanes, float, double arithmetic on float storage
 
 // A kernel: a function over rows [y0, y1) of its own argument struct, in three precisions.
@@ -28,24 +28,25 @@ struct RowKernel {
 
 // In a method's header: AA_KERNEL_TABLE(FxaaKernels, fxaaKernels) declares v2::, v3:: and v4::fxaaKernels and
 // aa::fxaaKernelsFor(isa). In its .kernel.cpp: AA_DEFINE_TABLE(FxaaKernels, fxaaKernels) = {AA_ROWS(fxaaRows), ...};
-#define AA_KERNEL_TABLE(Type, table)                                                       \
-    namespace v2 {                                                                         \
-    extern const Type table;                                                               \
-    }                                                                                      \
-    namespace v3 {                                                                         \
-    extern const Type table;                                                               \
-    }                                                                                      \
-    namespace v4 {                                                                         \
-    extern const Type table;                                                               \
-    }                                                                                      \
-    namespace aa {                                                                         \
-    inline const Type& table##For(Isa isa) {                                               \
-        return isa == Isa::v4 ? ::v4::table : isa == Isa::v3 ? ::v3::table : ::v2::table;  \
-    }                                                                                      \
+#define AA_KERNEL_TABLE(Type, table)                                                      \
+    namespace v2 {                                                                        \
+    extern const Type table;                                                              \
+    }                                                                                     \
+    namespace v3 {                                                                        \
+    extern const Type table;                                                              \
+    }                                                                                     \
+    namespace v4 {                                                                        \
+    extern const Type table;                                                              \
+    }                                                                                     \
+    namespace aa {                                                                        \
+    inline const Type& table##For(Isa isa) {                                              \
+        return isa == Isa::v4 ? ::v4::table : isa == Isa::v3 ? ::v3::table : ::v2::table; \
+    }                                                                                     \
     }
-#define AA_DEFINE_TABLE(Type, table)   \
-    namespace AA_ARCH {                \
-    extern const Type table;           \
-    }                                  \
+#define AA_DEFINE_TABLE(Type, table) \
+    namespace AA_ARCH {              \
+    extern const Type table;         \
+    }                                \
     const Type AA_ARCH::table
-#define AA_ROWS(fn) {fn<AA_ARCH::Lanes<float, AA_LANES>>, fn<float>, fn<double>}
+#define AA_ROWS(fn) \
+    { fn<AA_ARCH::Lanes<float, AA_LANES>>, fn<float>, fn<double> }

@@ -45,7 +45,9 @@ PassSet MethodSpec::passes() const {
 std::string MethodSpec::folderName() const {
     std::string s = text;
     for (char& c : s)
-        if (!std::isalnum(static_cast<unsigned char>(c)) && std::string_view("._=,+-").find(c) == std::string_view::npos) c = '_';
+        if (!std::isalnum(static_cast<unsigned char>(c)) &&
+            std::string_view("._=,+-").find(c) == std::string_view::npos)
+            c = '_';
     return s;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "image/colour.h"
+#include "image/io.h"
 #include "kernels/dispatch.h"
 #include "methods/params.h"
 #include "shot/frame.h"
@@ -21,14 +22,12 @@ struct ShotInfo {
     int jitterPeriod = 1;
     bool isStatic = false;
     size_t frameCount = 1;
-    std::vector<glm::dvec2> subSamplePositionsPx;  // offsets from the pixel centre, y down; empty without sub-samples
+    std::vector<glm::dvec2> subSamplePositionsPx =
+        {};  // offsets from the pixel centre, y down; empty without sub-samples
 };
 
 // An intermediate image for --debug-layers: 1 or 3 planes, any range.
-struct DebugLayer {
-    std::string name;
-    std::vector<PlaneF> planes;
-};
+using DebugLayer = NamedPlanes;
 
 // A running method with its state. Same frames in, same bits out, for every Exec of float precision.
 class Method {
@@ -37,9 +36,9 @@ class Method {
     // Resolves one frame into `out` (same size as the frame, in the method's output space; its border need not be
     // filled). Temporal methods drop their history when frame.reset is set.
     virtual void resolve(const Frame& frame, const Exec& exec, Rgb& out) = 0;
-    virtual size_t stateBytes() const { return 0; }  // history and scratch kept between frames
+    virtual size_t stateBytes() const { return 0; }                     // history and scratch kept between frames
     virtual std::vector<DebugLayer> debugLayers() const { return {}; }  // of the last frame; empty when there are none
-    bool keepDebugLayers = false;  // set by the driver before the first frame
+    bool keepDebugLayers = false;                                       // set by the driver before the first frame
 };
 
 struct MethodDescriptor {
@@ -64,7 +63,8 @@ const MethodDescriptor& findMethod(std::string_view id);  // throws UsageError w
 
 // A method as written on the command line: `smaa1x:preset=HIGH,edges=luma`.
 struct MethodSpec {
-    std::string text;  // as written; also the name of its output folder, with characters outside [A-Za-z0-9._=,+-] as '_'
+    std::string
+        text;  // as written; also the name of its output folder, with characters outside [A-Za-z0-9._=,+-] as '_'
     const MethodDescriptor* method = nullptr;
     std::vector<std::pair<std::string, std::string>> given;
     Params params() const { return Params(method->id, method->params, given); }

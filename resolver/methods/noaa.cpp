@@ -6,8 +6,7 @@ class NoAa : public Method {
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         forRows(exec, frame.height, [&](int y0, int y1) {
             for (size_t c = 0; c < 3; c++)
-                for (int y = y0; y < y1; y++)
-                    std::copy_n(frame.colorLinear.c[c].row(y), frame.width, out.c[c].row(y));
+                for (int y = y0; y < y1; y++) std::copy_n(frame.colorLinear.c[c].row(y), frame.width, out.c[c].row(y));
         });
     }
 };

@@ -71,7 +71,8 @@ double parseNumber(const std::string& where, const ParamSpec& p, const std::stri
     if (p.type == ParamSpec::Type::integer && v != std::floor(v))
         throw UsageError(where + ": expected a whole number, found '" + text + "'");
     if (v < p.min || v > p.max)
-        throw UsageError(where + ": out of range; expected " + shortest(p.min) + " to " + shortest(p.max) + ", found " + text);
+        throw UsageError(where + ": out of range; expected " + shortest(p.min) + " to " + shortest(p.max) + ", found " +
+                         text);
     return v;
 }
 }  // namespace

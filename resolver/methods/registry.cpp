@@ -1,4 +1,5 @@
 // One line per method; it then appears in `list`, every property test, sweeps and reports.
+#include "methods/accum.h"
 #include "methods/method.h"
 #include "methods/noaa.h"
 
@@ -6,7 +7,11 @@ namespace aa {
 
 const std::vector<MethodDescriptor>& registry() {
     static const std::vector<MethodDescriptor> methods = {
-        noaaDescriptor(),
+        // reference
+        noaaDescriptor(), accumDescriptor(),
+        // spatial
+        // geometry
+        // temporal
     };
     return methods;
 }

@@ -1,5 +1,5 @@
-// Full-reference image metrics (methods/07). Sums are double, over fixed row blocks in a fixed order, so that the result
-// does not depend on the number of threads.
+// Full-reference image metrics (methods/07). Sums are double, over fixed row blocks in a fixed order, so that the
+// result does not depend on the number of threads.
 #pragma once
 #include "image/plane.h"
 #include "kernels/dispatch.h"

@@ -31,7 +31,7 @@ struct Frame {
     Rgb albedoLinear;
     PlaneF depthView;  // planar z > 0, background 1e10
     Rgb normalWorld;
-    PlaneU objectId;         // 0 = background
+    PlaneU objectId;              // 0 = background
     PlaneF motionXPx, motionYPx;  // current - previous, y down. In a static shot: zeros
     std::vector<SubSample> subSamples;
     std::vector<glm::dvec2> subSamplePositionsPx;  // offsets from the pixel centre, y down

@@ -23,9 +23,9 @@ struct Camera {
 
 struct FrameEntry {
     int frame = 1;
-    std::string file;   // relative to the shot's folder
-    std::string truth;  // relative; empty when this frame has no ground truth
-    bool reset = false; // history must be dropped before this frame (first frame, camera cut)
+    std::string file;          // relative to the shot's folder
+    std::string truth;         // relative; empty when this frame has no ground truth
+    bool reset = false;        // history must be dropped before this frame (first frame, camera cut)
     glm::dvec2 jitterPx{0.0};  // sample position minus pixel centre, y down
     std::optional<Camera> camera;
     std::map<std::string, double> renderSeconds;  // by pass group and "truth"

@@ -1,0 +1,77 @@
+#include <cstdio>
+
+#include "cli/cli.h"
+#include "image/error.h"
+#include "image/io.h"
+#include "methods/driver.h"
+
+namespace aa {
+namespace {
+struct Options {
+    std::string method, in, out, debugLayers;
+    WorkOptions work;
+};
+bool isPng(const std::filesystem::path& p) { return p.extension() == ".png" || p.extension() == ".PNG"; }
+
+// One image is a static shot of one unjittered frame.
+Frame frameOf(const LoadedImage& image, const Exec& exec) {
+    Frame f;
+    f.width = image.rgb.width();
+    f.height = image.rgb.height();
+    f.reset = true;
+    f.passes = Pass::color;
+    if (image.space == FileSpace::encoded) {
+        f.colorEncoded = image.rgb;
+        decode(image.rgb, exec, f.colorLinear);
+    } else {
+        f.colorLinear = image.rgb;
+        encode(image.rgb, {}, exec, f.colorEncoded);
+    }
+    return f;
+}
+
+void filter(const Options& o) {
+    const MethodSpec spec = parseMethod(o.method);
+    if (const PassSet missing = spec.passes().without(Pass::color); !missing.empty()) {
+        std::string list;
+        for (auto n : names(missing)) list += (list.empty() ? "" : ", ") + std::string(n);
+        throw UsageError("filter: " + std::string(spec.method->id) + " needs more than one image (" + list +
+                         "); use `aaresolve run` on a shot");
+    }
+    if (std::filesystem::path(o.out).extension() != ".exr" && !isPng(o.out))
+        throw UsageError("filter: expected an output name ending in .png or .exr, found '" + o.out + "'");
+    const Exec exec = o.work.exec();
+    const LoadedImage image = readImage(o.in);
+    const Frame frame = frameOf(image, exec);
+    RunningMethod running(spec, {.width = frame.width, .height = frame.height, .isStatic = true});
+    running.method->keepDebugLayers = !o.debugLayers.empty();
+    double seconds = 0;
+    withThreads(o.work.threads, [&] { seconds = running.resolve(frame, {}, exec); });
+    if (isPng(o.out)) {
+        writePng(o.out, running.outEncoded);
+    } else if (spec.method->output == Space::linear) {
+        writeExr(o.out, running.out, false);
+    } else {
+        Rgb linear;
+        decode(running.out, exec, linear);
+        writeExr(o.out, linear, true);
+    }
+    if (!o.debugLayers.empty()) writeLayers(o.debugLayers, running.method->debugLayers());
+    std::printf("%s %dx%d %.3f ms %.2f ns/px -> %s\n", spec.text.c_str(), frame.width, frame.height, seconds * 1e3,
+                seconds * 1e9 / (double(frame.width) * frame.height), o.out.c_str());
+}
+}  // namespace
+
+void addFilter(CLI::App& app, Context&) {
+    auto o = std::make_shared<Options>();
+    auto* c =
+        app.add_subcommand("filter", "One image through one spatial method; PNG = 8-bit sRGB codes, EXR = linear");
+    c->add_option("METHOD", o->method, "for example smaa1x:preset=HIGH")->required();
+    c->add_option("IN", o->in, "PNG or EXR")->required();
+    c->add_option("OUT", o->out, "PNG or EXR")->required();
+    c->add_option("--debug-layers", o->debugLayers, "also write the method's intermediate images to this EXR");
+    addWorkOptions(*c, o->work);
+    c->callback([o] { filter(*o); });
+}
+
+}  // namespace aa

@@ -1,0 +1,23 @@
+// Colour-space conversions between a frame, a method and its judge. A method declares the space it reads and writes;
+// nothing else converts.
+#pragma once
+#include "methods/method.h"
+
+namespace aa {
+
+// A method in progress: its specification, its state and its last output.
+struct RunningMethod {
+    MethodSpec spec;
+    std::unique_ptr<Method> method;
+    Rgb out;         // in the method's output space
+    Rgb outEncoded;  // display-encoded, what the metrics see
+    RunningMethod(MethodSpec spec, const ShotInfo& shot);
+    // Resolves one frame; returns the seconds that the method took, conversions not counted.
+    double resolve(const Frame& frame, const DisplayChain& chain, const Exec& exec);
+};
+
+ShotInfo shotInfo(const Manifest& manifest);
+// Fills frame.colorEncoded when one of the methods reads encoded colour.
+void prepareFrame(Frame& frame, const std::vector<RunningMethod>& methods, const DisplayChain& chain, const Exec& exec);
+
+}  // namespace aa
