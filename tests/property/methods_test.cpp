@@ -1,0 +1,149 @@
+// Properties that every registered method must have, at its defaults and with every choice of its parameters.
+#include <gtest/gtest.h>
+
+#include "frames.h"
+
+namespace aa::testing {
+namespace {
+
+class EveryMethod : public ::testing::TestWithParam<std::string> {};
+
+bool allFinite(const Rgb& image) {
+    for (const auto& p : image.c)
+        for (int y = 0; y < p.height(); y++)
+            for (int x = 0; x < p.width(); x++)
+                if (!std::isfinite(p.at(x, y))) return false;
+    return true;
+}
+const MethodDescriptor& method(const std::string& text) { return *parseMethod(text).method; }
+
+TEST_P(EveryMethod, ConstantStaysConstant) {
+    for (const float v : {0.0f, 0.25f, 1.0f}) {
+        Subject s = makeSubject(GetParam(), 40, 24);
+        for (int n = 1; n <= 4; n++) {
+            const Rgb& out = step(
+                s, renderFrame(constantScene({v, v * 0.5f, v * 0.25f}), 40, 24, n, halton(n), {0.3, -0.6}, s.samples));
+            Rgb expected(40, 24);
+            for (size_t c = 0; c < 3; c++) expected.c[c] = PlaneF(40, 24, v * (c == 0 ? 1.0f : c == 1 ? 0.5f : 0.25f));
+            if (method(GetParam()).output == Space::encoded) {
+                const Rgb linear = expected;
+                encode(linear, {}, {}, expected);
+            }
+            for (size_t c = 0; c < 3; c++)
+                for (int y = 0; y < 24; y++)
+                    for (int x = 0; x < 40; x++)
+                        ASSERT_NEAR(out.c[c].at(x, y), expected.c[c].at(x, y), 2e-6) << n << " " << x << "," << y;
+        }
+    }
+}
+
+TEST_P(EveryMethod, AnySizeWorksAndFiniteInGivesFiniteOut) {
+    const std::pair<int, int> sizes[] = {{1, 1}, {1, 7}, {7, 1}, {2, 2}, {3, 3}, {17, 5}, {33, 19}};
+    const double motions[] = {0.0, 0.37, -1e30, 17.0};
+    for (const auto& [w, h] : sizes) {
+        Subject s = makeSubject(GetParam(), w, h);
+        for (int n = 1; n <= 6; n++) {
+            Frame f =
+                renderFrame(noise(unsigned(n)), w, h, n, halton(n), {motions[n % 4], motions[(n / 2) % 4]}, s.samples);
+            if (n == 3) f.colorLinear.c[0].at(w / 2, h / 2) = 1e6f;  // firefly
+            if (n == 4) f.colorLinear.c[1].at(0, 0) = 1e-42f;        // denormal
+            if (n == 5) f.motionXPx.at(0, 0) = NAN;                  // invalid motion rejects history
+            f.colorLinear.fillBorder();
+            f.motionXPx.fillBorder();
+            ASSERT_TRUE(allFinite(step(s, f))) << w << "x" << h << " frame " << n;
+        }
+    }
+}
+
+TEST_P(EveryMethod, SameBitsForThreadsInstructionSetsAndScalar) {
+    Subject reference = makeSubject(GetParam(), 67, 43);
+    std::vector<Rgb> expected;
+    std::vector<Frame> frames;
+    for (int n = 1; n <= 4; n++) {
+        frames.push_back(renderFrame(n == 3 ? noise(5) : shapes({1.3 * n, 0.4 * n}), 67, 43, n, halton(n), {1.3, 0.4},
+                                     reference.samples));
+        expected.push_back(
+            step(reference, frames.back(), {.isa = Isa::v2, .precision = Precision::scalar, .parallel = false}));
+    }
+    for (const Isa isa : {Isa::v2, Isa::v3, Isa::v4}) {
+        if (!isaSupported(isa)) continue;
+        for (const Precision precision : {Precision::fast, Precision::scalar})
+            for (const bool parallel : {false, true}) {
+                Subject s = makeSubject(GetParam(), 67, 43);
+                for (size_t n = 0; n < frames.size(); n++)
+                    ASSERT_TRUE(step(s, frames[n], {.isa = isa, .precision = precision, .parallel = parallel})
+                                    .samePixels(expected[n]))
+                        << name(isa) << (precision == Precision::fast ? " lanes" : " scalar")
+                        << (parallel ? " parallel" : "") << " frame " << n + 1;
+            }
+    }
+}
+
+// The double form may decide an exact tie otherwise, so a small share of pixels may differ more.
+TEST_P(EveryMethod, LanesAgreeWithDouble) {
+    Subject lanes = makeSubject(GetParam(), 67, 43), oracle = makeSubject(GetParam(), 67, 43);
+    Exec exact;
+    exact.precision = Precision::oracle;
+    size_t far = 0, all = 0;
+    for (int n = 1; n <= 3; n++) {
+        const Frame f = renderFrame(shapes({1.3 * n, 0.4 * n}), 67, 43, n, halton(n), {1.3, 0.4}, lanes.samples);
+        const Rgb a = step(lanes, f);
+        const Rgb& b = step(oracle, f, exact);
+        for (size_t c = 0; c < 3; c++)
+            for (int y = 0; y < 43; y++)
+                for (int x = 0; x < 67; x++, all++) far += !(std::fabs(a.c[c].at(x, y) - b.c[c].at(x, y)) <= 3e-5f);
+    }
+    EXPECT_LE(double(far), 0.002 * double(all));
+}
+
+TEST_P(EveryMethod, ResetForgetsTheHistory) {
+    Subject used = makeSubject(GetParam(), 48, 30), fresh = makeSubject(GetParam(), 48, 30);
+    for (int n = 1; n <= 3; n++)
+        step(used, renderFrame(noise(unsigned(n)), 48, 30, n, halton(n), {0.5, 0.5}, used.samples));
+    const Frame first = renderFrame(shapes(), 48, 30, 1, {0, 0}, {0, 0}, used.samples);
+    const Rgb a = step(used, first);
+    EXPECT_TRUE(a.samePixels(step(fresh, first)));
+}
+
+TEST_P(EveryMethod, NanDoesNotOutliveItsFrame) {
+    Subject s = makeSubject(GetParam(), 32, 20);
+    if (method(GetParam()).id == "accum")
+        GTEST_SKIP() << "a sum holds what it was given; the reader's sanitiser stands before it";
+    for (int n = 1; n <= 4; n++) {
+        Frame f = renderFrame(shapes(), 32, 20, n, halton(n), {0, 0}, s.samples);
+        if (n == 2) {
+            f.colorLinear.c[1].at(15, 9) = NAN;
+            f.colorLinear.c[0].at(3, 3) = INFINITY;
+            f.colorLinear.fillBorder();
+        }
+        const Rgb& out = step(s, f);
+        if (n == 2) continue;
+        ASSERT_TRUE(allFinite(out)) << "frame " << n;
+    }
+}
+
+// A spatial method may not touch a pixel farther from any edge than its stated reach.
+TEST_P(EveryMethod, NothingChangesBeyondTheStatedReach) {
+    const int reach = method(GetParam()).reachPx;
+    if (reach <= 0) GTEST_SKIP() << "no reach stated";
+    const int w = 2 * reach + 40, h = 24;
+    Subject s = makeSubject(GetParam(), w, h);
+    const Scene half = [&](double x, double y) -> Surface {
+        const bool right = x + 0.2 * y > 12;
+        return {right ? glm::vec3(0.2f) : glm::vec3(0.8f), right ? 8.0f : 4.0f, {0, 0, 1}, right ? 1u : 2u};
+    };
+    const Rgb& out = step(s, renderFrame(half, w, h, 1, {0, 0}, {0, 0}, s.samples));
+    const float expected = out.c[0].at(w - 1, 0);
+    for (int y = 0; y < h; y++)
+        for (int x = 13 + reach; x < w; x++) ASSERT_EQ(out.c[0].at(x, y), expected) << x << "," << y;
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod, ::testing::ValuesIn(allSpecs()), [](const auto& info) {
+    std::string s = info.param;
+    for (char& c : s)
+        if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+    return s;
+});
+
+}  // namespace
+}  // namespace aa::testing
