@@ -2,13 +2,14 @@
 #include "methods/accum.h"
 #include "methods/method.h"
 #include "methods/noaa.h"
+#include "methods/ssaa.h"
 
 namespace aa {
 
 const std::vector<MethodDescriptor>& registry() {
     static const std::vector<MethodDescriptor> methods = {
         // reference
-        noaaDescriptor(), accumDescriptor(),
+        noaaDescriptor(), accumDescriptor(), ssaaDescriptor(),
         // spatial
         // geometry
         // temporal
