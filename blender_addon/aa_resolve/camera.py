@@ -1,0 +1,286 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cameras: the shift that jitters a picture, matrices without jitter, and exact motion.
+
+Positions are pixels of the exported picture, x right, y **down**, origin at the top-left corner. Matrices are
+row-major for column vectors: world -> view (the camera looks along -z) and view -> clip (OpenGL, z in -w..w).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from . import compat
+from .errors import SceneError
+
+# Motion of a pixel whose surface had no place in the previous picture: far outside, so that every temporal
+# method takes it for a disocclusion instead of fetching somebody else's colour.
+NO_PREVIOUS_POSITION_PX = 1.0e6
+BACKGROUND_DEPTH = 1.0e9  # anything at or beyond it is background (Cycles writes 1e10)
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Geometry of the exported picture: full size and the exported window (equal without border), pixels."""
+
+    full_width: int
+    full_height: int
+    left: int
+    top: int
+    width: int
+    height: int
+    aspect_x: float
+    aspect_y: float
+
+    @property
+    def is_cropped(self) -> bool:
+        """True when only a border region is exported."""
+        return (self.width, self.height) != (self.full_width, self.full_height)
+
+
+def frame_of(scene: bpy.types.Scene) -> Frame:
+    """Picture size as Blender computes it: sizes are truncated, the border is counted from the bottom."""
+    render = scene.render
+    width = int(render.resolution_x * render.resolution_percentage / 100)
+    height = int(render.resolution_y * render.resolution_percentage / 100)
+    left, right, bottom, top = 0, width, 0, height
+    if render.use_border:
+        left, right = int(render.border_min_x * width), int(render.border_max_x * width)
+        bottom, top = int(render.border_min_y * height), int(render.border_max_y * height)
+    if right - left < 1 or top - bottom < 1:
+        raise SceneError("the render border is smaller than one pixel: enlarge it or switch it off")
+    return Frame(
+        width, height, left, height - top, right - left, top - bottom, render.pixel_aspect_x, render.pixel_aspect_y
+    )
+
+
+def jitter_to_shift(frame: Frame, data: bpy.types.Camera, jitter_x: float, jitter_y: float) -> tuple[float, float]:
+    """What to add to ``shift_x, shift_y`` so that samples move by the jitter (pixels, y down).
+
+    Blender's shift is a fraction of the sensor side that the fit selects; the size of the sensor cancels out."""
+    aspect = frame.aspect_y / frame.aspect_x
+    fit = data.sensor_fit
+    if fit == "AUTO":
+        wide = frame.full_width * frame.aspect_x >= frame.full_height * frame.aspect_y
+        fit = "HORIZONTAL" if wide else "VERTICAL"
+    side = frame.full_width if fit == "HORIZONTAL" else aspect * frame.full_height
+    return jitter_x / side, -jitter_y * aspect / side
+
+
+@dataclass(frozen=True)
+class CameraState:
+    """A camera at one frame, without jitter."""
+
+    kind: str  # perspective | orthographic
+    view: np.ndarray  # 4 x 4, float64
+    projection: np.ndarray  # 4 x 4, float64, of the exported window
+    near: float
+    far: float
+
+    def as_manifest(self) -> dict:
+        """The ``camera`` member of shot.json."""
+        return {
+            "kind": self.kind,
+            "view": [float(value) for value in self.view.ravel()],
+            "projection": [float(value) for value in self.projection.ravel()],
+            "near": self.near,
+            "far": self.far,
+        }
+
+
+def camera_state(camera: bpy.types.Object, frame: Frame, depsgraph: bpy.types.Depsgraph) -> CameraState:
+    """Matrices of ``camera`` at the scene's current frame."""
+    data = camera.evaluated_get(depsgraph).data
+    if data.type not in ("PERSP", "ORTHO"):
+        raise SceneError(
+            f"camera '{camera.name}' is of type {data.type}: a shot holds perspective and orthographic cameras only"
+        )
+    projection = np.array(
+        camera.calc_matrix_camera(
+            depsgraph, x=frame.full_width, y=frame.full_height, scale_x=frame.aspect_x, scale_y=frame.aspect_y
+        ),
+        dtype=np.float64,
+    )
+    if frame.is_cropped:
+        scale_x, scale_y = frame.full_width / frame.width, frame.full_height / frame.height
+        offset_x = (frame.full_width - 2 * frame.left) / frame.width - 1.0
+        offset_y = 1.0 - (frame.full_height - 2 * frame.top) / frame.height
+        window = np.array([[scale_x, 0, 0, offset_x], [0, scale_y, 0, offset_y], [0, 0, 1, 0], [0, 0, 0, 1.0]])
+        projection = window @ projection
+    placement = np.array(camera.evaluated_get(depsgraph).matrix_world, dtype=np.float64)
+    placement[:3, :3] /= np.linalg.norm(placement[:3, :3], axis=0)  # Cycles drops the scale of a camera, too
+    kind = "perspective" if data.type == "PERSP" else "orthographic"
+    return CameraState(kind, np.linalg.inv(placement), projection, float(data.clip_start), float(data.clip_end))
+
+
+def same_camera(a: CameraState, b: CameraState) -> bool:
+    """True when both project every point to the same place, bit for bit."""
+    return a.kind == b.kind and np.array_equal(a.view, b.view) and np.array_equal(a.projection, b.projection)
+
+
+def _copy_without_shift_animation(camera: bpy.types.Object) -> bpy.types.Camera:
+    """Copy of the camera's data that keeps the animation of the lens but not of the shift."""
+    data = camera.data.copy()
+    animation = data.animation_data
+    if animation is None:
+        return data
+    if animation.action:
+        animation.action = animation.action.copy()
+        for curve in compat.action_curves(animation):
+            if curve.data_path.startswith("shift"):
+                compat.remove_curve(animation, curve)
+    for driver in list(animation.drivers):
+        if driver.data_path.startswith("shift"):
+            animation.drivers.remove(driver)
+    if len(animation.nla_tracks):
+        raise SceneError(f"camera '{camera.name}': its data is animated by NLA strips; bake them to an action first")
+    return data
+
+
+class JitterCamera:
+    """A camera that rides on another one and looks through a displaced window.
+
+    It is a child with identity placement, so it follows every animation and constraint and Cycles finds its true
+    motion; the user's camera is not touched."""
+
+    def __init__(self, scene: bpy.types.Scene, camera: bpy.types.Object, name: str) -> None:
+        self.source = camera
+        self.object = bpy.data.objects.new(name, _copy_without_shift_animation(camera))
+        self.object.parent = camera
+        scene.collection.objects.link(self.object)
+
+    def aim(self, frame: Frame, depsgraph: bpy.types.Depsgraph, jitter_x: float, jitter_y: float) -> None:
+        """Displaces the samples by a jitter (pixels, y down) from the source camera at the current frame."""
+        source = self.source.evaluated_get(depsgraph).data
+        shift_x, shift_y = jitter_to_shift(frame, source, jitter_x, jitter_y)
+        self.object.data.shift_x = source.shift_x + shift_x
+        self.object.data.shift_y = source.shift_y + shift_y
+
+
+class CameraCuts:
+    """Which camera looks at a frame: those bound to markers, else the scene's own.
+
+    Takes the bindings out of the (open, never saved) scene: they would put the user's camera in the place of the
+    jittered one at every change of frame."""
+
+    def __init__(self, scene: bpy.types.Scene) -> None:
+        self._default = scene.camera
+        self._bound = sorted(
+            ((marker.frame, marker.camera) for marker in scene.timeline_markers if marker.camera is not None),
+            key=lambda pair: pair[0],
+        )
+        for marker in scene.timeline_markers:
+            marker.camera = None
+
+    @property
+    def is_cut(self) -> bool:
+        """True when more than one camera may appear."""
+        return len({camera.name_full for _, camera in self._bound}) > 1
+
+    def at(self, frame: int) -> bpy.types.Object:
+        """The camera of a frame."""
+        before = [camera for marked, camera in self._bound if marked <= frame]
+        chosen = before[-1] if before else (self._bound[0][1] if self._bound else self._default)
+        if chosen is None:
+            raise SceneError("the scene has no camera: set one as active, or bind cameras to markers")
+        return chosen
+
+
+def sample_positions(frame: Frame, jitter_x: float, jitter_y: float) -> tuple[np.ndarray, np.ndarray]:
+    """x (1 x W) and y (H x 1) of the samples in the un-jittered picture, pixels."""
+    x = np.arange(frame.width, dtype=np.float64)[None, :] + 0.5 + jitter_x
+    y = np.arange(frame.height, dtype=np.float64)[:, None] + 0.5 + jitter_y
+    return x, y
+
+
+def motion_from_vector(
+    vector: np.ndarray,
+    depth: np.ndarray,
+    frame: Frame,
+    jitter: tuple[float, float],
+    now: CameraState,
+    before: CameraState,
+) -> np.ndarray:
+    """Motion current - previous (H x W x 2, pixels, y down) from Blender's Vector pass.
+
+    Vector.XY is previous - current with y up, both seen through the *current* projection: a change of lens, of
+    orthographic scale or of shift is missing and comes in here, where the previous position is taken back to a
+    direction and projected with the previous camera's own matrix. Background has no vector; it is a direction at
+    infinity that only the rotation moves (0 for an orthographic camera, whose background shows one direction)."""
+    x, y = sample_positions(frame, *jitter)
+    vector_x, vector_y = vector[:, :, 0].astype(np.float64), vector[:, :, 1].astype(np.float64)
+    motion = np.empty((frame.height, frame.width, 2), np.float64)
+    if np.array_equal(now.projection, before.projection):
+        motion[:, :, 0], motion[:, :, 1] = -vector_x, vector_y
+    else:
+        previous_x, previous_y = x + vector_x, y - vector_y
+        ndc_x, ndc_y = 2.0 * previous_x / frame.width - 1.0, 1.0 - 2.0 * previous_y / frame.height
+        a, b = now.projection, before.projection
+        column = 2 if now.kind == "perspective" else 3
+        sign = 1.0 if now.kind == "perspective" else -1.0
+        ndc_x = (ndc_x + sign * a[0, column]) / a[0, 0] * b[0, 0] - sign * b[0, column]
+        ndc_y = (ndc_y + sign * a[1, column]) / a[1, 1] * b[1, 1] - sign * b[1, column]
+        motion[:, :, 0] = x - (ndc_x + 1.0) * 0.5 * frame.width
+        motion[:, :, 1] = y - (1.0 - ndc_y) * 0.5 * frame.height
+    background = depth >= BACKGROUND_DEPTH
+    if background.any():
+        motion[background] = background_motion(frame, jitter, now, before)[background]
+    return motion.astype(np.float32)
+
+
+def background_motion(
+    frame: Frame, jitter: tuple[float, float], now: CameraState, before: CameraState
+) -> np.ndarray:
+    """Motion (H x W x 2, pixels, y down) of what lies infinitely far away."""
+    motion = np.zeros((frame.height, frame.width, 2), np.float64)
+    if now.kind != "perspective" or before.kind != "perspective" or same_camera(now, before):
+        return motion
+    x, y = sample_positions(frame, *jitter)
+    direction = np.empty((frame.height, frame.width, 3), np.float64)
+    direction[:, :, 0] = (2.0 * x / frame.width - 1.0 + now.projection[0, 2]) / now.projection[0, 0]
+    direction[:, :, 1] = (1.0 - 2.0 * y / frame.height + now.projection[1, 2]) / now.projection[1, 1]
+    direction[:, :, 2] = -1.0
+    turned = direction @ (before.view[:3, :3] @ now.view[:3, :3].T).T
+    ahead = -turned[:, :, 2]
+    visible = ahead > 1e-9
+    safe = np.where(visible, ahead, 1.0)
+    ndc_x = turned[:, :, 0] / safe * before.projection[0, 0] - before.projection[0, 2]
+    ndc_y = turned[:, :, 1] / safe * before.projection[1, 1] - before.projection[1, 2]
+    motion[:, :, 0] = x - (ndc_x + 1.0) * 0.5 * frame.width
+    motion[:, :, 1] = y - (1.0 - ndc_y) * 0.5 * frame.height
+    motion[~visible] = NO_PREVIOUS_POSITION_PX
+    return motion
+
+
+def unproject(
+    x: np.ndarray, y: np.ndarray, depth: np.ndarray, frame: Frame, camera: CameraState
+) -> np.ndarray:
+    """View-space points (H x W x 3, metres) of planar depths seen at un-jittered pixel positions."""
+    p = camera.projection
+    ndc_x, ndc_y = 2.0 * x / frame.width - 1.0, 1.0 - 2.0 * y / frame.height
+    points = np.empty((*depth.shape, 3), np.float64)
+    if camera.kind == "perspective":
+        points[..., 0] = (ndc_x + p[0, 2]) / p[0, 0] * depth
+        points[..., 1] = (ndc_y + p[1, 2]) / p[1, 1] * depth
+    else:
+        points[..., 0] = (ndc_x - p[0, 3]) / p[0, 0] * np.ones_like(depth)
+        points[..., 1] = (ndc_y - p[1, 3]) / p[1, 1] * np.ones_like(depth)
+    points[..., 2] = -depth
+    return points
+
+
+def cut_between(now: CameraState, before: CameraState) -> bool:
+    """True when the camera jumps: it turns by more than half its field of view or changes its kind.
+
+    Within one camera; a change of the camera object is a cut in any case."""
+    if now.kind != before.kind:
+        return True
+    turn = now.view[:3, :3] @ before.view[:3, :3].T
+    angle = math.acos(max(-1.0, min(1.0, (np.trace(turn) - 1.0) / 2.0)))
+    if now.kind != "perspective":
+        return angle > math.radians(30.0)
+    field = 2.0 * math.atan(1.0 / min(now.projection[0, 0], now.projection[1, 1]))
+    return angle > field / 2.0

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The only file that knows Blender versions: pass names and the properties that were renamed or moved."""
+
+from __future__ import annotations
+
+import bpy
+
+VERSION: tuple[int, int, int] = bpy.app.version
+
+# Pass name in the shot exporter -> names in multilayer EXRs of Blender 3.x/4.x and of 5.x.
+PASS_NAMES: dict[str, tuple[str, ...]] = {
+    "Combined": ("Combined",),
+    "Depth": ("Depth",),
+    "Normal": ("Normal",),
+    "Vector": ("Vector",),
+    "Position": ("Position",),
+    "IndexOB": ("IndexOB", "Object Index"),
+    "DiffCol": ("DiffCol", "Diffuse Color"),
+    "GlossCol": ("GlossCol", "Glossy Color"),
+    "TransCol": ("TransCol", "Transmission Color"),
+    "Emit": ("Emit", "Emission"),
+    "Env": ("Env", "Environment"),
+    "Denoising Albedo": ("Denoising Albedo",),
+    "Denoising Normal": ("Denoising Normal",),
+}
+
+
+def oiio_module():
+    """OpenImageIO's Python module, or None where this Blender brings none."""
+    try:
+        import OpenImageIO
+    except ImportError:
+        return None
+    return OpenImageIO
+
+
+def set_if_present(owner, name: str, value) -> bool:
+    """Sets a property that only some versions have; True when it exists."""
+    if hasattr(owner, name):
+        setattr(owner, name, value)
+        return True
+    return False
+
+
+def set_no_light_sampling(material: bpy.types.Material) -> None:
+    """Emission of this material is no longer picked as a light."""
+    cycles = material.cycles
+    if not set_if_present(cycles, "emission_sampling", "NONE"):  # since 3.5
+        set_if_present(cycles, "sample_as_light", False)
+
+
+def set_compositing(scene: bpy.types.Scene, enabled: bool) -> None:
+    """Compositor and sequencer on or off for renders."""
+    scene.render.use_compositing = enabled
+    scene.render.use_sequencer = enabled
+
+
+def compositor_in_use(scene: bpy.types.Scene) -> bool:
+    """True when renders of this scene pass through compositor nodes."""
+    if hasattr(scene, "compositing_node_group"):  # since 5.0
+        return scene.render.use_compositing and scene.compositing_node_group is not None
+    return scene.render.use_compositing and scene.use_nodes and scene.node_tree is not None
+
+
+def action_curves(animation_data) -> list:
+    """The F-curves of the current action, whatever way this version stores them."""
+    action = animation_data.action if animation_data else None
+    if action is None:
+        return []
+    if hasattr(action, "fcurves"):
+        return list(action.fcurves)
+    curves = []
+    for layer in action.layers:  # since 5.0
+        for strip in layer.strips:
+            bag = strip.channelbag(animation_data.action_slot)
+            if bag:
+                curves += list(bag.fcurves)
+    return curves
+
+
+def remove_curve(animation_data, curve) -> None:
+    """Takes one F-curve out of the current action."""
+    action = animation_data.action
+    if hasattr(action, "fcurves"):
+        action.fcurves.remove(curve)
+        return
+    for layer in action.layers:
+        for strip in layer.strips:
+            bag = strip.channelbag(animation_data.action_slot)
+            if bag and curve in list(bag.fcurves):
+                bag.fcurves.remove(curve)
+                return
+
+
+def is_cycles_available() -> bool:
+    """True when the Cycles add-on is enabled."""
+    return hasattr(bpy.types.Scene, "cycles")

@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Object ids, unique per object and per instance.
+
+Cycles' object index tells objects apart, but every instance (particle, collection or geometry-nodes instance)
+carries the index of its source. Their Object Info > Random value differs; an extra output of every material (an
+AOV) records it, weighted by the material's opacity, because outputs add up along a ray that passes cut-outs.
+
+Ids: 1..32767 for objects in the order of their names, 2^31 and above for instances (a hash of source and instance,
+stable over frames), 0 for the background.
+"""
+
+from __future__ import annotations
+
+import zlib
+
+import bpy
+import numpy as np
+
+from . import rendering, subsamples
+from .errors import SceneError
+
+CHANNEL = "AA Instance"
+_UNUSED = 2147483647  # fills persistent ids up
+_TOLERANCE = 1.0e-6  # of Random in [0, 1]: it went through float and, with many samples, through a mean
+
+
+class ObjectIds:
+    """Sets the indices of the open scene's objects and reads ids from renders."""
+
+    def __init__(self, scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer, tell_instances: bool) -> None:
+        self.notes: list[str] = []
+        self.table: dict[int, str] = {0: ""}
+        for index, item in enumerate(sorted(bpy.data.objects, key=lambda item: item.name_full), 1):
+            item.pass_index = index
+            self.table[index] = item.name_full
+        self._names: dict[int, str] = {}
+        self._instances: dict[int, tuple[np.ndarray, np.ndarray]] = {}
+        self.tells_instances = tell_instances and _may_instance(scene)
+        if self.tells_instances:
+            view_layer.aovs.add().name = CHANNEL
+            view_layer.aovs[CHANNEL].type = "VALUE"
+            _give_every_mesh_a_material()
+            hidden = [material.name for material in bpy.data.materials if not _add_output(material)]
+            if hidden:
+                self.notes.append(
+                    f"instances with material {', '.join(hidden)} share one id: its opacity is made inside a node group"
+                )
+
+    def look(self, depsgraph: bpy.types.Depsgraph) -> None:
+        """Takes note of the instances of the current frame."""
+        self._instances = {}
+        if not self.tells_instances:
+            return
+        found: dict[str, list[tuple[int, str]]] = {}
+        for instance in depsgraph.object_instances:
+            if instance.is_instance and instance.object:
+                number = ".".join(str(part) for part in instance.persistent_id if part != _UNUSED)
+                parent = instance.parent.name_full if instance.parent else ""
+                source = instance.object.original.name_full
+                label = f"{source} #{number}" + (f" of {parent}" if parent else "")
+                found.setdefault(source, []).append((instance.random_id & 0xFFFFFFFF, label))
+        taken: dict[int, str] = {}
+        indices = {name: index for index, name in self.table.items()}
+        for source in sorted(found):
+            if source not in indices:
+                continue
+            pairs = sorted(set(found[source]))
+            ids = []
+            for random, label in pairs:
+                identity = 0x80000000 | zlib.crc32(f"{source}:{random}".encode()) & 0x7FFFFFFF
+                while taken.get(identity, label) != label:
+                    identity = 0x80000000 | (identity + 1) & 0x7FFFFFFF
+                taken[identity] = label
+                ids.append(identity)
+            values = np.array([np.float32(random) * np.float32(1.0 / 4294967295.0) for random, _ in pairs], np.float64)
+            self._instances[indices[source]] = values, np.array(ids, np.uint32)
+        self._names.update(taken)
+
+    def resolve(self, layers: rendering.Layers, view: str = "") -> np.ndarray:
+        """Ids (H x W uint32) of a render."""
+        index = np.rint(layers.get("IndexOB", view)[:, :, 0]).astype(np.int64)
+        strange = sorted(set(np.unique(index)) - set(self.table))
+        if strange:
+            raise SceneError(
+                f"the render shows the object index {strange[0]}, which no object was given: is an object's pass index "
+                "animated or driven? Remove that animation"
+            )
+        ids = index.astype(np.uint32)
+        if not self._instances:
+            return ids
+        random = layers.get(CHANNEL, view)[:, :, 0].astype(np.float64)
+        for source, (values, identities) in self._instances.items():
+            pixels = index == source
+            if not pixels.any():
+                continue
+            seen = random[pixels]
+            right = np.clip(np.searchsorted(values, seen), 1, len(values) - 1) if len(values) > 1 else np.zeros_like(seen, int)
+            left = np.maximum(right - 1, 0)
+            nearest = np.where(np.abs(values[left] - seen) <= np.abs(values[right] - seen), left, right)
+            matched = np.abs(values[nearest] - seen) <= _TOLERANCE
+            ids[pixels] = np.where(matched, identities[nearest], np.uint32(source))
+        return ids
+
+    def names(self, ids: np.ndarray) -> dict[str, str]:
+        """Id -> name of everything in ``ids``, for shot.json."""
+        seen = [int(value) for value in np.unique(ids) if value]
+        return {str(value): self._names.get(value) or self.table.get(value, "") for value in seen}
+
+    def override(self) -> bpy.types.Material:
+        """Override material that keeps instances apart."""
+        material = subsamples.override_material()
+        if self.tells_instances:
+            _add_output(material)
+        return material
+
+
+def _may_instance(scene: bpy.types.Scene) -> bool:
+    for item in bpy.data.objects:
+        if item.instance_type != "NONE":
+            return True
+        if any(system.settings.render_type in ("OBJECT", "COLLECTION") for system in item.particle_systems):
+            return True
+        if any(modifier.type == "NODES" and modifier.node_group for modifier in item.modifiers):
+            return True
+    return False
+
+
+def _give_every_mesh_a_material() -> None:
+    """Cycles' default surface has no nodes to put an output in; this is what it looks like."""
+    plain: bpy.types.Material | None = None
+    for mesh in list(bpy.data.meshes) + list(bpy.data.curves) + list(bpy.data.metaballs):
+        if mesh.library is None and not any(mesh.materials):
+            if plain is None:
+                plain = bpy.data.materials.new("AA Resolve Plain")
+                plain.diffuse_color = (0.8, 0.8, 0.8, 1.0)
+            if len(mesh.materials):
+                mesh.materials[0] = plain
+            else:
+                mesh.materials.append(plain)
+
+
+def _add_output(material: bpy.types.Material) -> bool:
+    """Adds the AOV; False when the material's opacity could not be followed."""
+    if material.is_grease_pencil:
+        return True
+    if not material.use_nodes or material.node_tree is None:
+        color = tuple(material.diffuse_color)
+        material.use_nodes = True
+        tree = material.node_tree
+        tree.nodes.clear()
+        diffuse = tree.nodes.new("ShaderNodeBsdfDiffuse")
+        diffuse.inputs["Color"].default_value = color
+        output = tree.nodes.new("ShaderNodeOutputMaterial")
+        tree.links.new(diffuse.outputs[0], output.inputs["Surface"])
+    tree = material.node_tree
+    if any(node.bl_idname == "ShaderNodeOutputAOV" and node.name == CHANNEL for node in tree.nodes):
+        return True
+    output = tree.get_output_node("CYCLES")
+    opacity: float | bpy.types.NodeSocket = 1.0
+    if output is not None and output.inputs["Surface"].is_linked:
+        followed = _opacity(tree, output.inputs["Surface"].links[0].from_socket)
+        if followed is None:
+            return False
+        opacity = followed
+    random = tree.nodes.new("ShaderNodeObjectInfo").outputs["Random"]
+    product = _product(tree, random, opacity)
+    aov = tree.nodes.new("ShaderNodeOutputAOV")
+    aov.name = aov.label = CHANNEL
+    if hasattr(aov, "aov_name"):  # since 4.2 the label and the output's name are apart
+        aov.aov_name = CHANNEL
+    else:
+        aov.name = CHANNEL
+    if isinstance(product, float):
+        aov.inputs["Value"].default_value = product
+    else:
+        tree.links.new(product, aov.inputs["Value"])
+    return True
+
+
+def _math(tree: bpy.types.NodeTree, operation: str, *values):
+    node = tree.nodes.new("ShaderNodeMath")
+    node.operation = operation
+    for socket, value in zip(node.inputs, values):
+        if isinstance(value, (int, float)):
+            socket.default_value = float(value)
+        else:
+            tree.links.new(value, socket)
+    return node.outputs[0]
+
+
+def _product(tree: bpy.types.NodeTree, a, b):
+    if isinstance(a, float) and isinstance(b, float):
+        return a * b
+    if isinstance(b, float) and b == 1.0:
+        return a
+    return _math(tree, "MULTIPLY", a, b)
+
+
+def _opacity(tree: bpy.types.NodeTree, socket: bpy.types.NodeSocket):
+    """Opacity of a shader as a number or a socket; None where a node group hides it."""
+    node = socket.node
+    if node.bl_idname in ("ShaderNodeBsdfTransparent", "ShaderNodeHoldout"):
+        return 0.0
+    if node.bl_idname == "ShaderNodeBsdfPrincipled":
+        alpha = node.inputs["Alpha"]
+        return alpha.links[0].from_socket if alpha.is_linked else float(alpha.default_value)
+    if node.bl_idname == "NodeReroute":
+        return _opacity(tree, node.inputs[0].links[0].from_socket) if node.inputs[0].is_linked else 1.0
+    if node.bl_idname == "ShaderNodeGroup":
+        return None
+    if node.bl_idname in ("ShaderNodeMixShader", "ShaderNodeAddShader"):
+        shaders = [item for item in node.inputs if item.type == "SHADER"]
+        parts = [_opacity(tree, item.links[0].from_socket) if item.is_linked else 0.0 for item in shaders]
+        if None in parts:
+            return None
+        if parts[0] == parts[1] == 1.0:
+            return 1.0
+        if node.bl_idname == "ShaderNodeAddShader":
+            return _math(tree, "MAXIMUM", *parts)
+        factor = node.inputs["Fac"]
+        weight = factor.links[0].from_socket if factor.is_linked else float(factor.default_value)
+        first = _math(tree, "MULTIPLY", parts[0], _math(tree, "SUBTRACT", 1.0, weight))
+        return _math(tree, "MULTIPLY_ADD", parts[1], weight, first)
+    return 1.0

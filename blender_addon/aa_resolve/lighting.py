@@ -1,0 +1,300 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Light models. Colour and ground truth always share one.
+
+``noise-free``: what one sample per pixel can render exactly. Every light becomes a delta light without size, no
+bounces, the world is seen by the camera only, and its mean colour comes back as ``ambient * DiffCol``. Cycles
+picks one light at random per sample; several lights are therefore rendered one by one and added:
+
+    color = sum_k Combined_k - (K - 1) (Emit + Env) + ambient * DiffCol
+
+``as-is``: the scene's own light, with noise that only more samples reduce.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import dataclass, field
+
+import bpy
+import numpy as np
+
+from . import compat, rendering
+from .errors import SceneError
+
+MODELS = ("noise-free", "as-is")
+# An area light shines power / pi along its axis, a spot power / (4 pi).
+_AREA_TO_SPOT_POWER = 4.0
+
+
+@dataclass
+class LightPlan:
+    """How colour is put together: the lights to render one by one and the ambient radiance (linear RGB)."""
+
+    model: str
+    lights: list[bpy.types.Object] = field(default_factory=list)
+    ambient: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    notes: list[str] = field(default_factory=list)
+
+    @property
+    def passes(self) -> set[str]:
+        """Passes of Cycles that ``compose`` reads."""
+        needed = {"Combined"}
+        if any(self.ambient):
+            needed.add("DiffCol")
+        if len(self.lights) > 1:
+            needed |= {"Emit", "Env"}
+        return needed
+
+
+def lights_of(scene: bpy.types.Scene) -> list[bpy.types.Object]:
+    """Light objects that render, wherever they are linked or instanced from."""
+    return [
+        item
+        for item in sorted(bpy.data.objects, key=lambda item: item.name_full)
+        if item.type == "LIGHT" and item.users > 0 and not item.hide_render and _is_reachable(scene, item)
+    ]
+
+
+def _is_reachable(scene: bpy.types.Scene, item: bpy.types.Object) -> bool:
+    if item.name in scene.objects:
+        return True
+    instanced = {
+        other.instance_collection
+        for other in scene.objects
+        if other.instance_type == "COLLECTION" and other.instance_collection
+    }
+    return any(item.name in collection.all_objects for collection in instanced)
+
+
+def emissive_materials() -> list[bpy.types.Material]:
+    """Materials whose nodes can emit light."""
+    found = []
+    for material in bpy.data.materials:
+        if material.use_nodes and material.node_tree and _emits(material.node_tree, set()):
+            found.append(material)
+    return found
+
+
+def _emits(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
+    if tree.name in seen:
+        return False
+    seen.add(tree.name)
+    for node in tree.nodes:
+        if node.bl_idname == "ShaderNodeEmission":
+            return True
+        if node.bl_idname == "ShaderNodeBsdfPrincipled":
+            socket = node.inputs.get("Emission") or node.inputs.get("Emission Color")
+            strength = node.inputs.get("Emission Strength")
+            if socket and (strength is None or strength.is_linked or strength.default_value > 0.0):
+                if socket.is_linked or max(socket.default_value[:3]) > 0.0:
+                    return True
+        if node.bl_idname == "ShaderNodeGroup" and node.node_tree and _emits(node.node_tree, seen):
+            return True
+    return False
+
+
+def noise_causes(scene: bpy.types.Scene, samples: int) -> list[str]:
+    """Why this scene's own light is noisy at few samples, one clause per cause."""
+    causes = []
+    lights = lights_of(scene)
+    if len(lights) > 1:
+        causes.append(f"{len(lights)} lights (each sample picks one at random)")
+    for item in lights:
+        light = item.data
+        if light.type == "AREA":
+            causes.append(f"area light '{item.name}'")
+        elif light.type == "SUN" and light.angle > 0.0:
+            causes.append(f"sun '{item.name}' with an angle of {math.degrees(light.angle):.2g} degrees")
+        elif light.type in ("POINT", "SPOT") and light.shadow_soft_size > 0.0:
+            causes.append(f"{light.type.lower()} light '{item.name}' with a radius of {light.shadow_soft_size:.2g} m")
+    world = scene.world
+    if world and world.cycles_visibility.diffuse:
+        causes.append("light from the world")
+    if scene.cycles.max_bounces > 0 and scene.cycles.diffuse_bounces + scene.cycles.glossy_bounces > 0:
+        causes.append("indirect light")
+    if emissive_materials():
+        causes.append("meshes that emit light")
+    return causes if samples < 64 else []
+
+
+def _world_is_one_colour(world: bpy.types.World) -> bool:
+    if not world.use_nodes:
+        return True
+    kinds = {node.bl_idname for node in world.node_tree.nodes}
+    return kinds <= {"ShaderNodeBackground", "ShaderNodeOutputWorld"}
+
+
+def mean_world_radiance(scene: bpy.types.Scene, folder: str) -> tuple[float, float, float]:
+    """Mean radiance of the world over the sphere: a small panorama of the empty world, weighted by solid angle."""
+    world = scene.world
+    if world is None:
+        return 0.0, 0.0, 0.0
+    empty = bpy.data.scenes.new("AA Resolve World")
+    try:
+        empty.world = world
+        data = bpy.data.cameras.new("AA Resolve Panorama")
+        data.type = "PANO"
+        panorama = data if hasattr(data, "panorama_type") else data.cycles
+        panorama.panorama_type = "EQUIRECTANGULAR"
+        camera = bpy.data.objects.new("AA Resolve Panorama", data)
+        camera.rotation_euler = (math.pi / 2.0, 0.0, 0.0)
+        empty.collection.objects.link(camera)
+        empty.camera = camera
+        empty.render.resolution_x, empty.render.resolution_y = 64, 32
+        empty.frame_set(scene.frame_current)
+        layer = empty.view_layers[0]
+        rendering.prepare(empty, layer)
+        rendering.request_passes(layer, {"Depth"})
+        rendering.sample_pixel_area(empty, 16, 0)
+        picture = rendering.render(empty, layer, folder).get("Combined")[:, :, :3].astype(np.float64)
+        weight = np.sin((np.arange(32) + 0.5) / 32.0 * math.pi)[:, None, None]
+        mean = (picture * weight).sum(axis=(0, 1)) / (weight.sum() * 64.0)
+        return float(mean[0]), float(mean[1]), float(mean[2])
+    finally:
+        bpy.data.scenes.remove(empty)
+
+
+def set_up(
+    scene: bpy.types.Scene, model: str, ambient: tuple[float, float, float] | None, folder: str
+) -> LightPlan:
+    """Brings the open scene (in memory) to the light model and says what had to change.
+
+    ``ambient`` None: the mean colour of the world, where it lights surfaces at all."""
+    if model == "as-is":
+        plan = LightPlan(model)
+        causes = noise_causes(scene, 1)
+        if causes:
+            plan.notes.append(f"light as it is; noisy at few samples because of {', '.join(causes)}")
+        return plan
+    plan = LightPlan(model)
+    cycles = scene.cycles
+    changes = []
+    if cycles.max_bounces > 0:
+        changes.append("no bounces")
+    cycles.max_bounces = 0
+    cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = cycles.volume_bounces = 0
+    cycles.caustics_reflective = cycles.caustics_refractive = False
+    compat.set_if_present(cycles, "use_fast_gi", False)
+    world = scene.world
+    world_lights = False
+    if world:
+        visibility = world.cycles_visibility
+        world_lights = visibility.diffuse
+        visibility.diffuse = visibility.glossy = visibility.transmission = visibility.scatter = False
+        world.cycles.sampling_method = "NONE"
+    if ambient is not None:
+        plan.ambient = ambient
+    elif world_lights:
+        plan.ambient = mean_world_radiance(scene, folder)
+    if any(plan.ambient):
+        red, green, blue = plan.ambient
+        changes.append(f"ambient ({red:.3g}, {green:.3g}, {blue:.3g}) in place of light from the world")
+    plan.lights = lights_of(scene)
+    changes += [change for change in map(_make_delta, plan.lights) if change]
+    emissive = emissive_materials()
+    for material in emissive:
+        compat.set_no_light_sampling(material)
+    if emissive:
+        changes.append("emitting meshes light nothing else")
+    for item in bpy.data.objects:
+        # What is left of a path after its first hit could only find emitters, at random.
+        item.visible_diffuse = item.visible_glossy = item.visible_transmission = item.visible_volume_scatter = False
+    if len(plan.lights) > 1:
+        changes.append(f"{len(plan.lights)} lights rendered one by one and added")
+    if changes:
+        plan.notes.append("noise-free light: " + ", ".join(changes))
+    instanced = {item.name for item in plan.lights if item.name not in scene.objects}
+    if instanced:
+        plan.notes.append(
+            f"lights inside instanced collections ({', '.join(sorted(instanced))}) are several at once: noise remains"
+        )
+    return plan
+
+
+def _make_delta(item: bpy.types.Object) -> str:
+    """Takes the size from a light; returns what changed."""
+    light = item.data
+    if light.type == "AREA":
+        data = light.copy()
+        item.data = data
+        energy = data.energy * _AREA_TO_SPOT_POWER
+        data.type = "SPOT"
+        data = bpy.data.lights[data.name]
+        data.energy = energy
+        data.spot_size = math.pi
+        data.spot_blend = 1.0
+        data.shadow_soft_size = 0.0
+        data.cycles.use_multiple_importance_sampling = False
+        item.data = data
+        return f"area light '{item.name}' shines from its centre"
+    light.cycles.use_multiple_importance_sampling = False
+    if light.type == "SUN":
+        changed = light.angle > 0.0
+        light.angle = 0.0
+    else:
+        changed = light.shadow_soft_size > 0.0
+        light.shadow_soft_size = 0.0
+    _drop_curves(light, ("angle", "shadow_soft_size"))
+    return f"'{item.name}' without size" if changed else ""
+
+
+def _drop_curves(owner: bpy.types.ID, paths: tuple[str, ...]) -> None:
+    """Takes the animation of some properties away, which would else undo what was set."""
+    animation = owner.animation_data
+    if animation is None:
+        return
+    for curve in compat.action_curves(animation):
+        if curve.data_path in paths:
+            compat.remove_curve(animation, curve)
+    for driver in list(animation.drivers):
+        if driver.data_path in paths:
+            animation.drivers.remove(driver)
+
+
+def check_visibility_animation(plan: LightPlan) -> None:
+    """Lights that are rendered one by one must not switch themselves on and off."""
+    if len(plan.lights) < 2:
+        return
+    for item in plan.lights:
+        curves = compat.action_curves(item.animation_data)
+        if any(curve.data_path == "hide_render" for curve in curves):
+            raise SceneError(
+                f"light '{item.name}': its render visibility is animated, and several lights are rendered one by one; "
+                "animate its strength instead, or use --lighting as-is"
+            )
+
+
+class only_light:
+    """Within this context one light shines (None: none at all)."""
+
+    def __init__(self, plan: LightPlan, light: bpy.types.Object | None) -> None:
+        self.plan, self.light = plan, light
+
+    def __enter__(self) -> None:
+        self.saved = {item: item.hide_render for item in self.plan.lights}
+        for item in self.plan.lights:
+            item.hide_render = item != self.light
+
+    def __exit__(self, *_exception) -> None:
+        for item, hidden in self.saved.items():
+            item.hide_render = hidden
+
+
+def compose(plan: LightPlan, renders: list[rendering.Layers], view: str = "") -> np.ndarray:
+    """Colour (H x W x 4, linear, A as Cycles gives it) from one render per light, or from one of all lights."""
+    first = renders[0].get("Combined", view)
+    color = first.astype(np.float64)
+    for further in renders[1:]:
+        unlit = further.get("Emit", view) + further.get("Env", view)
+        color[:, :, :3] += further.get("Combined", view)[:, :, :3].astype(np.float64) - unlit
+    if any(plan.ambient):
+        color[:, :, :3] += renders[0].get("DiffCol", view) * np.asarray(plan.ambient)
+    return color.astype(np.float32)
+
+
+def temporary_folder() -> str:
+    """Folder for Cycles' intermediate pictures; it goes when Blender ends."""
+    folder = os.path.join(bpy.app.tempdir, "aa_resolve")
+    os.makedirs(folder, exist_ok=True)
+    return folder

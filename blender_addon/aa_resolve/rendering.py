@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One Cycles render into a temporary multilayer EXR, read back as arrays.
+
+This is the robust way in background mode: neither the Render Result nor a Viewer node holds pixels there, and a
+File Output node drops the fourth component of the motion vectors.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from . import compat, exr
+from .errors import SceneError
+
+
+@dataclass
+class Layers:
+    """Passes of one render: ``get("Depth")`` is H x W x 1, ``get("Combined", "k03")`` that of a view."""
+
+    passes: dict[tuple[str, str], np.ndarray]
+    seconds: float
+
+    def get(self, name: str, view: str = "") -> np.ndarray:
+        """The pass as H x W x C float32 under this package's own name."""
+        for candidate in compat.PASS_NAMES.get(name, (name,)):
+            if (candidate, view) in self.passes:
+                return self.passes[candidate, view]
+        found = ", ".join(sorted({key[0] for key in self.passes}))
+        raise SceneError(f"Cycles delivered no pass '{name}' (found: {found}); is this Blender version supported?")
+
+
+_ORDER = {"R": 0, "G": 1, "B": 2, "A": 3, "X": 0, "Y": 1, "Z": 2, "W": 3, "V": 0}
+
+
+def _group(channels: dict[str, np.ndarray], layer: str, views: tuple[str, ...]) -> dict[tuple[str, str], np.ndarray]:
+    """Gathers ``Layer.Pass[.view].C`` channels to passes."""
+    groups: dict[tuple[str, str], dict[str, np.ndarray]] = {}
+    for name, pixels in channels.items():
+        if not name.startswith(layer + "."):
+            continue
+        stem, _, component = name[len(layer) + 1 :].rpartition(".")
+        view = ""
+        head, _, tail = stem.rpartition(".")
+        if tail in views:
+            stem, view = head, tail
+        groups.setdefault((stem, view), {})[component] = pixels
+    result = {}
+    for key, components in groups.items():
+        ordered = sorted(components, key=lambda component: _ORDER.get(component.upper(), 9))
+        if key[0] == "Depth":
+            ordered = ordered[:1]
+        result[key] = np.stack([components[component] for component in ordered], axis=-1)
+    return result
+
+
+def render(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer, folder: str, views: tuple[str, ...] = ()) -> Layers:
+    """Renders the scene's current frame with its current settings."""
+    path = os.path.join(folder, "native.exr")
+    scene.render.filepath = path
+    started = time.perf_counter()
+    try:
+        bpy.ops.render.render(write_still=True, scene=scene.name)
+    except RuntimeError as error:
+        raise SceneError(f"Cycles could not render frame {scene.frame_current}: {str(error).strip()}") from error
+    if not os.path.exists(path):
+        raise SceneError(f"Cycles wrote no picture for frame {scene.frame_current}; is the temporary folder full?")
+    channels = exr.read_channels(path)
+    os.unlink(path)
+    passes = _group(channels, view_layer.name, views)
+    return Layers(passes, time.perf_counter() - started)
+
+
+def prepare(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> None:
+    """Settings that every render of an export shares; nothing that changes the look of the scene."""
+    scene.render.engine = "CYCLES"
+    settings = scene.render.image_settings
+    settings.file_format = "OPEN_EXR_MULTILAYER"
+    settings.color_depth = "32"
+    settings.exr_codec = "NONE"  # read back at once: packing would only cost time
+    scene.render.use_file_extension = False
+    scene.render.use_overwrite = True
+    scene.render.use_placeholder = False
+    scene.render.use_motion_blur = False
+    scene.render.use_freestyle = False
+    scene.render.use_stamp = False
+    scene.render.use_multiview = False
+    scene.render.use_persistent_data = True
+    scene.render.use_crop_to_border = True
+    compat.set_compositing(scene, False)
+    for layer in scene.view_layers:
+        layer.use = layer == view_layer
+    cycles = scene.cycles
+    cycles.use_adaptive_sampling = False
+    cycles.use_denoising = False
+    cycles.light_sampling_threshold = 0.0
+    cycles.sample_clamp_direct = 0.0
+    cycles.sample_clamp_indirect = 0.0
+    cycles.use_animated_seed = False
+    cycles.time_limit = 0.0
+    view_layer.samples = 0
+    view_layer.pass_alpha_threshold = 0.5
+
+
+def request_passes(view_layer: bpy.types.ViewLayer, names: set[str]) -> None:
+    """Switches on exactly these passes of Cycles (names of compat.PASS_NAMES)."""
+    switches = {
+        "Depth": "use_pass_z",
+        "Normal": "use_pass_normal",
+        "Vector": "use_pass_vector",
+        "Position": "use_pass_position",
+        "IndexOB": "use_pass_object_index",
+        "DiffCol": "use_pass_diffuse_color",
+        "GlossCol": "use_pass_glossy_color",
+        "TransCol": "use_pass_transmission_color",
+        "Emit": "use_pass_emit",
+        "Env": "use_pass_environment",
+    }
+    for name, switch in switches.items():
+        setattr(view_layer, switch, name in names)
+    for switch in (
+        "use_pass_mist",
+        "use_pass_uv",
+        "use_pass_material_index",
+        "use_pass_shadow",
+        "use_pass_ambient_occlusion",
+        "use_pass_diffuse_direct",
+        "use_pass_diffuse_indirect",
+        "use_pass_glossy_direct",
+        "use_pass_glossy_indirect",
+        "use_pass_transmission_direct",
+        "use_pass_transmission_indirect",
+        "use_pass_subsurface_direct",
+        "use_pass_subsurface_indirect",
+        "use_pass_subsurface_color",
+        "use_pass_cryptomatte_object",
+        "use_pass_cryptomatte_material",
+        "use_pass_cryptomatte_asset",
+    ):
+        compat.set_if_present(view_layer, switch, False)
+    view_layer.cycles.denoising_store_passes = "Denoising Albedo" in names
+
+
+def sample_points(scene: bpy.types.Scene, samples: int) -> None:
+    """All samples of a pixel at one point: the geometry stays aliased, shading noise is averaged.
+
+    BOX would ignore the width; sample 0 lies at the exact centre with any filter."""
+    cycles = scene.cycles
+    cycles.pixel_filter_type = "BLACKMAN_HARRIS"
+    cycles.filter_width = 0.01
+    cycles.samples = samples
+    cycles.sample_offset = 0
+    cycles.seed = 0
+
+
+def sample_pixel_area(scene: bpy.types.Scene, samples: int, seed: int) -> None:
+    """Ground truth: samples spread evenly over the pixel's square."""
+    cycles = scene.cycles
+    cycles.pixel_filter_type = "BOX"
+    cycles.samples = samples
+    cycles.seed = seed
+    # Cycles puts sample 0 of every pixel at the exact centre, in both halves alike; beginning later leaves it out.
+    cycles.sample_offset = samples
+
+
+def unlit_albedo(layers: Layers, view: str = "") -> np.ndarray:
+    """Base colour without light (H x W x 3): the denoising albedo less the emission that it contains.
+
+    The sum of the colour passes is no albedo (a Principled shader's glossy colour is white); it only serves where
+    the denoising albedo is empty although a surface was hit (mirrors and clear glass). What only emits keeps its
+    emission as its colour."""
+    albedo = layers.get("Denoising Albedo", view)
+    emission = layers.get("Emit", view)
+    background = layers.get("Depth", view)[:, :, :1] >= 1.0e9
+    base = np.maximum(albedo - emission, 0.0)
+    reflects = base.max(axis=-1, keepdims=True) > 1.0e-5
+    colour = np.where(reflects, base, emission)
+    colours = layers.get("DiffCol", view) + layers.get("TransCol", view) + layers.get("GlossCol", view)
+    empty = ~background & (colour.max(axis=-1, keepdims=True) <= 0.0)
+    colour = np.where(empty, np.minimum(colours, 1.0), colour)
+    return np.where(background, layers.get("Env", view), colour).astype(np.float32)
+
+
+ALBEDO_PASSES = {"Denoising Albedo", "Emit", "DiffCol", "GlossCol", "TransCol", "Env", "Depth"}

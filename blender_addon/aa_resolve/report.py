@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What an export says while it works: one line per step, or one JSON object per line.
+
+Cycles and Blender write to standard output as they please. For the time of an export that stream is closed to
+them; this package writes to a copy of it.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from typing import IO
+
+
+class Reporter:
+    """Progress to standard output, as text or JSON lines."""
+
+    def __init__(self, as_json: bool) -> None:
+        self.as_json = as_json
+        sys.stdout.flush()
+        self._stream: IO[str] = os.fdopen(os.dup(1), "w", encoding="utf-8")
+        silence = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(silence, 1)
+        os.close(silence)
+
+    def say(self, event: str, text: str, **values) -> None:
+        """One step: ``event`` and ``values`` for machines, ``text`` for people."""
+        if self.as_json:
+            self._stream.write(json.dumps({"event": event, **values, "text": text}) + "\n")
+        else:
+            self._stream.write(text + "\n")
+        self._stream.flush()
