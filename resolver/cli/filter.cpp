@@ -49,7 +49,7 @@ void filter(const Options& o) {
     withThreads(o.work.threads, [&] { seconds = running.resolve(frame, {}, exec); });
     if (isPng(o.out)) {
         writePng(o.out, running.outEncoded);
-    } else if (spec.method->output == Space::linear) {
+    } else if (spec.outputSpace() == Space::linear) {
         writeExr(o.out, running.out, false);
     } else {
         Rgb linear;

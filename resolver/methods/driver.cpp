@@ -12,7 +12,7 @@ double RunningMethod::resolve(const Frame& frame, const DisplayChain& chain, con
     method->resolve(frame, exec, out);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     out.fillBorder();
-    if (spec.method->output == Space::linear)
+    if (spec.outputSpace() == Space::linear)
         encode(out, chain, exec, outEncoded);
     else
         outEncoded = out;

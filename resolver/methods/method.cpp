@@ -42,6 +42,8 @@ PassSet MethodSpec::passes() const {
     return method->morePasses ? method->passes | method->morePasses(params()) : method->passes;
 }
 
+Space MethodSpec::outputSpace() const { return method->outputSpace ? method->outputSpace(params()) : method->output; }
+
 std::string MethodSpec::folderName() const {
     std::string s = text;
     for (char& c : s)

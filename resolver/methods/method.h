@@ -53,6 +53,8 @@ struct MethodDescriptor {
     std::function<std::unique_ptr<Method>(const Params&, const ShotInfo&)> create;
     // Passes that depend on the parameters (depth edges need depth); may be empty.
     std::function<PassSet(const Params&)> morePasses = {};
+    // Output space that depends on the parameters (blending encoded or linear); empty: `output`.
+    std::function<Space(const Params&)> outputSpace = {};
     // Largest distance in px at which a pixel may influence another in one frame; 0 = unlimited or not meaningful.
     int reachPx = 0;
 };
@@ -69,6 +71,7 @@ struct MethodSpec {
     std::vector<std::pair<std::string, std::string>> given;
     Params params() const { return Params(method->id, method->params, given); }
     PassSet passes() const;
+    Space outputSpace() const;
     std::string folderName() const;
     std::unique_ptr<Method> create(const ShotInfo& shot) const;
 };

@@ -1,5 +1,6 @@
 // One line per method; it then appears in `list`, every property test, sweeps and reports.
 #include "methods/accum.h"
+#include "methods/fxaa.h"
 #include "methods/method.h"
 #include "methods/noaa.h"
 #include "methods/ssaa.h"
@@ -11,6 +12,7 @@ const std::vector<MethodDescriptor>& registry() {
         // reference
         noaaDescriptor(), accumDescriptor(), ssaaDescriptor(),
         // spatial
+        fxaa311Descriptor(),
         // geometry
         // temporal
     };
