@@ -228,7 +228,7 @@ def motion_from_vector(
     background = depth >= BACKGROUND_DEPTH
     if background.any():
         motion[background] = background_motion(frame, jitter, now, before)[background]
-    return motion.astype(np.float32)
+    return motion.astype(np.float32) + np.float32(0.0)  # no negative zeros
 
 
 def background_motion(

@@ -198,6 +198,8 @@ def set_up(
     if emissive:
         changes.append("emitting meshes light nothing else")
     for item in bpy.data.objects:
+        if item.type == "LIGHT":
+            continue  # there the same switches mean whom the light shines on
         # What is left of a path after its first hit could only find emitters, at random.
         item.visible_diffuse = item.visible_glossy = item.visible_transmission = item.visible_volume_scatter = False
     if len(plan.lights) > 1:
