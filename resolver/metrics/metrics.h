@@ -1,6 +1,11 @@
-// Full-reference image metrics (methods/07). Sums are double, over fixed row blocks in a fixed order, so that the
-// result does not depend on the number of threads.
+// Full-reference image metrics (methods/07). Both images have the same size; borders need not be filled.
+//
+// Sums are double, over fixed blocks in a fixed order, so that a figure depends neither on the number of threads nor on
+// the instruction set. NaN in an image gives a NaN figure: nothing is skipped. (The display encoding maps NaN to 0, so
+// encoded images hold none.)
 #pragma once
+#include <vector>
+
 #include "image/plane.h"
 #include "kernels/dispatch.h"
 
@@ -12,15 +17,35 @@ struct SquaredError {
     double reference = 0;  // mean of R^2
 };
 SquaredError squaredError(const Rgb& test, const Rgb& reference, const Exec& exec);
+double rmse(double mse);
 double psnr(double mse, double peak = 1.0);  // dB; +Inf for mse = 0
 double snr(const SquaredError& error);       // dB; +Inf for mse = 0, -Inf for an all-zero reference
 // mean((T-R)^2 / (R^2 + 0.01)), linear light (methods/07 s.8).
 double relMse(const Rgb& test, const Rgb& reference, const Exec& exec);
 
-// SSIM of BT.601 luma of encoded images: 11x11 Gaussian, sigma 1.5, replicated border, variances about the local mean
-// (methods/07 s.2). Returns the mean; writes the per-pixel map when `map` is given.
-double ssimLuma(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr);
-// Mean of the per-channel SSIMs.
-double ssimRgb(const Rgb& test, const Rgb& reference, const Exec& exec);
+// Sums of squared error over tiles of 32 x 32 px, row-major, over pixels and channels: the unit of the paired bootstrap
+// (methods/07 s.9). Frames of one sequence are added tile by tile, so that memory does not grow with their number.
+struct TileErrors {
+    static constexpr int kTilePx = 32;
+    std::vector<double> sum;     // of (T - R)^2
+    std::vector<double> values;  // how many pixel channels each tile holds
+    double referenceSum = 0;     // of R^2, over the image
+
+    double totalSum() const;
+    double totalValues() const;
+    SquaredError squaredError() const { return {totalSum() / totalValues(), referenceSum / totalValues()}; }
+    TileErrors& operator+=(const TileErrors& frame);  // same tiles, or *this still empty
+};
+TileErrors tileErrors(const Rgb& test, const Rgb& reference, const Exec& exec);
+
+// SSIM of encoded images: 11x11 Gaussian, sigma 1.5, replicated border, variances about the local mean (methods/07
+// s.2). Each returns the mean over all pixels and writes the per-pixel map when `map` is given.
+double ssimLuma(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr);  // BT.601 luma
+double ssimRgb(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr);   // mean over channels
+// As MATLAB treats an M x N x 3 array: a volume, filtered across the channels too (replicated). For comparison only.
+double ssimMatlab3D(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr);
+
+// floor(255 x + 0.5) / 255: what an 8-bit image file keeps (option `q8` of methods/07). Border filled.
+Rgb quantised8(const Rgb& encoded);
 
 }  // namespace aa

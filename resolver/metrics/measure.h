@@ -1,0 +1,34 @@
+// All figures of one frame in one call: what the runner and `compare` need.
+#pragma once
+#include <optional>
+
+#include "image/colour.h"
+#include "metrics/metrics.h"
+
+namespace aa {
+
+// Encoded (primary, methods/07 s.8) but for relMse.
+struct FrameMetrics {
+    double mse = 0, reference = 0;  // mean of (T-R)^2 and of R^2
+    double psnr = 0, snr = 0;       // dB
+    double ssimLuma = 0;
+    std::optional<double> relMse;  // of linear light; absent for methods whose output is encoded
+    std::optional<double> ssimRgb, flip;
+};
+
+// The ground truth of one frame, prepared once for all methods.
+struct Reference {
+    Rgb linear, encoded;  // mean of the halves, and its display encoding
+    double noise = 0;     // MSE(encoded a, encoded b) / 4
+};
+Reference makeReference(const Rgb& halfA, const Rgb& halfB, const DisplayChain& display, const Exec& exec);
+
+struct MeasureOptions {
+    bool ssimRgb = false;
+};
+// `encoded` is the method's image after the display chain; `linear` is null when the method gives encoded colour. The
+// tile errors of the encoded image are added to `pool`.
+FrameMetrics measure(const Rgb& encoded, const Rgb* linear, const Reference& reference, const MeasureOptions& options,
+                     const Exec& exec, TileErrors& pool);
+
+}  // namespace aa

@@ -1,0 +1,109 @@
+#include "metrics/metrics.h"
+
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "metrics/metrics_kernels.h"
+
+namespace aa {
+namespace {
+double inOrder(const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0); }
+
+// Rows per block of the windowed kernels: each block repeats 10 rows of the along-x pass.
+constexpr int kWindowRows = 64;
+
+double ssim(const Rgb& test, const Rgb& reference, const Exec& exec, SsimSignal signal, PlaneF* map) {
+    assert(test.width() == reference.width() && test.height() == reference.height());
+    const int w = test.width(), h = test.height();
+    if (map && (map->width() != w || map->height() != h)) *map = PlaneF(w, h);
+    std::vector<double> rows(size_t(h) * kSumStrands);
+    const SsimArgs args{
+        view(test), view(reference), test.stride(), w, h, signal, map ? map->row(0) : nullptr, map ? map->stride() : 0,
+        rows.data()};
+    const auto& kernel = metricsKernelsFor(exec.isa).ssim;
+    const auto fn = exec.precision == Precision::fast     ? kernel.fast
+                    : exec.precision == Precision::scalar ? kernel.scalar
+                                                          : kernel.oracle;
+    forRows(
+        exec, h, [&](int y0, int y1) { fn(args, y0, y1); }, kWindowRows);
+    if (map) map->fillBorder();
+    return inOrder(rows) / (double(w) * h);
+}
+}  // namespace
+
+double TileErrors::totalSum() const { return inOrder(sum); }
+double TileErrors::totalValues() const { return inOrder(values); }
+TileErrors& TileErrors::operator+=(const TileErrors& frame) {
+    if (sum.empty()) return *this = frame;
+    assert(sum.size() == frame.sum.size());
+    for (size_t i = 0; i < sum.size(); i++) sum[i] += frame.sum[i], values[i] += frame.values[i];
+    referenceSum += frame.referenceSum;
+    return *this;
+}
+
+TileErrors tileErrors(const Rgb& test, const Rgb& reference, const Exec& exec) {
+    assert(test.width() == reference.width() && test.height() == reference.height());
+    static_assert(TileErrors::kTilePx == kErrorTilePx);
+    const int w = test.width(), h = test.height();
+    const int tilesX = (w + kErrorTilePx - 1) / kErrorTilePx, tilesY = (h + kErrorTilePx - 1) / kErrorTilePx;
+    std::vector<double> tileRows(size_t(h) * size_t(tilesX)), referenceRows(static_cast<size_t>(h));
+    const SquaredErrorArgs args{view(test), view(reference), test.stride(),       w,
+                                tilesX,     tileRows.data(), referenceRows.data()};
+    runKernel(metricsKernelsFor(exec.isa).squaredError, exec, args, h);
+
+    TileErrors errors;
+    errors.sum.resize(size_t(tilesX) * size_t(tilesY));
+    errors.values.resize(errors.sum.size());
+    for (int y = 0; y < h; y++)
+        for (int tile = 0; tile < tilesX; tile++) {
+            const size_t i = size_t(y / kErrorTilePx) * size_t(tilesX) + size_t(tile);
+            errors.sum[i] += tileRows[size_t(y) * size_t(tilesX) + size_t(tile)];
+            errors.values[i] += 3.0 * (std::min(w, (tile + 1) * kErrorTilePx) - tile * kErrorTilePx);
+        }
+    errors.referenceSum = inOrder(referenceRows);
+    return errors;
+}
+
+SquaredError squaredError(const Rgb& test, const Rgb& reference, const Exec& exec) {
+    return tileErrors(test, reference, exec).squaredError();
+}
+double rmse(double mse) { return std::sqrt(mse); }
+double psnr(double mse, double peak) {
+    return mse == 0 ? std::numeric_limits<double>::infinity() : 10 * std::log10(peak * peak / mse);
+}
+double snr(const SquaredError& error) {
+    return error.mse == 0 ? std::numeric_limits<double>::infinity() : 10 * std::log10(error.reference / error.mse);
+}
+double relMse(const Rgb& test, const Rgb& reference, const Exec& exec) {
+    assert(test.width() == reference.width() && test.height() == reference.height());
+    std::vector<double> rows(static_cast<size_t>(test.height()));
+    const RelativeErrorArgs args{view(test), view(reference), test.stride(), test.width(), rows.data()};
+    runKernel(metricsKernelsFor(exec.isa).relativeError, exec, args, test.height());
+    return inOrder(rows) / (3.0 * test.width() * test.height());
+}
+
+double ssimLuma(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map) {
+    return ssim(test, reference, exec, SsimSignal::luma, map);
+}
+double ssimRgb(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map) {
+    return ssim(test, reference, exec, SsimSignal::rgb, map);
+}
+double ssimMatlab3D(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map) {
+    return ssim(test, reference, exec, SsimSignal::volume, map);
+}
+
+Rgb quantised8(const Rgb& encoded) {
+    Rgb q(encoded.width(), encoded.height());
+    for (size_t c = 0; c < 3; c++)
+        for (int y = 0; y < q.height(); y++)
+            for (int x = 0; x < q.width(); x++) {
+                const float v = encoded.c[c].at(x, y);
+                q.c[c].at(x, y) = std::floor(255.0f * (v > 0 ? (v < 1 ? v : 1.0f) : 0.0f) + 0.5f) / 255.0f;
+            }
+    q.fillBorder();
+    return q;
+}
+
+}  // namespace aa

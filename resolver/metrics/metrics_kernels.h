@@ -1,0 +1,37 @@
+#pragma once
+#include "kernels/table.h"
+
+namespace aa {
+
+inline constexpr int kSumStrands = 8;  // partial sums per row, by x mod 8: one order of addition for every lane width
+inline constexpr int kErrorTilePx = 32;
+
+struct SquaredErrorArgs {
+    RgbIn test, reference;
+    int stride, width;
+    int tilesX;
+    double* tileRows;       // [height][tilesX]: sums of (T-R)^2 of one row of each tile
+    double* referenceRows;  // [height]: sums of R^2
+};
+struct RelativeErrorArgs {
+    RgbIn test, reference;
+    int stride, width;
+    double* rows;  // [height]
+};
+
+enum class SsimSignal { luma, rgb, volume };
+struct SsimArgs {
+    RgbIn test, reference;
+    int stride, width, height;
+    SsimSignal signal;
+    float* map;  // pixel (0,0) of a plane, or null
+    int mapStride;
+    double* rows;  // [height][kSumStrands], zero at the start
+};
+struct MetricsKernels {
+    RowKernel<SquaredErrorArgs> squaredError;
+    RowKernel<RelativeErrorArgs> relativeError;
+    RowKernel<SsimArgs> ssim;
+};
+}  // namespace aa
+AA_KERNEL_TABLE(aa::MetricsKernels, metricsKernels)

@@ -1,0 +1,355 @@
+#include "report/results.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "image/error.h"
+#include "image/io.h"
+
+namespace aa {
+namespace fs = std::filesystem;
+using json = nlohmann::ordered_json;
+namespace {
+
+// ---- numbers: JSON has no infinity and no NaN ----
+json number(double v) {
+    if (std::isnan(v)) return "NaN";
+    if (std::isinf(v)) return v > 0 ? "Inf" : "-Inf";
+    return v;
+}
+json number(const std::optional<double>& v) { return v ? number(*v) : json(nullptr); }
+double toNumber(const json& j) {
+    if (j.is_string()) {
+        const auto& s = j.get_ref<const std::string&>();
+        if (s == "Inf") return std::numeric_limits<double>::infinity();
+        if (s == "-Inf") return -std::numeric_limits<double>::infinity();
+        if (s == "NaN") return std::numeric_limits<double>::quiet_NaN();
+    }
+    return j.get<double>();  // throws on any other type
+}
+std::optional<double> toOptional(const json& parent, const char* key) {
+    const auto it = parent.find(key);
+    if (it == parent.end() || it->is_null()) return {};
+    return toNumber(*it);
+}
+std::string csvNumber(double v) {
+    if (std::isnan(v)) return "NaN";
+    if (std::isinf(v)) return v > 0 ? "Inf" : "-Inf";
+    char text[40];
+    std::snprintf(text, sizeof text, "%.9g", v);
+    return text;
+}
+std::string csvNumber(const std::optional<double>& v) { return v ? csvNumber(*v) : ""; }
+std::string csvText(const std::string& s) {
+    if (s.find_first_of(",\"\n") == std::string::npos) return s;
+    std::string quoted = "\"";
+    for (const char c : s) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + '"';
+}
+
+constexpr const char* kToneMaps[] = {"none", "reinhard", "aces"};  // in the order of ToneMap
+const char* toneMapName(ToneMap map) { return kToneMaps[size_t(map)]; }
+ToneMap toneMapByName(const std::string& name) {
+    for (size_t i = 0; i < std::size(kToneMaps); i++)
+        if (name == kToneMaps[i]) return ToneMap(i);
+    throw std::runtime_error("unknown tone map '" + name + "'");
+}
+
+// ---- metrics ----
+json toJson(const FrameMetrics& m) {
+    json j = {{"mse", number(m.mse)},
+              {"psnr", number(m.psnr)},
+              {"snr", number(m.snr)},
+              {"ssimLuma", number(m.ssimLuma)},
+              {"referencePower", number(m.reference)}};
+    if (m.relMse) j["relMse"] = number(m.relMse);
+    if (m.ssimRgb) j["ssimRgb"] = number(m.ssimRgb);
+    if (m.flip) j["flip"] = number(m.flip);
+    return j;
+}
+FrameMetrics frameMetrics(const json& j) {
+    FrameMetrics m;
+    m.mse = toNumber(j.at("mse"));
+    m.psnr = toNumber(j.at("psnr"));
+    m.snr = toNumber(j.at("snr"));
+    m.ssimLuma = toNumber(j.at("ssimLuma"));
+    m.reference = toNumber(j.at("referencePower"));
+    m.relMse = toOptional(j, "relMse");
+    m.ssimRgb = toOptional(j, "ssimRgb");
+    m.flip = toOptional(j, "flip");
+    return m;
+}
+json toJson(const PooledMetrics& p) {
+    json j = toJson(p.mean);
+    j["frames"] = p.frames;
+    j["mseCorrected"] = number(p.mseInterval.corrected);
+    j["meanFinitePsnr"] = number(p.meanFinitePsnr);
+    j["infinitePsnrFrames"] = p.infinitePsnrFrames;
+    if (p.gainDb) j["gainDb"] = number(p.gainDb);
+    return j;
+}
+PooledMetrics pooledMetrics(const json& j) {
+    PooledMetrics p;
+    p.mean = frameMetrics(j);
+    p.frames = j.at("frames").get<int>();
+    p.mseInterval = {toNumber(j.at("mseCorrected")), p.mean.mse};
+    p.meanFinitePsnr = toNumber(j.at("meanFinitePsnr"));
+    p.infinitePsnrFrames = j.at("infinitePsnrFrames").get<int>();
+    p.gainDb = toOptional(j, "gainDb");
+    return p;
+}
+
+// Mean of a figure over the frames; absent unless every frame has it.
+template <class Get>
+std::optional<double> meanOf(const std::vector<const FrameMetrics*>& frames, Get get) {
+    double sum = 0;
+    for (const FrameMetrics* m : frames) {
+        const std::optional<double> v = get(*m);
+        if (!v) return {};
+        sum += *v;
+    }
+    return sum / double(frames.size());
+}
+std::optional<PooledMetrics> pool(const MethodResult& method, double noise) {
+    std::vector<const FrameMetrics*> frames;
+    for (const auto& f : method.frames)
+        if (f.metrics) frames.push_back(&*f.metrics);
+    if (frames.empty()) return {};
+    PooledMetrics p;
+    p.frames = int(frames.size());
+    p.mean.mse = *meanOf(frames, [](const FrameMetrics& m) { return std::optional(m.mse); });
+    p.mean.reference = *meanOf(frames, [](const FrameMetrics& m) { return std::optional(m.reference); });
+    p.mean.psnr = psnr(p.mean.mse);
+    p.mean.snr = snr({p.mean.mse, p.mean.reference});
+    p.mean.ssimLuma = *meanOf(frames, [](const FrameMetrics& m) { return std::optional(m.ssimLuma); });
+    p.mean.relMse = meanOf(frames, [](const FrameMetrics& m) { return m.relMse; });
+    p.mean.ssimRgb = meanOf(frames, [](const FrameMetrics& m) { return m.ssimRgb; });
+    p.mean.flip = meanOf(frames, [](const FrameMetrics& m) { return m.flip; });
+    p.mseInterval = mseInterval(p.mean.mse, noise);
+    double finite = 0;
+    for (const FrameMetrics* m : frames) {
+        if (std::isinf(m->psnr))
+            p.infinitePsnrFrames++;
+        else
+            finite += m->psnr;
+    }
+    const int finiteFrames = p.frames - p.infinitePsnrFrames;
+    p.meanFinitePsnr = finiteFrames ? finite / finiteFrames : std::numeric_limits<double>::infinity();
+    return p;
+}
+double median(std::vector<double> v) {
+    if (v.empty()) return 0;
+    std::sort(v.begin(), v.end());
+    const size_t half = v.size() / 2;
+    return v.size() % 2 ? v[half] : (v[half - 1] + v[half]) / 2;
+}
+}  // namespace
+
+bool RunResults::jitterCentred() const { return std::abs(jitterMeanPx[0]) < 1e-4 && std::abs(jitterMeanPx[1]) < 1e-4; }
+
+void finish(RunResults& run, const std::vector<TileErrors>& errors) {
+    const double noise = run.truthNoise.value_or(0);
+    const MethodResult* noaa = nullptr;
+    for (auto& m : run.methods) {
+        std::vector<double> seconds;
+        for (const auto& f : m.frames) seconds.push_back(f.seconds);
+        m.secondsMedian = median(seconds);
+        m.secondsMin = seconds.empty() ? 0 : *std::min_element(seconds.begin(), seconds.end());
+        m.nsPerPixel = m.secondsMedian * 1e9 / (double(run.width) * run.height);
+        m.pooled = pool(m, noise);
+        if (m.id == "noaa" && m.pooled) noaa = &m;
+    }
+    if (noaa)
+        for (auto& m : run.methods)
+            if (m.pooled)
+                m.pooled->gainDb =
+                    m.pooled->mean.mse == noaa->pooled->mean.mse ? 0 : m.pooled->mean.psnr - noaa->pooled->mean.psnr;
+    run.pairs.clear();
+    for (size_t i = 0; i < errors.size(); i++)
+        for (size_t k = i + 1; k < errors.size(); k++)
+            if (!errors[i].sum.empty() && errors[i].sum.size() == errors[k].sum.size())
+                run.pairs.push_back({i, k, compareMethods(errors[i], errors[k], noise)});
+}
+
+std::string toJsonText(const RunResults& run) {
+    json j = {{"format", "aaresolve-results"}, {"version", 1}};
+    j["shot"] = {{"name", run.shot},
+                 {"resolution", {run.width, run.height}},
+                 {"static", run.isStatic},
+                 {"jitter",
+                  {{"sequence", run.jitterSequence},
+                   {"start", run.jitterStart},
+                   {"period", run.jitterPeriod},
+                   {"meanPx", {run.jitterMeanPx[0], run.jitterMeanPx[1]}},
+                   {"centred", run.jitterCentred()}}}};
+    if (!run.renderSeconds.empty()) j["shot"]["renderSeconds"] = run.renderSeconds;
+    j["truth"] = {{"samplesPerHalf", run.truthSamplesPerHalf},
+                  {"filter", run.truthFilter},
+                  {"filterWidthPx", run.truthFilterWidthPx},
+                  {"noiseMse", number(run.truthNoise)}};
+    j["truth"]["images"] = json::object();
+    for (const auto& [frame, file] : run.truthImages) j["truth"]["images"][std::to_string(frame)] = file;
+    j["run"] = {{"program", run.programVersion},
+                {"instructionSet", run.isa},
+                {"precision", run.precision},
+                {"threads", run.threads},
+                {"machine", run.machine},
+                {"display", {{"exposureEv", run.display.exposure}, {"toneMap", toneMapName(run.display.toneMap)}}},
+                {"sanitised", run.sanitised}};
+    j["methods"] = json::array();
+    for (const auto& m : run.methods) {
+        json q = {{"id", m.id},
+                  {"text", m.text},
+                  {"title", m.title},
+                  {"family", m.family},
+                  {"source", m.source},
+                  {"folder", m.folder},
+                  {"parameters", m.parameters},
+                  {"passes", m.passes},
+                  {"stateBytes", m.stateBytes},
+                  {"secondsMedian", m.secondsMedian},
+                  {"secondsMin", m.secondsMin},
+                  {"nsPerPixel", m.nsPerPixel},
+                  {"pooled", m.pooled ? toJson(*m.pooled) : json(nullptr)},
+                  {"frames", json::array()}};
+        for (const auto& f : m.frames) {
+            json r = {{"frame", f.frame}, {"seconds", f.seconds}};
+            if (!f.image.empty()) r["image"] = f.image;
+            if (f.metrics) r["metrics"] = toJson(*f.metrics);
+            q["frames"].push_back(r);
+        }
+        j["methods"].push_back(q);
+    }
+    j["pairs"] = json::array();
+    for (const auto& p : run.pairs)
+        j["pairs"].push_back({{"first", run.methods[p.first].text},
+                              {"second", run.methods[p.second].text},
+                              {"indices", {p.first, p.second}},
+                              {"mseDifference", number(p.comparison.mseDifference)},
+                              {"low95", number(p.comparison.low)},
+                              {"high95", number(p.comparison.high)},
+                              {"gainDb", number(p.comparison.gainDb)},
+                              {"resolved", p.comparison.resolved}});
+    return j.dump(1) + "\n";
+}
+
+std::string toCsvText(const RunResults& run) {
+    std::ostringstream out;
+    out << "method,frame,mse,psnr,snr,ssimLuma,relMse,ssimRgb,flip,seconds\n";
+    const auto line = [&](const std::string& method, const std::string& frame, const FrameMetrics* m, double seconds) {
+        out << csvText(method) << ',' << frame;
+        if (m)
+            out << ',' << csvNumber(m->mse) << ',' << csvNumber(m->psnr) << ',' << csvNumber(m->snr) << ','
+                << csvNumber(m->ssimLuma) << ',' << csvNumber(m->relMse) << ',' << csvNumber(m->ssimRgb) << ','
+                << csvNumber(m->flip);
+        else
+            out << ",,,,,,,";
+        out << ',' << csvNumber(seconds) << '\n';
+    };
+    for (const auto& m : run.methods) {
+        for (const auto& f : m.frames)
+            line(m.text, std::to_string(f.frame), f.metrics ? &*f.metrics : nullptr, f.seconds);
+        line(m.text, "pooled", m.pooled ? &m.pooled->mean : nullptr, m.secondsMedian);
+    }
+    return out.str();
+}
+
+void writeResults(const RunResults& run, const fs::path& folder) {
+    writeText(folder / "results.json", toJsonText(run));
+    writeText(folder / "results.csv", toCsvText(run));
+}
+
+RunResults readResults(const fs::path& folder) {
+    const fs::path file = folder / "results.json";
+    std::ifstream in(file);
+    if (!in)
+        throw InputError(file.string() +
+                         ": no such file; expected the output folder of `aaresolve run SHOT -m ... -o OUT`");
+    RunResults run;
+    try {
+        const json j = json::parse(in);
+        if (j.at("format") != "aaresolve-results" || j.at("version") != 1)
+            throw InputError(file.string() + ": not results of this program's version; run the shot again");
+        const json &shot = j.at("shot"), &jitter = shot.at("jitter"), &truth = j.at("truth"), &made = j.at("run");
+        run.shot = shot.at("name").get<std::string>();
+        run.width = shot.at("resolution").at(0).get<int>();
+        run.height = shot.at("resolution").at(1).get<int>();
+        run.isStatic = shot.at("static").get<bool>();
+        if (shot.contains("renderSeconds")) shot.at("renderSeconds").get_to(run.renderSeconds);
+        run.jitterSequence = jitter.at("sequence").get<std::string>();
+        run.jitterStart = jitter.at("start").get<int>();
+        run.jitterPeriod = jitter.at("period").get<int>();
+        for (size_t i = 0; i < 2; i++) run.jitterMeanPx[i] = jitter.at("meanPx").at(i).get<double>();
+        run.truthSamplesPerHalf = truth.at("samplesPerHalf").get<int>();
+        run.truthFilter = truth.at("filter").get<std::string>();
+        run.truthFilterWidthPx = truth.at("filterWidthPx").get<double>();
+        run.truthNoise = toOptional(truth, "noiseMse");
+        for (const auto& [frame, image] : truth.at("images").items())
+            run.truthImages[std::stoi(frame)] = image.get<std::string>();
+        run.programVersion = made.at("program").get<std::string>();
+        run.isa = made.at("instructionSet").get<std::string>();
+        run.precision = made.at("precision").get<std::string>();
+        run.threads = made.at("threads").get<int>();
+        run.machine = made.at("machine").get<std::string>();
+        run.display.exposure = made.at("display").at("exposureEv").get<float>();
+        run.display.toneMap = toneMapByName(made.at("display").at("toneMap").get<std::string>());
+        made.at("sanitised").get_to(run.sanitised);
+        for (const json& q : j.at("methods")) {
+            MethodResult m;
+            m.id = q.at("id").get<std::string>();
+            m.text = q.at("text").get<std::string>();
+            m.title = q.at("title").get<std::string>();
+            m.family = q.at("family").get<std::string>();
+            m.source = q.at("source").get<std::string>();
+            m.folder = q.at("folder").get<std::string>();
+            q.at("parameters").get_to(m.parameters);
+            q.at("passes").get_to(m.passes);
+            m.stateBytes = q.at("stateBytes").get<size_t>();
+            m.secondsMedian = q.at("secondsMedian").get<double>();
+            m.secondsMin = q.at("secondsMin").get<double>();
+            m.nsPerPixel = q.at("nsPerPixel").get<double>();
+            if (!q.at("pooled").is_null()) m.pooled = pooledMetrics(q.at("pooled"));
+            for (const json& r : q.at("frames")) {
+                FrameResult f;
+                f.frame = r.at("frame").get<int>();
+                f.seconds = r.at("seconds").get<double>();
+                f.image = r.value("image", "");
+                if (r.contains("metrics")) f.metrics = frameMetrics(r.at("metrics"));
+                m.frames.push_back(f);
+            }
+            run.methods.push_back(m);
+        }
+        for (const json& q : j.at("pairs")) {
+            PairResult p;
+            p.first = q.at("indices").at(0).get<size_t>();
+            p.second = q.at("indices").at(1).get<size_t>();
+            p.comparison = {toNumber(q.at("mseDifference")), toNumber(q.at("low95")), toNumber(q.at("high95")),
+                            toNumber(q.at("gainDb")), q.at("resolved").get<bool>()};
+            if (p.first >= run.methods.size() || p.second >= run.methods.size())
+                throw InputError(file.string() + ": a pair names a method that is not there; run the shot again");
+            run.pairs.push_back(p);
+        }
+    } catch (const InputError&) {
+        throw;
+    } catch (const std::exception& e) {
+        throw InputError(file.string() + ": damaged (" + e.what() + "); run the shot again");
+    }
+    return run;
+}
+
+std::string machineName() {
+    std::ifstream cpus("/proc/cpuinfo");
+    for (std::string line; std::getline(cpus, line);)
+        if (line.starts_with("model name")) {
+            const size_t colon = line.find(':');
+            if (colon != std::string::npos) return line.substr(std::min(line.size(), colon + 2));
+        }
+    return "unknown processor";
+}
+
+}  // namespace aa

@@ -1,0 +1,91 @@
+// What a run found, and its two files: results.json (everything, read back by `sheet` and `report`) and results.csv
+// (one line per method and frame). Keys are those of methods/07. JSON has no infinity: it is written as the string
+// "Inf".
+#pragma once
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "metrics/error_bar.h"
+#include "metrics/measure.h"
+
+namespace aa {
+
+struct FrameResult {
+    int frame = 0;
+    double seconds = 0;                   // of this resolve
+    std::optional<FrameMetrics> metrics;  // only when the frame has ground truth
+    std::string image;                    // relative path of the written image; empty when none was
+};
+
+// Figures over the frames that have truth. MSE, reference power, SSIM, relMse and FLIP are means over the frames; PSNR
+// and SNR come from the mean MSE, never from a mean of decibels.
+struct PooledMetrics {
+    int frames = 0;
+    FrameMetrics mean;
+    MseInterval mseInterval;       // the truth's noise taken off, and as measured
+    double meanFinitePsnr = 0;     // over the frames whose PSNR is finite
+    int infinitePsnrFrames = 0;    // frames identical to their truth
+    std::optional<double> gainDb;  // PSNR over that of noaa in the same run
+};
+
+struct MethodResult {
+    std::string id, text, title, family, source;  // text: as written, smaa1x:preset=HIGH
+    std::string folder;                           // below the run's folder
+    std::map<std::string, std::string, std::less<>> parameters;
+    std::vector<std::string> passes;
+    std::vector<FrameResult> frames;
+    size_t stateBytes = 0;  // history and scratch kept between frames
+    // Filled by finish():
+    double secondsMedian = 0, secondsMin = 0, nsPerPixel = 0;  // per frame; ns/px from the median
+    std::optional<PooledMetrics> pooled;
+};
+
+// A pair of methods, as indices into RunResults::methods.
+struct PairResult {
+    size_t first = 0, second = 0;
+    Comparison comparison;
+};
+
+struct RunResults {
+    // The shot
+    std::string shot;  // its name
+    int width = 0, height = 0;
+    bool isStatic = false;
+    std::string jitterSequence = "none";
+    int jitterStart = 0, jitterPeriod = 1;
+    double jitterMeanPx[2] = {0, 0};  // over one period; a block is centred when it is zero
+    // The truth
+    int truthSamplesPerHalf = 0;
+    std::string truthFilter;
+    double truthFilterWidthPx = 1;
+    std::optional<double> truthNoise;        // MSE(a, b) / 4, encoded, mean over the frames with truth
+    std::map<int, std::string> truthImages;  // frame -> relative path
+    // The run
+    std::string programVersion, isa, precision, machine;
+    int threads = 1;
+    DisplayChain display;
+    std::map<std::string, uint64_t> sanitised;    // replaced input values by kind; empty when none
+    std::map<std::string, double> renderSeconds;  // mean per frame by pass group, as the shot records them
+    std::vector<MethodResult> methods;
+    std::vector<PairResult> pairs;  // every pair of methods with truth
+
+    bool jitterCentred() const;  // |mean| below 1e-4 px
+};
+
+// Fills medians, ns/px, pooled figures, gains and pairs. `errors[m]` are the tile errors of methods[m] summed over the
+// frames with truth (empty TileErrors when there is none).
+void finish(RunResults& run, const std::vector<TileErrors>& errors);
+
+// OUT/results.json and OUT/results.csv through temporary names. Throws InputError when they cannot be written.
+void writeResults(const RunResults& run, const std::filesystem::path& folder);
+std::string toJsonText(const RunResults& run);
+std::string toCsvText(const RunResults& run);
+// Reads OUT/results.json. Throws InputError: no run there, damaged, wrong type of a member (named).
+RunResults readResults(const std::filesystem::path& folder);
+
+std::string machineName();  // the processor, as the system names it
+
+}  // namespace aa

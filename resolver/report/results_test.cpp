@@ -1,0 +1,136 @@
+#include "report/results.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "image/error.h"
+#include "image/io.h"
+
+namespace aa {
+namespace {
+namespace fs = std::filesystem;
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+FrameResult frame(int number, double mse, double seconds, double ssim = 0.9) {
+    FrameMetrics m;
+    m.mse = mse, m.reference = 0.25, m.psnr = psnr(mse), m.snr = snr({mse, 0.25}), m.ssimLuma = ssim;
+    return {number, seconds, m, "noaa/" + std::to_string(number) + ".exr"};
+}
+RunResults twoMethods() {
+    RunResults run;
+    run.shot = "pipe", run.width = 100, run.height = 50;
+    run.jitterSequence = "halton23", run.jitterStart = 1, run.jitterPeriod = 16;
+    run.jitterMeanPx[0] = -0.0293, run.jitterMeanPx[1] = -0.0370;
+    run.truthSamplesPerHalf = 256, run.truthFilter = "box", run.truthNoise = 1e-5;
+    run.truthImages[2] = "truth/000002.exr";
+    run.programVersion = "0.1.0", run.isa = "x86-64-v3", run.precision = "fast", run.machine = "a processor";
+    run.display = {1.5f, ToneMap::aces};
+    run.sanitised["colourNan"] = 3;
+    MethodResult noaa, other;
+    noaa.id = noaa.text = noaa.folder = "noaa";
+    noaa.frames = {frame(1, 0.01, 3e-3), frame(2, 0.03, 1e-3), {3, 2e-3, {}, ""}};
+    other.id = "fxaa311", other.text = "fxaa311:preset=12,subpix=0.5", other.folder = "fxaa311_preset=12,subpix=0.5";
+    other.parameters["preset"] = "12";
+    other.passes = {"color"};
+    other.stateBytes = 4096;
+    other.frames = {frame(1, 0.0, 4e-3, 1.0), frame(2, 0.008, 4e-3)};
+    other.frames[0].metrics->flip = 0.0, other.frames[1].metrics->flip = 0.25;
+    run.methods = {noaa, other};
+    return run;
+}
+std::vector<TileErrors> errorsOf(double a, double b) {
+    TileErrors first, second;
+    first.sum.assign(8, a), first.values.assign(8, 3072), second = first;
+    second.sum.assign(8, b);
+    return {first, second};
+}
+
+TEST(Results, PoolsMseNotDecibels) {
+    RunResults run = twoMethods();
+    finish(run, errorsOf(2, 1));
+    const auto& noaa = *run.methods[0].pooled;
+    EXPECT_EQ(noaa.frames, 2);
+    EXPECT_DOUBLE_EQ(noaa.mean.mse, 0.02);
+    EXPECT_DOUBLE_EQ(noaa.mean.psnr, psnr(0.02));
+    EXPECT_GT(std::abs(noaa.mean.psnr - (psnr(0.01) + psnr(0.03)) / 2), 0.5);  // the mean of decibels is another number
+    EXPECT_DOUBLE_EQ(noaa.meanFinitePsnr, (psnr(0.01) + psnr(0.03)) / 2);
+    EXPECT_DOUBLE_EQ(noaa.mseInterval.corrected, 0.02 - 1e-5);
+    EXPECT_FALSE(noaa.mean.flip);
+    // One identical frame: its infinite PSNR must not swallow the others.
+    const auto& other = *run.methods[1].pooled;
+    EXPECT_DOUBLE_EQ(other.mean.psnr, psnr(0.004));
+    EXPECT_EQ(other.infinitePsnrFrames, 1);
+    EXPECT_DOUBLE_EQ(other.meanFinitePsnr, psnr(0.008));
+    EXPECT_DOUBLE_EQ(*other.gainDb, psnr(0.004) - psnr(0.02));
+    EXPECT_DOUBLE_EQ(*other.mean.flip, 0.125);
+    EXPECT_DOUBLE_EQ(*noaa.gainDb, 0);
+}
+TEST(Results, TimesAreMedians) {
+    RunResults run = twoMethods();
+    finish(run, {});
+    EXPECT_DOUBLE_EQ(run.methods[0].secondsMedian, 2e-3);
+    EXPECT_DOUBLE_EQ(run.methods[0].secondsMin, 1e-3);
+    EXPECT_DOUBLE_EQ(run.methods[0].nsPerPixel, 2e-3 * 1e9 / 5000);
+    EXPECT_TRUE(run.pairs.empty());
+}
+TEST(Results, RoundTrip) {
+    const fs::path folder = fs::temp_directory_path() / "aaresolve_results_test";
+    fs::remove_all(folder);
+    makeWritableFolder(folder);
+    RunResults run = twoMethods();
+    finish(run, errorsOf(2, 1));
+    writeResults(run, folder);
+    const RunResults back = readResults(folder);
+    EXPECT_EQ(toJsonText(back), toJsonText(run));
+    EXPECT_EQ(back.methods[1].frames[0].metrics->psnr, kInf);
+    EXPECT_EQ(back.display.toneMap, ToneMap::aces);
+    EXPECT_EQ(back.pairs.size(), 1u);
+    EXPECT_TRUE(back.pairs[0].comparison.resolved);
+    EXPECT_FALSE(back.jitterCentred());
+    EXPECT_FALSE(fs::exists(folder / ".results.partial.json"));
+    fs::remove_all(folder);
+}
+TEST(Results, InfinityIsAString) {
+    RunResults run = twoMethods();
+    finish(run, {});
+    const auto j = nlohmann::json::parse(toJsonText(run));
+    EXPECT_EQ(j["methods"][1]["frames"][0]["metrics"]["psnr"], "Inf");
+    EXPECT_NE(toCsvText(run).find("\"fxaa311:preset=12,subpix=0.5\",1,0,Inf,Inf,1,,,0,0.004\n"), std::string::npos)
+        << toCsvText(run);
+    EXPECT_NE(toCsvText(run).find("noaa,3,,,,,,,,0.002\n"), std::string::npos);
+}
+TEST(Results, DamagedFilesAreNamed) {
+    const fs::path folder = fs::temp_directory_path() / "aaresolve_results_damaged";
+    fs::remove_all(folder);
+    EXPECT_THROW(readResults(folder), InputError);
+    makeWritableFolder(folder);
+    RunResults run = twoMethods();
+    finish(run, errorsOf(2, 1));
+    const auto refuses = [&](const std::string& text, const std::string& expected) {
+        writeText(folder / "results.json", text);
+        try {
+            readResults(folder);
+            FAIL() << "accepted: " << expected;
+        } catch (const InputError& e) {
+            EXPECT_NE(std::string(e.what()).find("results.json"), std::string::npos) << e.what();
+            EXPECT_NE(std::string(e.what()).find(expected), std::string::npos) << e.what();
+        }
+    };
+    const std::string good = toJsonText(run);
+    refuses(good.substr(0, good.size() / 2), "damaged");
+    auto j = nlohmann::json::parse(good);
+    j["shot"].erase("resolution");
+    refuses(j.dump(), "resolution");
+    j = nlohmann::json::parse(good);
+    j["pairs"][0]["indices"] = {0, 9};
+    refuses(j.dump(), "pair");
+    j = nlohmann::json::parse(good);
+    j["version"] = 2;
+    refuses(j.dump(), "version");
+    fs::remove_all(folder);
+}
+}  // namespace
+}  // namespace aa

@@ -1,0 +1,41 @@
+// ns per pixel of the metrics at 1920 x 1080, one thread. Targets: SSIM RGB <= 15, LDR-FLIP <= 60.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+
+#include "metrics/metrics.h"
+
+namespace aa {
+namespace {
+constexpr int kWidth = 1920, kHeight = 1080;
+
+const Rgb& image(int which) {
+    static const auto make = [](float phase) {
+        Rgb i(kWidth, kHeight);
+        for (size_t c = 0; c < 3; c++)
+            for (int y = 0; y < kHeight; y++)
+                for (int x = 0; x < kWidth; x++)
+                    i.c[c].at(x, y) =
+                        0.5f + 0.49f * std::sin(0.001f * float(x * x % 7919) + 0.02f * float(y) + phase + float(c));
+        i.fillBorder();
+        return i;
+    };
+    static const Rgb images[2] = {make(0), make(0.1f)};
+    return images[which];
+}
+template <class Metric>
+void measure(benchmark::State& state, Metric metric) {
+    Exec exec;
+    exec.parallel = false;
+    image(0);
+    for (auto _ : state) benchmark::DoNotOptimize(metric(image(0), image(1), exec));
+    state.counters["ns/px"] = benchmark::Counter(double(state.iterations()) * kWidth * kHeight * 1e-9,
+                                                 benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+BENCHMARK_CAPTURE(measure, squaredError, [](auto& t, auto& r, auto& e) { return squaredError(t, r, e).mse; });
+BENCHMARK_CAPTURE(measure, relMse, [](auto& t, auto& r, auto& e) { return relMse(t, r, e); });
+BENCHMARK_CAPTURE(measure, ssimLuma, [](auto& t, auto& r, auto& e) { return ssimLuma(t, r, e); });
+BENCHMARK_CAPTURE(measure, ssimRgb, [](auto& t, auto& r, auto& e) { return ssimRgb(t, r, e); });
+BENCHMARK_CAPTURE(measure, ssimMatlab3D, [](auto& t, auto& r, auto& e) { return ssimMatlab3D(t, r, e); });
+}  // namespace
+}  // namespace aa
