@@ -5,7 +5,7 @@ BLENDER ?= blender
 # A compiler cache is used where there is one.
 LAUNCHER := $(if $(shell command -v ccache 2>/dev/null),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache,)
 
-.PHONY: help deps build demo test sanitize bench addon reproduce fuzz format clean
+.PHONY: help deps build demo test sanitize bench addon docs reproduce fuzz format clean
 help:
 	@echo "make demo       build, render two scenes in Blender, run the methods, make contact sheets and reports"
 	@echo "make test       build and run every test"
@@ -24,7 +24,7 @@ build: deps
 	@cmake --build --preset release -j $(JOBS)
 
 demo: build
-	@sh scenes/demo.sh build/aaresolve build/demo
+	@bash scenes/demo.sh build/aaresolve build/demo
 
 test: build
 	@ctest --preset release -j $(JOBS)
@@ -41,8 +41,13 @@ addon:
 	@mkdir -p build
 	@python3 blender_addon/make_zip.py build/aa_resolve.zip
 
+# Files generated from the registry of methods: the page of methods and the add-on's copy.
+docs: build
+	@build/aaresolve list --markdown > docs/methods.md
+	@build/aaresolve list --json > blender_addon/aa_resolve/methods.json
+
 reproduce: build
-	@sh scenes/reproduce.sh build/aaresolve build/reproduce
+	@bash scenes/reproduce.sh build/aaresolve build/reproduce
 
 fuzz: deps
 	@cmake --preset sanitize $(LAUNCHER) >/dev/null
