@@ -9,6 +9,11 @@
 
 namespace aa {
 
+// Depth where no surface is; methods test z >= 1e9.
+inline constexpr float kBackgroundDepth = 1e10f;
+// Motion of a pixel without a previous position: outside of any picture, as the exporter writes it.
+inline constexpr float kInvalidMotionPx = 1e6f;
+
 // Values of methods/00 s.3 at one sub-sample position of every pixel.
 struct SubSample {
     PlaneF depthView;  // as Frame::depthView

@@ -28,7 +28,8 @@ struct FrameEntry {
     bool reset = false;        // history must be dropped before this frame (first frame, camera cut)
     glm::dvec2 jitterPx{0.0};  // sample position minus pixel centre, y down
     std::optional<Camera> camera;
-    std::map<std::string, double> renderSeconds;  // by pass group and "truth"
+    std::map<std::string, double> renderSeconds;      // by pass group and "truth"
+    nlohmann::json extra = nlohmann::json::object();  // unknown members, kept as they were
 };
 
 struct Manifest {
@@ -45,14 +46,20 @@ struct Manifest {
     std::string truthFilter = "box";
     double truthFilterWidthPx = 1.0;
     std::vector<FrameEntry> frames;
-    nlohmann::json extra = nlohmann::json::object();  // unknown members and `producer`, kept as they were
+    nlohmann::json extra = nlohmann::json::object();  // unknown members and `producer`, kept as they were (also nested)
     std::filesystem::path folder;                     // where shot.json lies; not part of the file
 
     const FrameEntry* find(int frame) const;
 };
 
-// SHOT may be the folder or its shot.json. Throws InputError.
+inline constexpr int kMaxResolution = 16384;  // methods/08 s.8.2
+inline constexpr int kMaxSubSamples = 256;
+
+// SHOT may be the folder or its shot.json. Throws InputError: missing, not JSON, a missing required member, a wrong
+// type, a value out of range, frame numbers that do not increase, a path that leaves the shot's folder.
 Manifest readManifest(const std::filesystem::path& shot);
+// The same from text; `file` is named in errors and its folder becomes Manifest::folder.
+Manifest parseManifest(const std::string& text, const std::filesystem::path& file);
 nlohmann::json toJson(const Manifest& manifest);
 // Writes folder/shot.json through a temporary name.
 void writeManifest(const Manifest& manifest);

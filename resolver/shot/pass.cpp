@@ -36,4 +36,8 @@ std::optional<Pass> passByName(std::string_view name) {
     return std::nullopt;
 }
 
+std::string subSampleChannel(size_t k, std::string_view quantity) {
+    return (k < 10 ? "s0" : "s") + std::to_string(k) + "." + std::string(quantity);
+}
+
 }  // namespace aa

@@ -52,5 +52,7 @@ const std::vector<PassInfo>& allPasses();
 std::string_view name(Pass pass);
 std::vector<std::string_view> names(PassSet set);
 std::optional<Pass> passByName(std::string_view name);
+// Channel of the subsamples part: "s00.Z", "s00.N.X", "s00.id", "s00.R" ...
+std::string subSampleChannel(size_t k, std::string_view quantity);
 
 }  // namespace aa

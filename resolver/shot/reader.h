@@ -6,12 +6,12 @@ namespace aa {
 
 // Counts of what the input sanitiser replaced (methods/08 s.8.0).
 struct SanitiseCounts {
-    uint64_t colourNan = 0, colourInf = 0, colourNegative = 0, depth = 0, normal = 0, motion = 0;
-    uint64_t total() const { return colourNan + colourInf + colourNegative + depth + normal + motion; }
+    uint64_t colourNan = 0, colourInf = 0, colourNegative = 0, depth = 0, normal = 0, motion = 0, edges = 0;
+    uint64_t total() const { return colourNan + colourInf + colourNegative + depth + normal + motion + edges; }
     SanitiseCounts& operator+=(const SanitiseCounts& o);
 };
 enum class InputPolicy {
-    strict,    // any NaN or Inf in a plane is an InputError naming plane, pixel and frame
+    strict,    // any NaN, Inf or depth <= 0 is an InputError naming plane, pixel and frame
     sanitise,  // replaced by the rules of methods/08 s.8.0 and counted
     raw,       // as stored (for `check`)
 };
@@ -21,13 +21,15 @@ class ShotReader {
     explicit ShotReader(const std::filesystem::path& shot, InputPolicy policy = InputPolicy::sanitise);
     const Manifest& manifest() const { return manifest_; }
 
-    // Passes that every frame of the shot offers, found in the header of the first frame's file. A static shot offers
-    // `motion` without storing it (zeros).
+    InputPolicy policy() const { return policy_; }
+
+    // Passes that the shot offers, found in the header of the first frame's file. A static shot offers `motion` without
+    // storing it (zeros). Opens that file at every call.
     PassSet offered() const;
     // Decodes the wanted passes of manifest().frames[index]. Thread-safe. Throws InputError: file missing, truncated,
     // wrong resolution, missing part or channel (named), wrong type, NaN under InputPolicy::strict.
     Frame read(size_t index, PassSet wanted, SanitiseCounts* counts = nullptr) const;
-    // Ground truth of a frame; nullopt when the frame has none.
+    // Ground truth of a frame; nullopt when the frame has none. Thread-safe.
     std::optional<Truth> readTruth(size_t index) const;
 
   private:

@@ -1,0 +1,336 @@
+#include "shot/manifest.h"
+
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "image/error.h"
+#include "image/io.h"
+
+namespace aa {
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+constexpr int kMaxDepth = 64;  // nesting of shot.json; the format needs 5
+
+// What an error quotes of a value: short and on one line.
+std::string quoted(const json& value) {
+    if (value.is_object()) return "an object";
+    if (value.is_array()) return "an array of " + std::to_string(value.size());
+    std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
+    return text.size() > 40 ? text.substr(0, 40) + "..." : text;
+}
+
+// A value of the document with its path, for errors that name it.
+class Member {
+  public:
+    Member(const json& value, std::string path, const std::string& file)
+        : value_(value), path_(std::move(path)), file_(file) {}
+
+    [[noreturn]] void fail(const std::string& expected) const { fail(expected, quoted(value_)); }
+    [[noreturn]] void fail(const std::string& expected, const std::string& found) const {
+        throw InputError(file_ + ": " + (path_.empty() ? "the document" : path_) + ": expected " + expected +
+                         ", found " + found + "; correct it or export the shot again");
+    }
+    const json& value() const { return value_; }
+
+    std::optional<Member> find(const char* name) const {
+        const auto it = object().find(name);
+        if (it == object().end()) return std::nullopt;
+        return Member(*it, path_.empty() ? name : path_ + "." + name, file_);
+    }
+    Member operator[](const char* name) const {
+        if (auto member = find(name)) return *member;
+        Member(value_, path_.empty() ? name : path_ + "." + name, file_)
+            .fail("a value", "nothing (the member is missing)");
+    }
+    Member item(size_t i) const { return {value_[i], path_ + "[" + std::to_string(i) + "]", file_}; }
+
+    const json& object() const {
+        if (!value_.is_object()) fail("an object");
+        return value_;
+    }
+    size_t arraySize() const {
+        if (!value_.is_array()) fail("an array");
+        return value_.size();
+    }
+    std::string text() const {
+        if (!value_.is_string()) fail("a text");
+        return value_.get<std::string>();
+    }
+    bool flag() const {
+        if (!value_.is_boolean()) fail("true or false");
+        return value_.get<bool>();
+    }
+    double number() const {
+        if (!value_.is_number()) fail("a number");
+        return value_.get<double>();
+    }
+    double number(double min, double max, const char* what) const {
+        const double v = number();
+        if (!(v >= min && v <= max)) fail(what);
+        return v;
+    }
+    int integer(int min, int max) const {
+        const std::string expected = "an integer in " + std::to_string(min) + ".." + std::to_string(max);
+        if (!value_.is_number_integer()) fail(expected);
+        if (value_.is_number_unsigned() && value_.get<uint64_t>() > uint64_t(INT64_MAX)) fail(expected);
+        const auto v = value_.get<int64_t>();
+        if (v < min || v > max) fail(expected);
+        return int(v);
+    }
+    std::vector<double> numbers(size_t count) const {
+        const std::string expected = "an array of " + std::to_string(count) + " numbers";
+        if (!value_.is_array() || value_.size() != count) fail(expected);
+        std::vector<double> r;
+        for (size_t i = 0; i < count; i++) r.push_back(item(i).number());
+        return r;
+    }
+    // An offset from the pixel centre: it stays within the pixel.
+    glm::dvec2 offsetPx() const {
+        const auto v = numbers(2);
+        if (!(std::abs(v[0]) <= 0.5 + 1e-6 && std::abs(v[1]) <= 0.5 + 1e-6))
+            fail("an offset from the pixel centre within -0.5..0.5 px",
+                 "[" + json(v[0]).dump() + ", " + json(v[1]).dump() + "]");
+        return {v[0], v[1]};
+    }
+    glm::dmat4 matrix() const {  // row-major in the file, column-major in memory
+        const auto v = numbers(16);
+        glm::dmat4 m;
+        for (int row = 0; row < 4; row++)
+            for (int column = 0; column < 4; column++) m[column][row] = v[size_t(row * 4 + column)];
+        return m;
+    }
+    // A path below the shot's folder.
+    std::string relativePath() const {
+        const std::string path = text();
+        const fs::path p(path);
+        bool safe = !path.empty() && path.find('\0') == std::string::npos && path.find('\\') == std::string::npos &&
+                    p.is_relative();
+        for (const auto& step : p) safe = safe && step != "..";
+        if (!safe) fail("a relative path below the shot's folder");
+        return path;
+    }
+
+  private:
+    const json& value_;
+    std::string path_;
+    const std::string& file_;
+};
+
+// `value` without the members in `known`: what a reader of this version does not understand but must not lose.
+json unknownMembers(const json& value, const std::set<std::string>& known) {
+    json rest = json::object();
+    for (const auto& [name, member] : value.items())
+        if (!known.contains(name)) rest[name] = member;
+    return rest;
+}
+void keepUnknown(json& extra, const char* name, const json& value, const std::set<std::string>& known) {
+    json rest = unknownMembers(value, known);
+    if (!rest.empty()) extra[name] = std::move(rest);
+}
+
+Camera parseCamera(const Member& m, json& extra) {
+    Camera c;
+    c.kind = m["kind"].text();
+    if (c.kind != "perspective" && c.kind != "orthographic" && c.kind != "panorama")
+        m["kind"].fail("\"perspective\", \"orthographic\" or \"panorama\"");
+    c.view = m["view"].matrix();
+    c.projection = m["projection"].matrix();
+    c.nearClip = m["near"].number();
+    c.farClip = m["far"].number(c.nearClip, INFINITY, "a distance of at least `near`");
+    keepUnknown(extra, "camera", m.value(), {"kind", "view", "projection", "near", "far"});
+    return c;
+}
+
+FrameEntry parseFrame(const Member& m, bool jittered) {
+    FrameEntry f;
+    f.frame = m["frame"].integer(-1048574, 1048574);  // Blender's MINAFRAME..MAXFRAME
+    f.file = m["file"].relativePath();
+    if (const auto t = m.find("truth"); t && !t->value().is_null()) f.truth = t->relativePath();
+    if (const auto r = m.find("reset")) f.reset = r->flag();
+    if (const auto j = m.find("jitter"))
+        f.jitterPx = j->offsetPx();
+    else if (jittered)
+        m["jitter"];
+    f.extra = unknownMembers(m.value(), {"frame", "file", "truth", "reset", "jitter", "camera", "render_seconds"});
+    if (const auto c = m.find("camera")) f.camera = parseCamera(*c, f.extra);
+    if (const auto seconds = m.find("render_seconds"))
+        for (const auto& [name, value] : seconds->object().items())
+            f.renderSeconds[name] = seconds->find(name.c_str())->number();
+    return f;
+}
+
+void parseObjects(const Member& m, Manifest& manifest) {
+    for (const auto& [key, value] : m.object().items()) {
+        const bool digits =
+            !key.empty() && key.size() <= 10 && key.find_first_not_of("0123456789") == std::string::npos;
+        const uint64_t id = digits ? std::stoull(key) : UINT64_MAX;
+        if (id > UINT32_MAX) m.fail("object ids (0..4294967295) as member names", "\"" + key.substr(0, 40) + "\"");
+        manifest.objects[uint32_t(id)] = m.find(key.c_str())->text();
+    }
+}
+
+Manifest parseDocument(const Member& doc) {
+    Manifest m;
+    if (doc["format"].text() != "aaresolve-shot") doc["format"].fail("\"aaresolve-shot\"");
+    if (doc["version"].integer(1, INT32_MAX) != 1) doc["version"].fail("version 1 (what this program reads)");
+    if (const auto v = doc.find("name")) m.name = v->text();
+    const Member resolution = doc["resolution"];
+    if (resolution.arraySize() != 2) resolution.fail("[width, height]");
+    m.width = resolution.item(0).integer(1, kMaxResolution);
+    m.height = resolution.item(1).integer(1, kMaxResolution);
+    if (const auto v = doc.find("fps")) m.fps = v->number(1e-3, 1e6, "frames per second in 0.001..1000000");
+    m.extra = unknownMembers(doc.value(), {"format", "version", "name", "resolution", "fps", "jitter", "static",
+                                           "subsamples", "objects", "truth", "frames"});
+    if (const auto j = doc.find("jitter")) {
+        m.jitterSequence = (*j)["sequence"].text();
+        if (const auto v = j->find("start")) m.jitterStart = v->integer(0, INT32_MAX);
+        if (const auto v = j->find("period")) m.jitterPeriod = v->integer(1, INT32_MAX);
+        keepUnknown(m.extra, "jitter", j->value(), {"sequence", "start", "period"});
+    }
+    if (const auto v = doc.find("static")) m.isStatic = v->flag();
+    if (const auto s = doc.find("subsamples"); s && !s->value().is_null()) {
+        m.subsamplePattern = (*s)["pattern"].text();
+        const Member positions = (*s)["positions"];
+        if (positions.arraySize() > size_t(kMaxSubSamples))
+            positions.fail("at most " + std::to_string(kMaxSubSamples) + " positions");
+        for (size_t i = 0; i < positions.arraySize(); i++)
+            m.subsamplePositionsPx.push_back(positions.item(i).offsetPx());
+        keepUnknown(m.extra, "subsamples", s->value(), {"pattern", "positions"});
+    }
+    if (const auto v = doc.find("objects")) parseObjects(*v, m);
+    if (const auto t = doc.find("truth"); t && !t->value().is_null()) {
+        if (const auto v = t->find("samples_per_half")) m.truthSamplesPerHalf = v->integer(0, INT32_MAX);
+        if (const auto v = t->find("filter")) m.truthFilter = v->text();
+        if (const auto v = t->find("filter_width")) m.truthFilterWidthPx = v->number(0, 1000, "a width in px, 0..1000");
+        keepUnknown(m.extra, "truth", t->value(), {"samples_per_half", "filter", "filter_width"});
+    }
+    const Member frames = doc["frames"];
+    if (frames.arraySize() == 0) frames.fail("at least one frame");
+    for (size_t i = 0; i < frames.arraySize(); i++) {
+        m.frames.push_back(parseFrame(frames.item(i), m.jitterSequence != "none"));
+        if (i == 0) continue;
+        const int before = m.frames[i - 1].frame, now = m.frames[i].frame;
+        if (now == before)
+            frames.item(i)["frame"].fail("a frame number of its own", std::to_string(now) + " for the second time");
+        if (now < before)
+            frames.item(i)["frame"].fail("frame numbers that increase (after " + std::to_string(before) + ")");
+    }
+    return m;
+}
+
+json offset(const glm::dvec2& v) { return {v.x, v.y}; }
+json rowMajor(const glm::dmat4& m) {
+    json r = json::array();
+    for (int row = 0; row < 4; row++)
+        for (int column = 0; column < 4; column++) r.push_back(m[column][row]);
+    return r;
+}
+json toJson(const FrameEntry& f) {
+    json j = f.extra;
+    j["frame"] = f.frame;
+    j["file"] = f.file;
+    if (!f.truth.empty()) j["truth"] = f.truth;
+    if (f.reset) j["reset"] = true;
+    j["jitter"] = offset(f.jitterPx);
+    if (f.camera) {
+        json& c = j["camera"];
+        c["kind"] = f.camera->kind;
+        c["view"] = rowMajor(f.camera->view);
+        c["projection"] = rowMajor(f.camera->projection);
+        c["near"] = f.camera->nearClip;
+        c["far"] = f.camera->farClip;
+    }
+    if (!f.renderSeconds.empty()) j["render_seconds"] = f.renderSeconds;
+    return j;
+}
+
+std::string lineAndColumn(const std::string& text, size_t byte) {
+    const size_t at = std::min(byte > 0 ? byte - 1 : 0, text.size());
+    const auto line = 1 + std::count(text.begin(), text.begin() + ptrdiff_t(at), '\n');
+    const size_t lineStart = at == 0 ? std::string::npos : text.rfind('\n', at - 1);
+    return "line " + std::to_string(line) + ", column " +
+           std::to_string(at - (lineStart == std::string::npos ? 0 : lineStart + 1) + 1);
+}
+}  // namespace
+
+const FrameEntry* Manifest::find(int frame) const {
+    for (const auto& f : frames)
+        if (f.frame == frame) return &f;
+    return nullptr;
+}
+
+Manifest parseManifest(const std::string& text, const fs::path& file) {
+    const std::string name = file.string();
+    json doc;
+    try {
+        doc = json::parse(text, [&](int depth, json::parse_event_t, json&) {
+            if (depth > kMaxDepth)
+                throw InputError(name + ": nested deeper than " + std::to_string(kMaxDepth) +
+                                 " levels; export the shot again");
+            return true;
+        });
+    } catch (const json::parse_error& e) {
+        throw InputError(name + ": not valid JSON at " + lineAndColumn(text, e.byte) +
+                         "; correct it or export the shot again");
+    } catch (const json::exception&) {
+        throw InputError(name +
+                         ": holds a number that does not fit into a double; correct it or export the shot again");
+    }
+    Manifest m = parseDocument(Member(doc, "", name));
+    m.folder = file.parent_path();
+    return m;
+}
+
+Manifest readManifest(const fs::path& shot) {
+    std::error_code ignored;
+    const fs::path file = fs::is_directory(shot, ignored) ? shot / "shot.json" : shot;
+    if (!fs::exists(file, ignored))
+        throw InputError(file.string() + ": no such file; expected a shot (a folder with shot.json)");
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    if (!in || fs::is_directory(file, ignored))
+        throw InputError(file.string() + ": cannot be read; check its permissions");
+    return parseManifest(text.str(), file);
+}
+
+json toJson(const Manifest& m) {
+    json j = m.extra;
+    j["format"] = "aaresolve-shot";
+    j["version"] = 1;
+    j["name"] = m.name;
+    j["resolution"] = {m.width, m.height};
+    j["fps"] = m.fps;
+    j["jitter"]["sequence"] = m.jitterSequence;
+    j["jitter"]["start"] = m.jitterStart;
+    j["jitter"]["period"] = m.jitterPeriod;
+    j["static"] = m.isStatic;
+    if (!m.subsamplePositionsPx.empty()) {
+        j["subsamples"]["pattern"] = m.subsamplePattern;
+        json& positions = j["subsamples"]["positions"] = json::array();
+        for (const auto& p : m.subsamplePositionsPx) positions.push_back(offset(p));
+    }
+    if (!m.objects.empty()) {
+        json& objects = j["objects"] = json::object();
+        for (const auto& [id, name] : m.objects) objects[std::to_string(id)] = name;
+    }
+    const bool anyTruth = std::any_of(m.frames.begin(), m.frames.end(), [](const auto& f) { return !f.truth.empty(); });
+    if (anyTruth || m.truthSamplesPerHalf > 0) {
+        j["truth"]["samples_per_half"] = m.truthSamplesPerHalf;
+        j["truth"]["filter"] = m.truthFilter;
+        j["truth"]["filter_width"] = m.truthFilterWidthPx;
+    }
+    json& frames = j["frames"] = json::array();
+    for (const auto& f : m.frames) frames.push_back(toJson(f));
+    return j;
+}
+
+void writeManifest(const Manifest& m) {
+    writeText(m.folder / "shot.json", toJson(m).dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace aa
