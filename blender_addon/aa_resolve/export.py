@@ -43,6 +43,7 @@ class Exporter:
         self._cameras: dict[str, cam.JitterCamera] = {}
         self._view_sets: dict[str, subsamples.ViewSet] = {}
         self._states: dict[int, analysis.FrameState] = {}
+        self._static_samples: list[rendering.Layers] | None = None
         self._seconds: dict[str, list[float]] = {"frames": [], "truth": []}
 
     # --- before the first render ---------------------------------------------------------------------------------
@@ -328,6 +329,38 @@ class Exporter:
         motion[pixels] = cam.NO_PREVIOUS_POSITION_PX
         return {"objects": sorted(names), "pixels": int(pixels.sum()), "value": cam.NO_PREVIOUS_POSITION_PX}
 
+    def _views(self, number: int) -> subsamples.ViewSet:
+        source = self.cuts.at(number)
+        if source.name_full not in self._view_sets:
+            self._view_sets[source.name_full] = subsamples.ViewSet(self.scene, source, self.positions)
+        return self._view_sets[source.name_full]
+
+    def _render_samples(
+        self, views: subsamples.ViewSet, wants_color: bool, wants_geometry: bool
+    ) -> list[rendering.Layers]:
+        """All sub-samples of the current frame: one render, or one per light where they are shaded."""
+        bpy.context.view_layer.update()
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        geometry = {"Depth", "Normal", "IndexOB"} if wants_geometry else set()
+        if not wants_color:
+            rendering.request_passes(self.view_layer, geometry)
+            with subsamples.no_lights(self.light, self.scene):
+                if subsamples.uses_override(wants_color, self.cutout):
+                    self.view_layer.material_override = self.ids.override()
+                try:
+                    return [views.render(self.view_layer, self.frame, depsgraph, self.folder)]
+                finally:
+                    self.view_layer.material_override = None
+        renders = []
+        for index, light in enumerate(self.light.lights if len(self.light.lights) > 1 else [None]):
+            rendering.request_passes(self.view_layer, self.light.passes | (geometry if index == 0 else set()))
+            if light is None:
+                renders.append(views.render(self.view_layer, self.frame, depsgraph, self.folder))
+            else:
+                with lighting.only_light(self.light, light):
+                    renders.append(views.render(self.view_layer, self.frame, depsgraph, self.folder))
+        return renders
+
     def _subsample_part(
         self,
         number: int,
@@ -338,43 +371,19 @@ class Exporter:
         depth: np.ndarray,
     ) -> tuple[exr.Part, float]:
         """Part ``subsamples``: geometry, mask and colour as the plan asks for, and the seconds it took."""
-        source = self.cuts.at(number)
-        if source.name_full not in self._view_sets:
-            self._view_sets[source.name_full] = subsamples.ViewSet(self.scene, source, self.positions)
-        views = self._view_sets[source.name_full]
         wants_color = "subsampleColor" in self.passes
         wants_geometry = "subsamples" in self.passes
-        bpy.context.view_layer.update()
-        depsgraph = bpy.context.evaluated_depsgraph_get()
-        geometry = {"Depth", "Normal", "IndexOB"} if wants_geometry else set()
-        renders: list[rendering.Layers] = []
-
-        def render() -> rendering.Layers:
-            return views.render(self.view_layer, self.frame, depsgraph, self.folder)
-
-        if not wants_color:
-            rendering.request_passes(self.view_layer, geometry)
-            with subsamples.no_lights(self.light, self.scene):
-                if self.cutout is None:
-                    self.view_layer.material_override = self.ids.override()
-                try:
-                    renders.append(render())
-                finally:
-                    self.view_layer.material_override = None
-        else:
-            lights = self.light.lights if len(self.light.lights) > 1 else [None]
-            for index, light in enumerate(lights):
-                needed = self.light.passes | (geometry if index == 0 else set())
-                rendering.request_passes(self.view_layer, needed)
-                if light is None:
-                    renders.append(render())
-                else:
-                    with lighting.only_light(self.light, light):
-                        renders.append(render())
+        views = self._views(number)
+        renders = self._static_samples
+        seconds = 0.0
+        if renders is None:
+            renders = self._render_samples(views, wants_color, wants_geometry)
+            seconds = sum(layers.seconds for layers in renders)
+            if self.static:
+                self._static_samples = renders  # sub-samples are not jittered: they serve all frames
         names: list[str] = []
         kinds: list[str] = []
         planes: list[np.ndarray] = []
-        seconds = sum(layers.seconds for layers in renders)
         if wants_geometry:
             samples = [
                 {
