@@ -28,6 +28,7 @@ void withThreads(int threads, const std::function<void()>& body);
 // One line per subcommand here and in main's list.
 void addList(CLI::App& app, Context& context);
 void addPlan(CLI::App& app, Context& context);
+void addRun(CLI::App& app, Context& context);
 void addFilter(CLI::App& app, Context& context);
 
 }  // namespace aa

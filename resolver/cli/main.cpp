@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
     const auto commands = {
         aa::addList,
         aa::addPlan,
+        aa::addRun,
         aa::addFilter,
     };
     for (const auto add : commands) add(app, context);

@@ -41,8 +41,8 @@ void Progress::step(const std::string& note) {
     constexpr size_t width = 30;
     const size_t filled = width * done_ / std::max<size_t>(steps_, 1);
     const std::string bar = std::string(filled, '#') + std::string(width - filled, '.');
-    std::fprintf(stderr, "\r%s [%s] %zu/%zu %s, %s left \x1b[K", title_.c_str(), bar.c_str(), done_, steps_, note.c_str(),
-                 clock(elapsed / double(done_) * double(steps_ - done_)).c_str());
+    std::fprintf(stderr, "\r%s [%s] %zu/%zu %s, %s left \x1b[K", title_.c_str(), bar.c_str(), done_, steps_,
+                 note.c_str(), clock(elapsed / double(done_) * double(steps_ - done_)).c_str());
 }
 
 bool Progress::interrupted() const { return stopAsked != 0; }

@@ -1,0 +1,115 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <set>
+
+#include "cli/cli.h"
+#include "cli/runner.h"
+#include "image/error.h"
+
+namespace aa {
+namespace {
+
+struct Options {
+    std::string shot, out, frames, write = "exr", writeFrames = "truth", toneMap = "none", input = "sanitise";
+    std::vector<std::string> methods;
+    double exposure = 0;
+    bool json = false, quiet = false, debugLayers = false;
+    WorkOptions work;
+};
+
+void printTable(const RunResults& r) {
+    std::vector<const MethodResult*> rows;
+    for (const auto& m : r.methods) rows.push_back(&m);
+    std::stable_sort(rows.begin(), rows.end(), [](const auto* a, const auto* b) {
+        return (a->pooled ? a->pooled->mean.mse : INFINITY) < (b->pooled ? b->pooled->mean.mse : INFINITY);
+    });
+    size_t width = 6;
+    for (const auto* m : rows) width = std::max(width, m->text.size());
+    std::printf("%-*s %10s %9s %9s %9s %10s\n", int(width), "method", "PSNR dB", "gain dB", "SSIM", "ns/px",
+                "state MB");
+    for (const auto* m : rows) {
+        std::printf("%-*s", int(width), m->text.c_str());
+        if (m->pooled) {
+            std::printf(" %10.3f", m->pooled->mean.psnr);
+            if (m->pooled->gainDb)
+                std::printf(" %+9.3f", *m->pooled->gainDb);
+            else
+                std::printf(" %9s", "-");
+            std::printf(" %9.6f", m->pooled->mean.ssimLuma);
+        } else {
+            std::printf(" %10s %9s %9s", "-", "-", "-");
+        }
+        std::printf(" %9.2f %10.2f\n", m->nsPerPixel, double(m->stateBytes) / (1 << 20));
+    }
+    if (r.truthNoise)
+        std::printf("truth: %d samples per half, error bar of the MSE %.4g (PSNR %.2f dB)\n", r.truthSamplesPerHalf,
+                    *r.truthNoise, psnr(*r.truthNoise));
+    for (const auto& [what, count] : r.sanitised)
+        if (count > 0)
+            std::printf("replaced input values: %s %llu\n", what.c_str(), static_cast<unsigned long long>(count));
+}
+
+void execute(const Options& o, Context& context) {
+    RunOptions run;
+    std::set<std::string> folders;
+    for (const auto& text : o.methods) {
+        run.methods.push_back(parseMethod(text));
+        if (!folders.insert(run.methods.back().folderName()).second)
+            throw UsageError("method '" + text + "' is given twice");
+    }
+    run.exec = o.work.exec();
+    run.threads = o.work.threads;
+    run.display = {float(o.exposure), o.toneMap == "aces"       ? ToneMap::aces
+                                      : o.toneMap == "reinhard" ? ToneMap::reinhard
+                                                                : ToneMap::none};
+    run.out = o.out;
+    run.writeExr = o.write.find("exr") != std::string::npos;
+    run.writePng = o.write.find("png") != std::string::npos;
+    if (!run.writeExr && !run.writePng && o.write != "none")
+        throw UsageError("--write: expected exr, png, exr,png or none, found '" + o.write + "'");
+    run.writeAllFrames = o.writeFrames == "all";
+    run.debugLayers = o.debugLayers;
+    const ShotReader shot(o.shot, o.input == "strict" ? InputPolicy::strict : InputPolicy::sanitise);
+    run.frames = selectFrames(shot.manifest(), o.frames);
+    RunResults results;
+    withThreads(o.work.threads, [&] {
+        Progress progress(shot.manifest().name, run.frames.size(), o.quiet);
+        results = aa::run(shot, run, progress);
+        if (progress.interrupted()) context.exitCode = 130;
+    });
+    if (o.json)
+        std::cout << toJsonText(results) << "\n";
+    else
+        printTable(results);
+    if (!o.json) std::printf("results: %s\n", (run.out / "results.json").c_str());
+}
+
+}  // namespace
+
+void addRun(CLI::App& app, Context& context) {
+    auto o = std::make_shared<Options>();
+    auto* c = app.add_subcommand("run", "Run methods on a shot and measure them against its ground truth");
+    c->add_option("SHOT", o->shot, "the shot's folder")->required();
+    c->add_option("-m,--method", o->methods, "a method, `id` or `id:name=value,name=value`; repeat for more")
+        ->required()
+        ->allow_extra_args(false);
+    c->add_option("-o,--out", o->out, "folder for images, results.json and results.csv")->required();
+    c->add_option("--frames", o->frames, "frames, as 1-16,20; default all");
+    c->add_option("--write", o->write, "image files: exr (linear), png (8-bit sRGB), exr,png or none");
+    c->add_option("--write-frames", o->writeFrames,
+                  "truth = frames that have their own truth (of a static shot the last), all")
+        ->check(CLI::IsMember({"truth", "all"}));
+    c->add_option("--exposure", o->exposure, "display exposure, EV")->check(CLI::Range(-20.0, 20.0));
+    c->add_option("--tone-map", o->toneMap, "display tone map")->check(CLI::IsMember({"none", "reinhard", "aces"}));
+    c->add_option("--input", o->input, "NaN and Inf in the input: sanitise = replace and count, strict = refuse")
+        ->check(CLI::IsMember({"sanitise", "strict"}));
+    c->add_flag("--debug-layers", o->debugLayers, "also write each method's intermediate images");
+    c->add_flag("--json", o->json, "print results.json instead of the table");
+    c->add_flag("-q,--quiet", o->quiet, "no progress");
+    addWorkOptions(*c, o->work);
+    c->callback([o, &context] { execute(*o, context); });
+}
+
+}  // namespace aa

@@ -1,0 +1,206 @@
+#include "cli/runner.h"
+
+#include <tbb/global_control.h>
+
+#include <charconv>
+#include <cstdio>
+#include <sstream>
+
+#include "cli/cli.h"
+#include "image/error.h"
+#include "image/io.h"
+#include "shot/frame_stream.h"
+
+namespace aa {
+namespace fs = std::filesystem;
+namespace {
+
+std::string frameName(int frame, const char* extension) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%06d%s", frame, extension);
+    return text;
+}
+
+// A method that asks for a pass which the shot lacks is named together with the pass.
+void requirePasses(const ShotReader& shot, const std::vector<MethodSpec>& methods) {
+    const PassSet offered = shot.offered();
+    for (const auto& m : methods)
+        if (const auto missing = names(m.passes().without(offered)); !missing.empty()) {
+            std::string all;
+            for (const auto& s : methods) all += (all.empty() ? "" : ",") + std::string(s.method->id);
+            throw InputError(shot.manifest().folder.string() + ": method '" + m.text + "' needs the pass '" +
+                             std::string(missing[0]) + "', which the shot does not have; export again with --for " +
+                             all);
+        }
+}
+
+RunResults describeRun(const Manifest& m, const RunOptions& o) {
+    RunResults r;
+    r.shot = m.name;
+    r.width = m.width;
+    r.height = m.height;
+    r.isStatic = m.isStatic;
+    r.jitterSequence = m.jitterSequence;
+    r.jitterStart = m.jitterStart;
+    r.jitterPeriod = m.jitterPeriod;
+    const size_t period = std::min(m.frames.size(), size_t(std::max(m.jitterPeriod, 1)));
+    for (size_t i = 0; i < period; i++) {
+        r.jitterMeanPx[0] += m.frames[i].jitterPx.x / double(period);
+        r.jitterMeanPx[1] += m.frames[i].jitterPx.y / double(period);
+    }
+    r.truthSamplesPerHalf = m.truthSamplesPerHalf;
+    r.truthFilter = m.truthFilter;
+    r.truthFilterWidthPx = m.truthFilterWidthPx;
+    r.programVersion = AA_VERSION;
+    r.isa = name(o.exec.isa);
+    r.precision = o.exec.precision == Precision::fast     ? "fast"
+                  : o.exec.precision == Precision::scalar ? "scalar"
+                                                          : "double";
+    r.machine = machineName();
+    r.threads =
+        o.exec.parallel ? int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)) : 1;
+    r.display = o.display;
+    std::map<std::string, int> counted;
+    for (const auto& f : m.frames)
+        for (const auto& [group, seconds] : f.renderSeconds) r.renderSeconds[group] += seconds, counted[group]++;
+    for (auto& [group, seconds] : r.renderSeconds) seconds /= counted[group];
+    for (const auto& spec : o.methods) {
+        MethodResult result;
+        result.id = spec.method->id;
+        result.text = spec.text;
+        result.title = spec.method->title;
+        result.family = spec.method->family;
+        result.source = spec.method->source;
+        result.folder = spec.folderName();
+        const Params params = spec.params();
+        result.parameters.insert(params.all().begin(), params.all().end());
+        for (auto n : names(spec.passes())) result.passes.emplace_back(n);
+        r.methods.push_back(std::move(result));
+    }
+    return r;
+}
+
+// Writes one method's image of one frame; returns the path relative to the run's folder.
+std::string writeImage(const RunningMethod& m, int frame, const RunOptions& o) {
+    const fs::path folder = m.spec.folderName();
+    std::string written;
+    if (o.writePng) {
+        written = (folder / frameName(frame, ".png")).string();
+        writePng(o.out / written, m.outEncoded);
+    }
+    if (o.writeExr) {
+        written = (folder / frameName(frame, ".exr")).string();
+        if (m.spec.method->output == Space::linear) {
+            writeExr(o.out / written, m.out, false);
+        } else {
+            Rgb linear;
+            decode(m.out, o.exec, linear);
+            writeExr(o.out / written, linear, true);
+        }
+    }
+    if (o.debugLayers)
+        if (const auto layers = m.method->debugLayers(); !layers.empty())
+            writeLayers(o.out / folder / frameName(frame, ".layers.exr"), layers);
+    return written;
+}
+
+}  // namespace
+
+std::vector<size_t> selectFrames(const Manifest& manifest, const std::string& list) {
+    std::vector<size_t> chosen;
+    if (list.empty()) {
+        for (size_t i = 0; i < manifest.frames.size(); i++) chosen.push_back(i);
+        return chosen;
+    }
+    std::vector<bool> wanted(manifest.frames.size());
+    std::istringstream parts(list);
+    for (std::string part; std::getline(parts, part, ',');) {
+        int first = 0, last = 0;
+        const char* end = part.data() + part.size();
+        auto [p, failed] = std::from_chars(part.data(), end, first);
+        last = first;
+        if (failed == std::errc{} && p != end && *p == '-') {
+            const auto second = std::from_chars(p + 1, end, last);
+            p = second.ptr;
+            failed = second.ec;
+        }
+        if (failed != std::errc{} || p != end || last < first)
+            throw UsageError("--frames: expected numbers and ranges like 1-16,20, found '" + part + "'");
+        size_t found = 0;
+        for (size_t i = 0; i < manifest.frames.size(); i++)
+            if (manifest.frames[i].frame >= first && manifest.frames[i].frame <= last) wanted[i] = true, found++;
+        if (found == 0)
+            throw InputError("--frames " + part + ": the shot has no such frame (it has " +
+                             std::to_string(manifest.frames.front().frame) + " to " +
+                             std::to_string(manifest.frames.back().frame) + ")");
+    }
+    for (size_t i = 0; i < wanted.size(); i++)
+        if (wanted[i]) chosen.push_back(i);
+    return chosen;
+}
+
+RunResults run(const ShotReader& shot, const RunOptions& o, Progress& progress) {
+    const Manifest& manifest = shot.manifest();
+    requirePasses(shot, o.methods);
+    std::vector<RunningMethod> methods;
+    for (const auto& spec : o.methods) {
+        methods.emplace_back(spec, shotInfo(manifest));
+        methods.back().method->keepDebugLayers = o.debugLayers;
+    }
+    makeWritableFolder(o.out);
+    for (const auto& m : methods) makeWritableFolder(o.out / m.spec.folderName());
+    makeWritableFolder(o.out / "truth");
+
+    RunResults results = describeRun(manifest, o);
+    std::vector<TileErrors> errors(methods.size());
+    double noise = 0;
+    size_t withTruth = 0;
+    // A static shot has one truth for all its frames: decoded and encoded once.
+    std::optional<Reference> reference;
+    std::shared_ptr<const Truth> truth;
+
+    FrameStream stream(shot, o.frames, passesOf(o.methods), /*withTruth=*/true);
+    for (size_t i = 0; auto frame = stream.next(); i++) {
+        if (i == 0) frame->reset = true;  // a sequence may start in the middle
+        prepareFrame(*frame, methods, o.display, o.exec);
+        if (stream.truth() != truth) {
+            truth = stream.truth();
+            reference.reset();
+            if (truth) reference = makeReference(truth->a, truth->b, o.display, o.exec);
+        }
+        // Of a static shot the last frame is the one to look at: there every history is longest.
+        const bool write = o.writeAllFrames || (reference && (!manifest.isStatic || i + 1 == o.frames.size()));
+        if (write && reference) {
+            const std::string file = (fs::path("truth") / frameName(frame->number, ".exr")).string();
+            writeExr(o.out / file, reference->linear, false);
+            results.truthImages[frame->number] = file;
+        }
+        if (reference) noise += reference->noise, withTruth++;
+        for (size_t k = 0; k < methods.size(); k++) {
+            FrameResult result;
+            result.frame = frame->number;
+            result.seconds = methods[k].resolve(*frame, o.display, o.exec);
+            if (reference) {
+                const bool linear = methods[k].spec.method->output == Space::linear;
+                result.metrics = measure(methods[k].outEncoded, linear ? &methods[k].out : nullptr, *reference,
+                                         o.measure, o.exec, errors[k]);
+            }
+            if (write) result.image = writeImage(methods[k], frame->number, o);
+            results.methods[k].frames.push_back(std::move(result));
+            results.methods[k].stateBytes = std::max(results.methods[k].stateBytes, methods[k].method->stateBytes());
+        }
+        progress.step("frame " + std::to_string(frame->number));
+        if (progress.interrupted()) break;
+    }
+    if (withTruth > 0) results.truthNoise = noise / double(withTruth);
+    if (const SanitiseCounts& n = stream.counts(); n.total() > 0)
+        results.sanitised = {
+            {"colourNan", n.colourNan}, {"colourInf", n.colourInf}, {"colourNegative", n.colourNegative},
+            {"depth", n.depth},         {"normal", n.normal},       {"motion", n.motion},
+            {"edges", n.edges}};
+    finish(results, errors);
+    writeResults(results, o.out);
+    return results;
+}
+
+}  // namespace aa

@@ -1,0 +1,35 @@
+// The frame-major runner: every chosen method runs on a frame while it is in memory; the next frame is decoded
+// meanwhile; only the passes that the methods need are read. Memory does not grow with the number of frames.
+#pragma once
+#include <filesystem>
+
+#include "cli/progress.h"
+#include "image/colour.h"
+#include "methods/driver.h"
+#include "report/results.h"
+#include "shot/reader.h"
+
+namespace aa {
+
+struct RunOptions {
+    std::vector<MethodSpec> methods;
+    std::vector<size_t> frames;  // indices into the manifest, ascending; the methods see them all, in order
+    DisplayChain display;
+    Exec exec;
+    int threads = 0;
+    MeasureOptions measure;
+    std::filesystem::path out;
+    bool writeExr = true, writePng = false;
+    bool writeAllFrames = false;  // otherwise: frames with ground truth of their own; of a static shot, the last
+    bool debugLayers = false;
+};
+
+// Runs, measures and writes OUT/<method>/<frame>.*, OUT/truth/<frame>.exr, results.json and results.csv. When
+// interrupted, the results cover the frames that were finished. Throws InputError, UsageError.
+RunResults run(const ShotReader& shot, const RunOptions& options, Progress& progress);
+
+// Frames as a list `1-16,20` (frame numbers of the manifest; empty = all). Throws UsageError, InputError (no such
+// frame).
+std::vector<size_t> selectFrames(const Manifest& manifest, const std::string& list);
+
+}  // namespace aa
