@@ -30,13 +30,20 @@ AMBIENT_UP: RGB = (0.27, 0.31, 0.38)  # light from the sky, for normals that poi
 AMBIENT_DOWN: RGB = (0.15, 0.13, 0.11)  # light from the ground, for normals that point down
 
 
-def parse_arguments(description: str, extra: Callable[[argparse.ArgumentParser], None] | None = None):
+def parse_arguments(
+    description: str, extra: Callable[[argparse.ArgumentParser], None] | None = None
+):
     """Reads what follows ``--`` on Blender's command line; ends the process with 2 on wrong usage."""
     argv = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
     parser = argparse.ArgumentParser(prog="scene", description=description)
     parser.add_argument("--out", required=True, help="the .blend file to write")
     parser.add_argument(
-        "--resolution", nargs=2, type=int, default=(480, 270), metavar=("W", "H"), help="pixels (480 270)"
+        "--resolution",
+        nargs=2,
+        type=int,
+        default=(480, 270),
+        metavar=("W", "H"),
+        help="pixels (480 270)",
     )
     if extra:
         extra(parser)
@@ -62,7 +69,9 @@ def new_scene(resolution: Sequence[int], frames: int = 100) -> bpy.types.Scene:
     cycles.samples = 64
     cycles.light_sampling_threshold = 0.0
     cycles.max_bounces = 0
-    cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = cycles.volume_bounces = 0
+    cycles.diffuse_bounces = (
+        cycles.glossy_bounces
+    ) = cycles.transmission_bounces = cycles.volume_bounces = 0
     return scene
 
 
@@ -87,13 +96,17 @@ def add_sky(scene: bpy.types.Scene, horizon: RGB, zenith: RGB) -> None:
     tree.links.new(ramp.outputs["Result"], mix.inputs["Fac"])
     tree.links.new(mix.outputs["Color"], background.inputs["Color"])
     tree.links.new(background.outputs[0], output.inputs["Surface"])
-    world.cycles.sampling_method = "NONE"  # a varying world would else be picked as a light, in place of the sun
+    world.cycles.sampling_method = (
+        "NONE"  # a varying world would else be picked as a light, in place of the sun
+    )
     visibility = world.cycles_visibility
     visibility.diffuse = visibility.glossy = visibility.transmission = visibility.scatter = False
     scene.world = world
 
 
-def add_sun(scene: bpy.types.Scene, azimuth_degrees: float, height_degrees: float) -> bpy.types.Object:
+def add_sun(
+    scene: bpy.types.Scene, azimuth_degrees: float, height_degrees: float
+) -> bpy.types.Object:
     """Sun at an azimuth counted from +x towards +y, and a height over the horizon; angle 0, so no penumbra."""
     light = bpy.data.lights.new("Sun", "SUN")
     light.energy = SUN_IRRADIANCE
@@ -102,7 +115,11 @@ def add_sun(scene: bpy.types.Scene, azimuth_degrees: float, height_degrees: floa
     sun = bpy.data.objects.new("Sun", light)
     azimuth, height = math.radians(azimuth_degrees), math.radians(height_degrees)
     towards_sun = Vector(
-        (math.cos(azimuth) * math.cos(height), math.sin(azimuth) * math.cos(height), math.sin(height))
+        (
+            math.cos(azimuth) * math.cos(height),
+            math.sin(azimuth) * math.cos(height),
+            math.sin(height),
+        )
     )
     sun.rotation_euler = towards_sun.to_track_quat("Z", "Y").to_euler()
     scene.collection.objects.link(sun)
@@ -110,7 +127,11 @@ def add_sun(scene: bpy.types.Scene, azimuth_degrees: float, height_degrees: floa
 
 
 def add_camera(
-    scene: bpy.types.Scene, location: Sequence[float], target: Sequence[float], lens_mm: float, roll_degrees: float = 0.0
+    scene: bpy.types.Scene,
+    location: Sequence[float],
+    target: Sequence[float],
+    lens_mm: float,
+    roll_degrees: float = 0.0,
 ) -> bpy.types.Object:
     """Camera with a 36 mm sensor that looks at ``target``; a positive roll turns the picture to the left."""
     data = bpy.data.cameras.new("Camera")
@@ -141,10 +162,13 @@ def _ambient_by_normal(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
     return mix.outputs["Color"]
 
 
-def material(name: str, albedo: RGB, ambient_scale: float = 1.0, lit: bool = True) -> bpy.types.Material:
+def material(
+    name: str, albedo: RGB, ambient_scale: float = 1.0, lit: bool = True
+) -> bpy.types.Material:
     """Solid matt colour: diffuse under the sun plus albedo * ambient for the camera.
 
-    ``ambient_scale`` darkens surfaces that see little of the sky; ``lit=False`` leaves the sun out."""
+    ``ambient_scale`` darkens surfaces that see little of the sky; ``lit=False`` leaves the sun out.
+    """
     result = bpy.data.materials.new(name)
     result.use_nodes = True
     result.diffuse_color = (*albedo, 1.0)
@@ -197,7 +221,9 @@ def add_mesh(
     return result
 
 
-def box_parts(low: Sequence[float], high: Sequence[float]) -> tuple[list[Point2], list[tuple[int, ...]]]:
+def box_parts(
+    low: Sequence[float], high: Sequence[float]
+) -> tuple[list[Point2], list[tuple[int, ...]]]:
     """Vertices and faces of an axis-aligned box."""
     (x0, y0, z0), (x1, y1, z1) = low, high
     vertices = [
@@ -208,7 +234,9 @@ def box_parts(low: Sequence[float], high: Sequence[float]) -> tuple[list[Point2]
     return vertices, faces
 
 
-def add_boxes(name: str, boxes: Iterable[tuple[Sequence[float], Sequence[float]]], surface) -> bpy.types.Object:
+def add_boxes(
+    name: str, boxes: Iterable[tuple[Sequence[float], Sequence[float]]], surface
+) -> bpy.types.Object:
     """One object made of several boxes, each given by its low and high corner."""
     vertices: list = []
     faces: list = []
@@ -225,7 +253,13 @@ def add_box(name: str, low: Sequence[float], high: Sequence[float], surface) -> 
 
 
 def add_cylinder(
-    name: str, start: Sequence[float], end: Sequence[float], radius: float, sides: int, surface, smooth: bool = False
+    name: str,
+    start: Sequence[float],
+    end: Sequence[float],
+    radius: float,
+    sides: int,
+    surface,
+    smooth: bool = False,
 ) -> bpy.types.Object:
     """Capped cylinder (a prism of ``sides`` sides) from ``start`` to ``end``."""
     axis = Vector(end) - Vector(start)
@@ -234,8 +268,13 @@ def add_cylinder(
     for base in (Vector(start), Vector(end)):
         for side in range(sides):
             angle = 2.0 * math.pi * side / sides
-            vertices.append(base + rotation @ Vector((radius * math.cos(angle), radius * math.sin(angle), 0.0)))
-    faces = [(side, (side + 1) % sides, sides + (side + 1) % sides, sides + side) for side in range(sides)]
+            vertices.append(
+                base + rotation @ Vector((radius * math.cos(angle), radius * math.sin(angle), 0.0))
+            )
+    faces = [
+        (side, (side + 1) % sides, sides + (side + 1) % sides, sides + side)
+        for side in range(sides)
+    ]
     faces.append(tuple(reversed(range(sides))))
     faces.append(tuple(range(sides, 2 * sides)))
     return add_mesh(name, vertices, faces, surface, smooth)
@@ -281,7 +320,9 @@ def arch_points(centre_x: float, spring_z: float, half_width: float, steps: int)
     points = []
     for step in range(steps + 1):
         angle = math.pi * step / steps
-        points.append((centre_x + half_width * math.cos(angle), spring_z + half_width * math.sin(angle)))
+        points.append(
+            (centre_x + half_width * math.cos(angle), spring_z + half_width * math.sin(angle))
+        )
     return points
 
 
@@ -312,11 +353,20 @@ def add_arch_wall(
         faces.append(tuple(first + count + index for index in reversed(range(count))))
         for index in range(count):
             following = (index + 1) % count
-            faces.append((first + following, first + index, first + count + index, first + count + following))
+            faces.append(
+                (first + following, first + index, first + count + index, first + count + following)
+            )
 
     left = x_range[0]
     for centre, half_width, sill, spring in openings:
-        slab([(left, z_low), (centre - half_width, z_low), (centre - half_width, z_high), (left, z_high)])
+        slab(
+            [
+                (left, z_low),
+                (centre - half_width, z_low),
+                (centre - half_width, z_high),
+                (left, z_high),
+            ]
+        )
         if sill > z_low:
             slab(
                 [
@@ -351,7 +401,9 @@ def add_text(
     return result
 
 
-def key_linear(target: bpy.types.Object, path: str, keys: Sequence[tuple[int, Sequence[float]]]) -> None:
+def key_linear(
+    target: bpy.types.Object, path: str, keys: Sequence[tuple[int, Sequence[float]]]
+) -> None:
     """Keyframes with straight lines between them: the same step in every frame."""
     for frame, value in keys:
         setattr(target, path, value)

@@ -39,7 +39,10 @@ def add_blinds_window(blue, dark, white) -> None:
     count, slit = 24, METRES_PER_PIXEL
     pitch = (z1 - z0) / count
     slats = [
-        ((x0, -0.12, z0 + index * pitch + slit / 2), (x1, -0.09, z0 + (index + 1) * pitch - slit / 2))
+        (
+            (x0, -0.12, z0 + index * pitch + slit / 2),
+            (x1, -0.09, z0 + (index + 1) * pitch - slit / 2),
+        )
         for index in range(count)
     ]
     c.add_boxes("Blinds Slats", slats, c.material("Slat Blue", (0.16, 0.36, 0.72)))
@@ -57,7 +60,9 @@ def add_arched_window(blue, dark) -> None:
         blue,
         steps=32,
     )
-    c.add_box("Arch Recess", (centre - half, -0.02, sill), (centre + half, 0.02, spring + half), dark)
+    c.add_box(
+        "Arch Recess", (centre - half, -0.02, sill), (centre + half, 0.02, spring + half), dark
+    )
     gap = METRES_PER_PIXEL
     leaf = c.material("Door Blue", (0.10, 0.27, 0.60))
     panels = []
@@ -70,13 +75,22 @@ def add_arched_window(blue, dark) -> None:
             z = sill + row * height
             panels.append(((low_x, -0.1, z + gap / 2), (high_x, -0.06, z + height - gap / 2)))
     c.add_boxes("Arch Door", panels, leaf)
-    c.add_box("Arch Transom", (centre - half, -0.14, spring - 0.2), (centre + half, -0.05, spring - 0.06), blue)
+    c.add_box(
+        "Arch Transom",
+        (centre - half, -0.14, spring - 0.2),
+        (centre + half, -0.05, spring - 0.06),
+        blue,
+    )
     for index, degrees in enumerate((30.0, 60.0, 90.0, 120.0, 150.0)):
         angle = c.math.radians(degrees)
         end = (centre + half * c.math.cos(angle), -0.08, spring - 0.06 + half * c.math.sin(angle))
         c.add_cylinder(f"Fan Bar {index + 1}", (centre, -0.08, spring - 0.06), end, 0.022, 8, blue)
-    c.add_cylinder("Door Knob Left", (centre - 0.16, -0.2, 1.6), (centre - 0.16, -0.1, 1.6), 0.06, 12, dark)
-    c.add_cylinder("Door Knob Right", (centre + 0.16, -0.2, 1.6), (centre + 0.16, -0.1, 1.6), 0.06, 12, dark)
+    c.add_cylinder(
+        "Door Knob Left", (centre - 0.16, -0.2, 1.6), (centre - 0.16, -0.1, 1.6), 0.06, 12, dark
+    )
+    c.add_cylinder(
+        "Door Knob Right", (centre + 0.16, -0.2, 1.6), (centre + 0.16, -0.1, 1.6), 0.06, 12, dark
+    )
 
 
 def add_letters(black, white) -> None:
@@ -84,8 +98,20 @@ def add_letters(black, white) -> None:
     c.add_box("White Wall", (-3.1, -0.16, 2.3), (2.4, 0.0, 5.1), white)
     c.add_text("Text Large", "HARD EDGES", (-0.35, -0.17, 4.45), 0.86, black)
     c.add_text("Text Medium", "anti-aliasing 0123456789", (-0.35, -0.17, 3.65), 0.42, black)
-    c.add_text("Text Small", "the quick brown fox jumps over the lazy dog", (-0.35, -0.17, 3.1), 0.26, black)
-    c.add_text("Text Tiny", "THIN STROKES BREAK UP WHEN A PIXEL IS TOO COARSE FOR THEM", (-0.35, -0.17, 2.65), 0.16, black)
+    c.add_text(
+        "Text Small",
+        "the quick brown fox jumps over the lazy dog",
+        (-0.35, -0.17, 3.1),
+        0.26,
+        black,
+    )
+    c.add_text(
+        "Text Tiny",
+        "THIN STROKES BREAK UP WHEN A PIXEL IS TOO COARSE FOR THEM",
+        (-0.35, -0.17, 2.65),
+        0.16,
+        black,
+    )
 
 
 def build(resolution) -> None:
@@ -107,16 +133,23 @@ def build(resolution) -> None:
     c.add_box("Cornice", (-8.9, -0.35, 6.1), (8.6, 3.2, 6.38), stone)
     c.add_boxes(
         "Cornice Teeth",
-        [((-8.5 + 0.3 * index, -0.24, 5.94), (-8.36 + 0.3 * index, 0.0, 6.1)) for index in range(56)],
+        [
+            ((-8.5 + 0.3 * index, -0.24, 5.94), (-8.36 + 0.3 * index, 0.0, 6.1))
+            for index in range(56)
+        ],
         stone,
     )
     c.add_box("Ground", (-60.0, -50.0, -0.2), (60.0, 60.0, 0.0), ground)
-    c.add_boxes("Steps", [((3.2, -1.1, 0.0), (6.6, 0.0, 0.1)), ((3.4, -0.6, 0.1), (6.4, 0.0, 0.2))], stone)
+    c.add_boxes(
+        "Steps", [((3.2, -1.1, 0.0), (6.6, 0.0, 0.1)), ((3.4, -0.6, 0.1), (6.4, 0.0, 0.2))], stone
+    )
     add_blinds_window(blue, dark, white)
     add_arched_window(blue, dark)
     add_letters(black, white)
     c.add_cylinder("Pipe", (-3.6, -1.5, 0.22), (3.5, -1.1, 1.75), 0.3, 10, pipe)
-    c.add_cylinder("Pipe Collar Left", (-3.72, -1.507, 0.195), (-3.1, -1.472, 0.328), 0.37, 10, pipe)
+    c.add_cylinder(
+        "Pipe Collar Left", (-3.72, -1.507, 0.195), (-3.1, -1.472, 0.328), 0.37, 10, pipe
+    )
     c.add_cylinder("Pipe Collar Right", (3.0, -1.128, 1.642), (3.6, -1.094, 1.772), 0.37, 10, pipe)
     c.add_cylinder("Down Pipe", (7.55, -0.14, 0.0), (7.55, -0.14, 6.1), 0.085, 10, pipe)
     c.add_cylinder("Mast", (-9.7, -0.8, 0.0), (-9.45, -0.8, 7.2), 0.05, 8, stone)
@@ -125,8 +158,13 @@ def build(resolution) -> None:
     c.add_cylinder("Wire Lower", (-9.5, -0.8, 6.6), (-6.0, 0.2, 6.34), 0.014, 6, wire)
 
     c.add_sun(scene, azimuth_degrees=-118.0, height_degrees=42.0)
-    c.add_camera(scene, location=(-9.5, -45.0, 5.6), target=(-0.45, 0.0, 3.25), lens_mm=100.0, roll_degrees=2.0)
-
+    c.add_camera(
+        scene,
+        location=(-9.5, -45.0, 5.6),
+        target=(-0.45, 0.0, 3.25),
+        lens_mm=100.0,
+        roll_degrees=2.0,
+    )
 
 
 if __name__ == "__main__":

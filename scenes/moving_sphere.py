@@ -33,7 +33,10 @@ def add_column(name: str, x: float, y: float, stone, base) -> None:
         [
             ((x - half, y - half, 0.0), (x + half, y + half, 0.18)),
             ((x - half + 0.07, y - half + 0.07, 0.18), (x + half - 0.07, y + half - 0.07, 0.3)),
-            ((x - half + 0.05, y - half + 0.05, SPRING - 0.25), (x + half - 0.05, y + half - 0.05, SPRING - 0.13)),
+            (
+                (x - half + 0.05, y - half + 0.05, SPRING - 0.25),
+                (x + half - 0.05, y + half - 0.05, SPRING - 0.13),
+            ),
             ((x - half, y - half, SPRING - 0.13), (x + half, y + half, SPRING)),
         ],
         base,
@@ -68,16 +71,28 @@ def build(resolution) -> None:
 
     half_length = BAY * BAYS / 2.0
     openings = [
-        (-half_length + BAY * (index + 0.5), BAY / 2.0 - COLUMN_RADIUS - 0.07, SPRING, SPRING) for index in range(BAYS)
+        (-half_length + BAY * (index + 0.5), BAY / 2.0 - COLUMN_RADIUS - 0.07, SPRING, SPRING)
+        for index in range(BAYS)
     ]
-    c.add_arch_wall("Arches", (-half_length - 0.4, half_length + 0.4), (SPRING, 6.2), (2.65, 3.35), openings, wall, 28)
+    c.add_arch_wall(
+        "Arches",
+        (-half_length - 0.4, half_length + 0.4),
+        (SPRING, 6.2),
+        (2.65, 3.35),
+        openings,
+        wall,
+        28,
+    )
     for index in range(BAYS + 1):
         add_column(f"Column {index + 1}", -half_length + BAY * index, 3.0, stone, trim)
     c.add_box("Entablature", (-half_length - 0.6, 2.5, 6.2), (half_length + 0.6, 3.5, 6.45), trim)
     c.add_boxes(
         "Railing",
         [
-            ((-half_length + 0.25 * index, 2.92, 6.45), (-half_length + 0.25 * index + 0.06, 3.02, 7.1))
+            (
+                (-half_length + 0.25 * index, 2.92, 6.45),
+                (-half_length + 0.25 * index + 0.06, 3.02, 7.1),
+            )
             for index in range(int(BAY * BAYS / 0.25))
         ]
         + [((-half_length - 0.4, 2.88, 7.1), (half_length + 0.4, 3.06, 7.18))],
@@ -89,7 +104,10 @@ def build(resolution) -> None:
         x = -half_length + BAY * (index + 0.5)
         c.add_boxes(
             f"Shutter {index + 1}",
-            [((x - 0.55, 6.12, 1.0 + 0.13 * slat), (x + 0.55, 6.2, 1.085 + 0.13 * slat)) for slat in range(15)],
+            [
+                ((x - 0.55, 6.12, 1.0 + 0.13 * slat), (x + 0.55, 6.2, 1.085 + 0.13 * slat))
+                for slat in range(15)
+            ],
             shutter,
         )
     add_floor(light, dark)

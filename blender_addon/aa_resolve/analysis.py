@@ -21,7 +21,17 @@ _TIME_MODIFIERS = {
     "CLOTH", "SOFT_BODY", "FLUID", "DYNAMIC_PAINT", "OCEAN", "WAVE", "BUILD", "EXPLODE", "PARTICLE_SYSTEM",
     "PARTICLE_INSTANCE", "MESH_CACHE", "MESH_SEQUENCE_CACHE", "COLLISION",
 }  # fmt: skip
-_GEOMETRY_TYPES = {"MESH", "CURVE", "SURFACE", "META", "FONT", "CURVES", "POINTCLOUD", "VOLUME", "GPENCIL"}
+_GEOMETRY_TYPES = {
+    "MESH",
+    "CURVE",
+    "SURFACE",
+    "META",
+    "FONT",
+    "CURVES",
+    "POINTCLOUD",
+    "VOLUME",
+    "GPENCIL",
+}
 
 
 @dataclass
@@ -42,7 +52,9 @@ class FrameState:
     vertices: dict[str, int] = field(default_factory=dict)
 
 
-def refuse_unsuitable(scene: bpy.types.Scene, layer_name: str | None) -> tuple[bpy.types.ViewLayer, list[str]]:
+def refuse_unsuitable(
+    scene: bpy.types.Scene, layer_name: str | None
+) -> tuple[bpy.types.ViewLayer, list[str]]:
     """The view layer to render and one sentence for everything that will be switched off.
 
     Raises SceneError for what cannot be exported."""
@@ -51,16 +63,22 @@ def refuse_unsuitable(scene: bpy.types.Scene, layer_name: str | None) -> tuple[b
         raise SceneError("Cycles is not enabled: switch on the add-on 'Cycles Render Engine'")
     render = scene.render
     if render.use_multiview:
-        raise SceneError("the scene renders stereo views: switch Stereoscopy off, a shot holds one camera")
+        raise SceneError(
+            "the scene renders stereo views: switch Stereoscopy off, a shot holds one camera"
+        )
     used = [layer for layer in scene.view_layers if layer.use]
     if layer_name is not None:
         chosen = scene.view_layers.get(layer_name)
         if chosen is None:
             known = ", ".join(layer.name for layer in scene.view_layers)
-            raise SceneError(f"--view-layer: the scene has no layer '{layer_name}' (found: {known})")
+            raise SceneError(
+                f"--view-layer: the scene has no layer '{layer_name}' (found: {known})"
+            )
     elif len(used) > 1:
         names = ", ".join(layer.name for layer in used)
-        raise SceneError(f"the scene renders {len(used)} view layers ({names}): choose one with --view-layer NAME")
+        raise SceneError(
+            f"the scene renders {len(used)} view layers ({names}): choose one with --view-layer NAME"
+        )
     else:
         chosen = used[0] if used else scene.view_layers[0]
     if render.engine != "CYCLES":
@@ -80,11 +98,17 @@ def refuse_unsuitable(scene: bpy.types.Scene, layer_name: str | None) -> tuple[b
     for item in bpy.data.objects:
         if item.type == "CAMERA" and item.data.dof.use_dof:
             item.data.dof.use_dof = False
-            notes.append(f"depth of field of camera '{item.name}' is switched off: a shot is sharp everywhere")
+            notes.append(
+                f"depth of field of camera '{item.name}' is switched off: a shot is sharp everywhere"
+            )
         if item.type == "VOLUME" and not item.hide_render:
-            notes.append(f"volume '{item.name}' has no surface: its depth, normal and motion are those behind it")
+            notes.append(
+                f"volume '{item.name}' has no surface: its depth, normal and motion are those behind it"
+            )
     if len(bpy.data.objects) > 32767:
-        raise SceneError(f"{len(bpy.data.objects)} objects: Cycles tells at most 32767 apart; join some")
+        raise SceneError(
+            f"{len(bpy.data.objects)} objects: Cycles tells at most 32767 apart; join some"
+        )
     return chosen, notes
 
 
@@ -134,14 +158,19 @@ def _shading_that_changes() -> str | None:
 
 
 def _own_handlers(handlers: list) -> bool:
-    return any(not (handler.__module__ or "").startswith(("cycles", "bl_", "rigify")) for handler in handlers)
+    return any(
+        not (handler.__module__ or "").startswith(("cycles", "bl_", "rigify"))
+        for handler in handlers
+    )
 
 
 def _may_move(scene: bpy.types.Scene) -> bool:
     """False when nothing in the file can depend on the frame: then no frame needs to be evaluated to know it."""
     if scene.rigidbody_world is not None:
         return True
-    if _own_handlers(bpy.app.handlers.frame_change_pre) or _own_handlers(bpy.app.handlers.frame_change_post):
+    if _own_handlers(bpy.app.handlers.frame_change_pre) or _own_handlers(
+        bpy.app.handlers.frame_change_post
+    ):
         return True
     for collection in (
         bpy.data.objects, bpy.data.meshes, bpy.data.curves, bpy.data.armatures, bpy.data.cameras, bpy.data.lattices,
@@ -152,10 +181,16 @@ def _may_move(scene: bpy.types.Scene) -> bool:
     if len(bpy.data.cache_files):
         return True
     for item in bpy.data.objects:
-        if item.particle_systems or any(modifier.type in _TIME_MODIFIERS for modifier in item.modifiers):
+        if item.particle_systems or any(
+            modifier.type in _TIME_MODIFIERS for modifier in item.modifiers
+        ):
             return True
         for modifier in item.modifiers:
-            if modifier.type == "NODES" and modifier.node_group and _reads_time(modifier.node_group, set()):
+            if (
+                modifier.type == "NODES"
+                and modifier.node_group
+                and _reads_time(modifier.node_group, set())
+            ):
                 return True
     return False
 
@@ -166,7 +201,11 @@ def _reads_time(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
     seen.add(tree.name)
     return any(
         node.bl_idname in ("GeometryNodeInputSceneTime", "GeometryNodeSimulationInput")
-        or (node.bl_idname == "GeometryNodeGroup" and node.node_tree and _reads_time(node.node_tree, seen))
+        or (
+            node.bl_idname == "GeometryNodeGroup"
+            and node.node_tree
+            and _reads_time(node.node_tree, seen)
+        )
         for node in tree.nodes
     )
 
@@ -229,7 +268,9 @@ def find_motion(
 ) -> Motion:
     """Whether the picture (camera, places, shapes, colours) is the same in all ``frames``."""
     if len(frames) == 1:
-        return Motion(False, "one frame") if _may_move(scene) else Motion(True, "nothing is animated")
+        return (
+            Motion(False, "one frame") if _may_move(scene) else Motion(True, "nothing is animated")
+        )
     changing = _shading_that_changes()
     if changing:
         return Motion(False, changing)
@@ -257,7 +298,12 @@ def has_cutouts() -> str | None:
             continue
         for slot in item.material_slots:
             material = slot.material
-            if material and material.use_nodes and material.node_tree and _is_see_through(material.node_tree, set()):
+            if (
+                material
+                and material.use_nodes
+                and material.node_tree
+                and _is_see_through(material.node_tree, set())
+            ):
                 return material.name
     return None
 
@@ -275,7 +321,11 @@ def _is_see_through(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
                 return True
         if node.bl_idname == "ShaderNodeOutputMaterial" and node.inputs["Displacement"].is_linked:
             return True
-        if node.bl_idname == "ShaderNodeGroup" and node.node_tree and _is_see_through(node.node_tree, seen):
+        if (
+            node.bl_idname == "ShaderNodeGroup"
+            and node.node_tree
+            and _is_see_through(node.node_tree, seen)
+        ):
             return True
     return False
 

@@ -53,14 +53,24 @@ def frame_of(scene: bpy.types.Scene) -> Frame:
     if right - left < 1 or top - bottom < 1:
         raise SceneError("the render border is smaller than one pixel: enlarge it or switch it off")
     return Frame(
-        width, height, left, height - top, right - left, top - bottom, render.pixel_aspect_x, render.pixel_aspect_y
+        width,
+        height,
+        left,
+        height - top,
+        right - left,
+        top - bottom,
+        render.pixel_aspect_x,
+        render.pixel_aspect_y,
     )
 
 
-def jitter_to_shift(frame: Frame, data: bpy.types.Camera, jitter_x: float, jitter_y: float) -> tuple[float, float]:
+def jitter_to_shift(
+    frame: Frame, data: bpy.types.Camera, jitter_x: float, jitter_y: float
+) -> tuple[float, float]:
     """What to add to ``shift_x, shift_y`` so that samples move by the jitter (pixels, y down).
 
-    Blender's shift is a fraction of the sensor side that the fit selects; the size of the sensor cancels out."""
+    Blender's shift is a fraction of the sensor side that the fit selects; the size of the sensor cancels out.
+    """
     aspect = frame.aspect_y / frame.aspect_x
     fit = data.sensor_fit
     if fit == "AUTO":
@@ -91,7 +101,9 @@ class CameraState:
         }
 
 
-def camera_state(camera: bpy.types.Object, frame: Frame, depsgraph: bpy.types.Depsgraph) -> CameraState:
+def camera_state(
+    camera: bpy.types.Object, frame: Frame, depsgraph: bpy.types.Depsgraph
+) -> CameraState:
     """Matrices of ``camera`` at the scene's current frame."""
     data = camera.evaluated_get(depsgraph).data
     if data.type not in ("PERSP", "ORTHO"):
@@ -100,7 +112,11 @@ def camera_state(camera: bpy.types.Object, frame: Frame, depsgraph: bpy.types.De
         )
     projection = np.array(
         camera.calc_matrix_camera(
-            depsgraph, x=frame.full_width, y=frame.full_height, scale_x=frame.aspect_x, scale_y=frame.aspect_y
+            depsgraph,
+            x=frame.full_width,
+            y=frame.full_height,
+            scale_x=frame.aspect_x,
+            scale_y=frame.aspect_y,
         ),
         dtype=np.float64,
     )
@@ -108,17 +124,27 @@ def camera_state(camera: bpy.types.Object, frame: Frame, depsgraph: bpy.types.De
         scale_x, scale_y = frame.full_width / frame.width, frame.full_height / frame.height
         offset_x = (frame.full_width - 2 * frame.left) / frame.width - 1.0
         offset_y = 1.0 - (frame.full_height - 2 * frame.top) / frame.height
-        window = np.array([[scale_x, 0, 0, offset_x], [0, scale_y, 0, offset_y], [0, 0, 1, 0], [0, 0, 0, 1.0]])
+        window = np.array(
+            [[scale_x, 0, 0, offset_x], [0, scale_y, 0, offset_y], [0, 0, 1, 0], [0, 0, 0, 1.0]]
+        )
         projection = window @ projection
     placement = np.array(camera.evaluated_get(depsgraph).matrix_world, dtype=np.float64)
-    placement[:3, :3] /= np.linalg.norm(placement[:3, :3], axis=0)  # Cycles drops the scale of a camera, too
+    placement[:3, :3] /= np.linalg.norm(
+        placement[:3, :3], axis=0
+    )  # Cycles drops the scale of a camera, too
     kind = "perspective" if data.type == "PERSP" else "orthographic"
-    return CameraState(kind, np.linalg.inv(placement), projection, float(data.clip_start), float(data.clip_end))
+    return CameraState(
+        kind, np.linalg.inv(placement), projection, float(data.clip_start), float(data.clip_end)
+    )
 
 
 def same_camera(a: CameraState, b: CameraState) -> bool:
     """True when both project every point to the same place, bit for bit."""
-    return a.kind == b.kind and np.array_equal(a.view, b.view) and np.array_equal(a.projection, b.projection)
+    return (
+        a.kind == b.kind
+        and np.array_equal(a.view, b.view)
+        and np.array_equal(a.projection, b.projection)
+    )
 
 
 def _copy_without_shift_animation(camera: bpy.types.Object) -> bpy.types.Camera:
@@ -136,7 +162,9 @@ def _copy_without_shift_animation(camera: bpy.types.Object) -> bpy.types.Camera:
         if driver.data_path.startswith("shift"):
             animation.drivers.remove(driver)
     if len(animation.nla_tracks):
-        raise SceneError(f"camera '{camera.name}': its data is animated by NLA strips; bake them to an action first")
+        raise SceneError(
+            f"camera '{camera.name}': its data is animated by NLA strips; bake them to an action first"
+        )
     return data
 
 
@@ -152,7 +180,9 @@ class JitterCamera:
         self.object.parent = camera
         scene.collection.objects.link(self.object)
 
-    def aim(self, frame: Frame, depsgraph: bpy.types.Depsgraph, jitter_x: float, jitter_y: float) -> None:
+    def aim(
+        self, frame: Frame, depsgraph: bpy.types.Depsgraph, jitter_x: float, jitter_y: float
+    ) -> None:
         """Displaces the samples by a jitter (pixels, y down) from the source camera at the current frame."""
         source = self.source.evaluated_get(depsgraph).data
         shift_x, shift_y = jitter_to_shift(frame, source, jitter_x, jitter_y)
@@ -169,7 +199,11 @@ class CameraCuts:
     def __init__(self, scene: bpy.types.Scene) -> None:
         self._default = scene.camera
         self._bound = sorted(
-            ((marker.frame, marker.camera) for marker in scene.timeline_markers if marker.camera is not None),
+            (
+                (marker.frame, marker.camera)
+                for marker in scene.timeline_markers
+                if marker.camera is not None
+            ),
             key=lambda pair: pair[0],
         )
         for marker in scene.timeline_markers:
@@ -185,11 +219,15 @@ class CameraCuts:
         before = [camera for marked, camera in self._bound if marked <= frame]
         chosen = before[-1] if before else (self._bound[0][1] if self._bound else self._default)
         if chosen is None:
-            raise SceneError("the scene has no camera: set one as active, or bind cameras to markers")
+            raise SceneError(
+                "the scene has no camera: set one as active, or bind cameras to markers"
+            )
         return chosen
 
 
-def sample_positions(frame: Frame, jitter_x: float, jitter_y: float) -> tuple[np.ndarray, np.ndarray]:
+def sample_positions(
+    frame: Frame, jitter_x: float, jitter_y: float
+) -> tuple[np.ndarray, np.ndarray]:
     """x (1 x W) and y (H x 1) of the samples in the un-jittered picture, pixels."""
     x = np.arange(frame.width, dtype=np.float64)[None, :] + 0.5 + jitter_x
     y = np.arange(frame.height, dtype=np.float64)[:, None] + 0.5 + jitter_y
@@ -209,7 +247,8 @@ def motion_from_vector(
     Vector.XY is previous - current with y up, both seen through the *current* projection: a change of lens, of
     orthographic scale or of shift is missing and comes in here, where the previous position is taken back to a
     direction and projected with the previous camera's own matrix. Background has no vector; it is a direction at
-    infinity that only the rotation moves (0 for an orthographic camera, whose background shows one direction)."""
+    infinity that only the rotation moves (0 for an orthographic camera, whose background shows one direction).
+    """
     x, y = sample_positions(frame, *jitter)
     vector_x, vector_y = vector[:, :, 0].astype(np.float64), vector[:, :, 1].astype(np.float64)
     motion = np.empty((frame.height, frame.width, 2), np.float64)
@@ -241,7 +280,9 @@ def background_motion(
     x, y = sample_positions(frame, *jitter)
     direction = np.empty((frame.height, frame.width, 3), np.float64)
     direction[:, :, 0] = (2.0 * x / frame.width - 1.0 + now.projection[0, 2]) / now.projection[0, 0]
-    direction[:, :, 1] = (1.0 - 2.0 * y / frame.height + now.projection[1, 2]) / now.projection[1, 1]
+    direction[:, :, 1] = (1.0 - 2.0 * y / frame.height + now.projection[1, 2]) / now.projection[
+        1, 1
+    ]
     direction[:, :, 2] = -1.0
     turned = direction @ (before.view[:3, :3] @ now.view[:3, :3].T).T
     ahead = -turned[:, :, 2]

@@ -36,7 +36,9 @@ class Summary:
 class Exporter:
     """One scene, one shot."""
 
-    def __init__(self, scene: bpy.types.Scene, settings: Settings, reporter: Reporter, version: str) -> None:
+    def __init__(
+        self, scene: bpy.types.Scene, settings: Settings, reporter: Reporter, version: str
+    ) -> None:
         self.scene, self.settings, self.reporter = scene, settings, reporter
         self.version = version
         self.folder = lighting.temporary_folder()
@@ -65,15 +67,21 @@ class Exporter:
         left_out = []
         if self.static:
             self.passes.discard("motion")
-            left_out.append(f"motion ({motion.reason}: the shot is static, one truth serves all frames)")
+            left_out.append(
+                f"motion ({motion.reason}: the shot is static, one truth serves all frames)"
+            )
         self.cutout = analysis.has_cutouts()
         self.wants_samples = bool(self.passes & {"subsamples", "subsampleColor"})
         if self.wants_samples:
             self.positions = jitter.pattern_positions(settings.pattern)
             if subsamples.uses_override("subsampleColor" in self.passes, self.cutout):
-                left_out.append("shading of sub-samples (override material: no cut-outs, no displacement)")
+                left_out.append(
+                    "shading of sub-samples (override material: no cut-outs, no displacement)"
+                )
             elif "subsampleColor" not in self.passes:
-                notes.append(f"sub-samples use the real materials: '{self.cutout}' has cut-outs or displacement")
+                notes.append(
+                    f"sub-samples use the real materials: '{self.cutout}' has cut-outs or displacement"
+                )
         if left_out:
             notes.append("left out: " + "; ".join(left_out))
         notes += analysis.semi_transparent_note()
@@ -121,17 +129,32 @@ class Exporter:
             "static": self.static,
         }
         if self.wants_samples:
-            head["subsamples"] = {"pattern": settings.pattern, "positions": [list(p) for p in self.positions]}
+            head["subsamples"] = {
+                "pattern": settings.pattern,
+                "positions": [list(p) for p in self.positions],
+            }
         if settings.truth_frames != "none":
-            head["truth"] = {"samples_per_half": settings.truth_samples, "filter": "box", "filter_width": 1.0}
-        head["color"] = {"samples": settings.samples, "lighting": settings.lighting, "ambient": list(self.light.ambient)}
+            head["truth"] = {
+                "samples_per_half": settings.truth_samples,
+                "filter": "box",
+                "filter_width": 1.0,
+            }
+        head["color"] = {
+            "samples": settings.samples,
+            "lighting": settings.lighting,
+            "ambient": list(self.light.ambient),
+        }
         if self.frame.is_cropped:
             head["window"] = {
                 "full_resolution": [self.frame.full_width, self.frame.full_height],
                 "offset": [self.frame.left, self.frame.top],
             }
         head["methods"] = settings.methods
-        head["producer"] = {"name": "aa_resolve", "version": self.version, "blender": bpy.app.version_string}
+        head["producer"] = {
+            "name": "aa_resolve",
+            "version": self.version,
+            "blender": bpy.app.version_string,
+        }
         return head
 
     # --- the loop ------------------------------------------------------------------------------------------------
@@ -157,7 +180,11 @@ class Exporter:
             started = time.perf_counter()
             try:
                 path = os.path.join(store.folder, store.picture(kind, number))
-                record = self._export_frame(number, path) if kind == "frames" else self._export_truth(number, path)
+                record = (
+                    self._export_frame(number, path)
+                    if kind == "frames"
+                    else self._export_truth(number, path)
+                )
             except BaseException:
                 store.release(kind, number)
                 raise
@@ -175,16 +202,23 @@ class Exporter:
             return set()
         if self.static:
             return {settings.frames[0]}
-        return set(settings.frames) if settings.truth_frames == "all" else set(settings.truth_frames)
+        return (
+            set(settings.frames) if settings.truth_frames == "all" else set(settings.truth_frames)
+        )
 
-    def _report(self, kind: str, number: int, record: dict, size: int, rest: list[tuple[str, int]]) -> None:
+    def _report(
+        self, kind: str, number: int, record: dict, size: int, rest: list[tuple[str, int]]
+    ) -> None:
         seconds = self._seconds[kind][-1]
         typical = {
-            name: sorted(values)[len(values) // 2] if values else seconds for name, values in self._seconds.items()
+            name: sorted(values)[len(values) // 2] if values else seconds
+            for name, values in self._seconds.items()
         }
         left = sum(typical[name] for name, _ in rest)
         label = "frame" if kind == "frames" else "truth"
-        parts = ", ".join(f"{name} {value:.2f} s" for name, value in record["render_seconds"].items())
+        parts = ", ".join(
+            f"{name} {value:.2f} s" for name, value in record["render_seconds"].items()
+        )
         self.reporter.say(
             label,
             f"{label} {number}: {seconds:.2f} s ({parts}), {size / 1e6:.2f} MB, {left:.0f} s left",
@@ -200,7 +234,9 @@ class Exporter:
     def _state(self, number: int) -> analysis.FrameState:
         """State of a frame; evaluates it unless it is known."""
         if number not in self._states:
-            state = analysis.frame_state(self.scene, number, self.frame, self.cuts, "motion" in self.passes)
+            state = analysis.frame_state(
+                self.scene, number, self.frame, self.cuts, "motion" in self.passes
+            )
             self._states = {key: value for key, value in self._states.items() if key == number - 1}
             self._states[number] = state
         return self._states[number]
@@ -213,7 +249,9 @@ class Exporter:
     def _camera(self, number: int) -> cam.JitterCamera:
         source = self.cuts.at(number)
         if source.name_full not in self._cameras:
-            self._cameras[source.name_full] = cam.JitterCamera(self.scene, source, "AA Resolve Camera")
+            self._cameras[source.name_full] = cam.JitterCamera(
+                self.scene, source, "AA Resolve Camera"
+            )
         return self._cameras[source.name_full]
 
     def _aim(self, number: int, offset: tuple[float, float]) -> None:
@@ -238,7 +276,9 @@ class Exporter:
     def _export_frame(self, number: int, path: str) -> dict:
         settings = self.settings
         position = settings.frames.index(number)
-        offset = jitter.jitter_at(settings.jitter, number - settings.frames[0], settings.period, settings.jitter_centred)
+        offset = jitter.jitter_at(
+            settings.jitter, number - settings.frames[0], settings.period, settings.jitter_centred
+        )
         before = None
         if not self.static:
             before = self._state(number - 1)
@@ -263,7 +303,14 @@ class Exporter:
         if wrong:
             entry["nonfinite_pixels"] = wrong
         if "albedo" in self.passes:
-            parts.append(self._part("albedo", ("albedo.R", "albedo.G", "albedo.B"), kind, rendering.unlit_albedo(main)))
+            parts.append(
+                self._part(
+                    "albedo",
+                    ("albedo.R", "albedo.G", "albedo.B"),
+                    kind,
+                    rendering.unlit_albedo(main),
+                )
+            )
         depth = main.get("Depth")[:, :, 0] if ("Depth", "") in main.passes else None
         if "depth" in self.passes:
             parts.append(self._part("depth", ("Z",), "float", depth[:, :, None]))
@@ -276,7 +323,9 @@ class Exporter:
         if "object" in self.passes:
             parts.append(self._part("object", ("id",), "uint", ids[:, :, None]))
         if "motion" in self.passes:
-            motion = cam.motion_from_vector(main.get("Vector"), depth, self.frame, offset, now.camera, before.camera)
+            motion = cam.motion_from_vector(
+                main.get("Vector"), depth, self.frame, offset, now.camera, before.camera
+            )
             invalid = self._mark_invalid_motion(motion, main, now, before)
             if invalid:
                 entry["motion_invalid"] = invalid
@@ -298,12 +347,16 @@ class Exporter:
 
     def _part(self, name: str, channels, kind: str, pixels: np.ndarray) -> exr.Part:
         if kind == "half" and np.abs(pixels[np.isfinite(pixels)]).max(initial=0.0) > 65504.0:
-            raise SceneError(f"part '{name}' holds values above 65504, too large for half: use --color-type float")
+            raise SceneError(
+                f"part '{name}' holds values above 65504, too large for half: use --color-type float"
+            )
         kinds = (kind,) * len(tuple(channels))
         pixels = pixels.astype(np.uint32) if kind == "uint" else pixels.astype(np.float32)
         return exr.Part(name, tuple(channels), kinds, pixels, self.settings.compression)
 
-    def _is_reset(self, position: int, now: analysis.FrameState, before: analysis.FrameState | None) -> bool:
+    def _is_reset(
+        self, position: int, now: analysis.FrameState, before: analysis.FrameState | None
+    ) -> bool:
         """True where no history belongs to the frame: at the start, after a gap and after a cut."""
         frames = self.settings.frames
         if position == 0 or frames[position] != frames[position - 1] + 1:
@@ -313,13 +366,22 @@ class Exporter:
         return now.camera_name != before.camera_name or cam.cut_between(now.camera, before.camera)
 
     def _mark_invalid_motion(
-        self, motion: np.ndarray, main: rendering.Layers, now: analysis.FrameState, before: analysis.FrameState
+        self,
+        motion: np.ndarray,
+        main: rendering.Layers,
+        now: analysis.FrameState,
+        before: analysis.FrameState,
     ) -> dict | None:
         """Where Cycles' vector is known to be wrong the motion points far out of the picture instead.
 
-        Objects that were hidden in the previous frame, and meshes whose number of vertices changed."""
+        Objects that were hidden in the previous frame, and meshes whose number of vertices changed.
+        """
         names = {name for name in before.hidden if name not in now.hidden}
-        names |= {name for name, count in now.vertices.items() if before.vertices.get(name, count) != count}
+        names |= {
+            name
+            for name, count in now.vertices.items()
+            if before.vertices.get(name, count) != count
+        }
         if not names:
             return None
         indices = [index for index, name in self.ids.table.items() if name in names]
@@ -327,12 +389,18 @@ class Exporter:
         if not pixels.any():
             return None
         motion[pixels] = cam.NO_PREVIOUS_POSITION_PX
-        return {"objects": sorted(names), "pixels": int(pixels.sum()), "value": cam.NO_PREVIOUS_POSITION_PX}
+        return {
+            "objects": sorted(names),
+            "pixels": int(pixels.sum()),
+            "value": cam.NO_PREVIOUS_POSITION_PX,
+        }
 
     def _views(self, number: int) -> subsamples.ViewSet:
         source = self.cuts.at(number)
         if source.name_full not in self._view_sets:
-            self._view_sets[source.name_full] = subsamples.ViewSet(self.scene, source, self.positions)
+            self._view_sets[source.name_full] = subsamples.ViewSet(
+                self.scene, source, self.positions
+            )
         return self._view_sets[source.name_full]
 
     def _render_samples(
@@ -353,12 +421,16 @@ class Exporter:
                     self.view_layer.material_override = None
         renders = []
         for index, light in enumerate(self.light.lights if len(self.light.lights) > 1 else [None]):
-            rendering.request_passes(self.view_layer, self.light.passes | (geometry if index == 0 else set()))
+            rendering.request_passes(
+                self.view_layer, self.light.passes | (geometry if index == 0 else set())
+            )
             if light is None:
                 renders.append(views.render(self.view_layer, self.frame, depsgraph, self.folder))
             else:
                 with lighting.only_light(self.light, light):
-                    renders.append(views.render(self.view_layer, self.frame, depsgraph, self.folder))
+                    renders.append(
+                        views.render(self.view_layer, self.frame, depsgraph, self.folder)
+                    )
         return renders
 
     def _subsample_part(
@@ -380,7 +452,9 @@ class Exporter:
             renders = self._render_samples(views, wants_color, wants_geometry)
             seconds = sum(layers.seconds for layers in renders)
             if self.static:
-                self._static_samples = renders  # sub-samples are not jittered: they serve all frames
+                self._static_samples = (
+                    renders  # sub-samples are not jittered: they serve all frames
+                )
         names: list[str] = []
         kinds: list[str] = []
         planes: list[np.ndarray] = []
@@ -394,7 +468,9 @@ class Exporter:
                 for view in views.names
             ]
             centre = {"depth": depth, "normal": main.get("Normal"), "id": ids}
-            mask = subsamples.surface_mask(centre, samples, self.frame, camera, offset, self.positions)
+            mask = subsamples.surface_mask(
+                centre, samples, self.frame, camera, offset, self.positions
+            )
             names.append("mask")
             kinds.append("uint")
             planes.append(mask)
@@ -412,7 +488,10 @@ class Exporter:
         pixels = np.stack([plane.astype(np.float64) for plane in planes], axis=-1)
         if len(set(kinds)) == 1:
             pixels = pixels.astype(np.float32)
-        return exr.Part("subsamples", tuple(names), tuple(kinds), pixels, self.settings.compression), seconds
+        return (
+            exr.Part("subsamples", tuple(names), tuple(kinds), pixels, self.settings.compression),
+            seconds,
+        )
 
     def _export_truth(self, number: int, path: str) -> dict:
         self._go_to(number)
@@ -425,7 +504,12 @@ class Exporter:
             layers = rendering.render(self.scene, self.view_layer, self.folder)
             seconds += layers.seconds
             color = lighting.compose(self.light, [layers])[:, :, :3]
-            parts.append(exr.Part(half, ("R", "G", "B"), ("float",) * 3, color, self.settings.compression))
+            parts.append(
+                exr.Part(half, ("R", "G", "B"), ("float",) * 3, color, self.settings.compression)
+            )
         exr.write_parts(path, parts)
         sizes = exr.part_bytes(path)
-        return {"render_seconds": {"truth": round(seconds, 4)}, "bytes": {"truth": sum(sizes.values())}}
+        return {
+            "render_seconds": {"truth": round(seconds, 4)},
+            "bytes": {"truth": sum(sizes.values())},
+        }

@@ -50,7 +50,9 @@ def write_parts(path: str, parts: list[Part]) -> None:
         spec = oiio.ImageSpec(width, height, count, _oiio_type(oiio, part.types[0]))
         pixels = np.ascontiguousarray(part.pixels)
         if len(set(part.types)) > 1:
-            spec.channelformats = tuple(oiio.TypeDesc(_oiio_type(oiio, kind)) for kind in part.types)
+            spec.channelformats = tuple(
+                oiio.TypeDesc(_oiio_type(oiio, kind)) for kind in part.types
+            )
             # One array feeds channels of several types: OIIO maps 0..1 to the range of an integer channel, and
             # double holds every 32-bit integer and every float exactly on that way.
             pixels = pixels.astype(np.float64)
@@ -69,9 +71,13 @@ def write_parts(path: str, parts: list[Part]) -> None:
             raise SceneError(f"{path}: cannot be written: {output.geterror()}")
         for index, (spec, pixels) in enumerate(zip(specs, arrays)):
             if index and not output.open(temporary, spec, "AppendSubimage"):
-                raise SceneError(f"{path}: part '{parts[index].name}' cannot be written: {output.geterror()}")
+                raise SceneError(
+                    f"{path}: part '{parts[index].name}' cannot be written: {output.geterror()}"
+                )
             if not output.write_image(pixels):
-                raise SceneError(f"{path}: part '{parts[index].name}' cannot be written: {output.geterror()}")
+                raise SceneError(
+                    f"{path}: part '{parts[index].name}' cannot be written: {output.geterror()}"
+                )
         if not output.close():
             raise SceneError(f"{path}: cannot be completed: {output.geterror()}; is the disk full?")
         os.replace(temporary, path)
@@ -121,7 +127,9 @@ def part_bytes(path: str) -> dict[str, int]:
         if not attributes:
             break
         names.append(attributes.get("name", b"\0")[:].rstrip(b"\0").decode())
-        chunk_counts.append(struct.unpack("<i", attributes["chunkCount"])[0] if "chunkCount" in attributes else 0)
+        chunk_counts.append(
+            struct.unpack("<i", attributes["chunkCount"])[0] if "chunkCount" in attributes else 0
+        )
         if not multipart:
             break
     if not multipart:

@@ -46,7 +46,12 @@ def build_parser() -> argparse.ArgumentParser:
         description="Exports an animation as a shot for aaresolve. The .blend file is never changed.",
     )
     add = parser.add_argument
-    add("--out", required=True, metavar="SHOT", help="folder of the shot; an interrupted export resumes there")
+    add(
+        "--out",
+        required=True,
+        metavar="SHOT",
+        help="folder of the shot; an interrupted export resumes there",
+    )
     add("--frames", metavar="LIST", help="frames, e.g. 1-16 or 1,4,8 (default: the scene's range)")
     add(
         "--for",
@@ -70,7 +75,13 @@ def build_parser() -> argparse.ArgumentParser:
         metavar="N",
         help="shading samples per pixel, all at one point: geometry stays aliased (default 1)",
     )
-    add("--truth-samples", type=int, default=256, metavar="N", help="samples per pixel and half of the truth (256)")
+    add(
+        "--truth-samples",
+        type=int,
+        default=256,
+        metavar="N",
+        help="samples per pixel and half of the truth (256)",
+    )
     add(
         "--truth-frames",
         default="all",
@@ -78,8 +89,18 @@ def build_parser() -> argparse.ArgumentParser:
         help="frames with ground truth: all, none or e.g. 1,8,16 (all); a static shot has one for all frames",
     )
     add("--jitter", default="halton23", metavar="SEQUENCE", help=f"default halton23. {sequences}")
-    add("--period", type=int, default=16, metavar="N", help="frames after which the jitter repeats (16)")
-    add("--jitter-centred", action="store_true", help="subtract the mean of one period of the jitter")
+    add(
+        "--period",
+        type=int,
+        default=16,
+        metavar="N",
+        help="frames after which the jitter repeats (16)",
+    )
+    add(
+        "--jitter-centred",
+        action="store_true",
+        help="subtract the mean of one period of the jitter",
+    )
     add(
         "--subsamples",
         default=None,
@@ -99,12 +120,26 @@ def build_parser() -> argparse.ArgumentParser:
         metavar=("R", "G", "B"),
         help="ambient radiance of noise-free light, linear (default: the mean of the world, where it lights surfaces)",
     )
-    add("--color-type", choices=("float", "half"), default="float", help="type of colour and albedo (float)")
-    add("--compression", choices=("zip", "zips", "none", "piz", "rle"), default="zip", help="of every part (zip)")
+    add(
+        "--color-type",
+        choices=("float", "half"),
+        default="float",
+        help="type of colour and albedo (float)",
+    )
+    add(
+        "--compression",
+        choices=("zip", "zips", "none", "piz", "rle"),
+        default="zip",
+        help="of every part (zip)",
+    )
     add("--view-layer", metavar="NAME", help="view layer to render (default: the only one in use)")
     add("--no-instance-ids", action="store_true", help="instances share the id of their source")
     add("--name", help="name of the shot (default: that of the folder)")
-    add("--source", metavar="HASH", help="identity of the scene, to notice changes (default: SHA-256 of the .blend)")
+    add(
+        "--source",
+        metavar="HASH",
+        help="identity of the scene, to notice changes (default: SHA-256 of the .blend)",
+    )
     add("--overwrite", action="store_true", help="replace an export with other settings")
     add(
         "--claim-timeout",
@@ -128,10 +163,14 @@ def settings_from(arguments: argparse.Namespace, scene: bpy.types.Scene) -> Sett
     passes = registry.required_passes(choices)
     for name in filter(None, (part.strip() for part in arguments.passes.split(","))):
         if name not in registry.PASSES:
-            raise UsageError(f"--passes: unknown pass '{name}'; known: {', '.join(registry.PASSES)}")
+            raise UsageError(
+                f"--passes: unknown pass '{name}'; known: {', '.join(registry.PASSES)}"
+            )
         passes.add(name)
     if arguments.jitter not in jitter.SEQUENCES:
-        raise UsageError(f"--jitter: unknown sequence '{arguments.jitter}'; known: {', '.join(jitter.SEQUENCES)}")
+        raise UsageError(
+            f"--jitter: unknown sequence '{arguments.jitter}'; known: {', '.join(jitter.SEQUENCES)}"
+        )
     _check_range("--period", arguments.period, 1, 1 << 20)
     _check_range("--samples", arguments.samples, 1, 1 << 16)
     _check_range("--truth-samples", arguments.truth_samples, 1, 1 << 20)
@@ -147,7 +186,9 @@ def settings_from(arguments: argparse.Namespace, scene: bpy.types.Scene) -> Sett
         jitter.pattern_positions(pattern)
     except ValueError:
         known = ", ".join(jitter.D3D_PATTERNS)
-        raise UsageError(f"--subsamples: expected {known} or grid1 to grid8, found '{pattern}'") from None
+        raise UsageError(
+            f"--subsamples: expected {known} or grid1 to grid8, found '{pattern}'"
+        ) from None
     if arguments.subsamples and not passes & {"subsamples", "subsampleColor"}:
         raise UsageError("--subsamples: has no effect, none of the methods reads sub-samples")
     frames = (
@@ -220,7 +261,9 @@ def run(argv: list[str]) -> int:
         summary = exporter.run(store)
         seconds = time.perf_counter() - started
         finished = f", {summary.skipped} were finished before" if summary.skipped else ""
-        elsewhere = f", {summary.elsewhere} are being made by other processes" if summary.elsewhere else ""
+        elsewhere = (
+            f", {summary.elsewhere} are being made by other processes" if summary.elsewhere else ""
+        )
         reporter.say(
             "done",
             f"{os.path.join(settings.out, 'shot.json')}: {summary.rendered} pictures in {seconds:.1f} s"

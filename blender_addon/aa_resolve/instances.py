@@ -21,13 +21,17 @@ from .errors import SceneError
 
 CHANNEL = "AA Instance"
 _UNUSED = 2147483647  # fills persistent ids up
-_TOLERANCE = 1.0e-6  # of Random in [0, 1]: it went through float and, with many samples, through a mean
+_TOLERANCE = (
+    1.0e-6  # of Random in [0, 1]: it went through float and, with many samples, through a mean
+)
 
 
 class ObjectIds:
     """Sets the indices of the open scene's objects and reads ids from renders."""
 
-    def __init__(self, scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer, tell_instances: bool) -> None:
+    def __init__(
+        self, scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer, tell_instances: bool
+    ) -> None:
         self.notes: list[str] = []
         self.table: dict[int, str] = {0: ""}
         for index, item in enumerate(sorted(bpy.data.objects, key=lambda item: item.name_full), 1):
@@ -72,7 +76,10 @@ class ObjectIds:
                     identity = 0x80000000 | (identity + 1) & 0x7FFFFFFF
                 taken[identity] = label
                 ids.append(identity)
-            values = np.array([np.float32(random) * np.float32(1.0 / 4294967295.0) for random, _ in pairs], np.float64)
+            values = np.array(
+                [np.float32(random) * np.float32(1.0 / 4294967295.0) for random, _ in pairs],
+                np.float64,
+            )
             self._instances[indices[source]] = values, np.array(ids, np.uint32)
         self._names.update(taken)
 
@@ -94,9 +101,15 @@ class ObjectIds:
             if not pixels.any():
                 continue
             seen = random[pixels]
-            right = np.clip(np.searchsorted(values, seen), 1, len(values) - 1) if len(values) > 1 else np.zeros_like(seen, int)
+            right = (
+                np.clip(np.searchsorted(values, seen), 1, len(values) - 1)
+                if len(values) > 1
+                else np.zeros_like(seen, int)
+            )
             left = np.maximum(right - 1, 0)
-            nearest = np.where(np.abs(values[left] - seen) <= np.abs(values[right] - seen), left, right)
+            nearest = np.where(
+                np.abs(values[left] - seen) <= np.abs(values[right] - seen), left, right
+            )
             matched = np.abs(values[nearest] - seen) <= _TOLERANCE
             ids[pixels] = np.where(matched, identities[nearest], np.uint32(source))
         return ids
@@ -118,7 +131,10 @@ def _may_instance(scene: bpy.types.Scene) -> bool:
     for item in bpy.data.objects:
         if item.instance_type != "NONE":
             return True
-        if any(system.settings.render_type in ("OBJECT", "COLLECTION") for system in item.particle_systems):
+        if any(
+            system.settings.render_type in ("OBJECT", "COLLECTION")
+            for system in item.particle_systems
+        ):
             return True
         if any(modifier.type == "NODES" and modifier.node_group for modifier in item.modifiers):
             return True
@@ -205,12 +221,16 @@ def _opacity(tree: bpy.types.NodeTree, socket: bpy.types.NodeSocket):
         alpha = node.inputs["Alpha"]
         return alpha.links[0].from_socket if alpha.is_linked else float(alpha.default_value)
     if node.bl_idname == "NodeReroute":
-        return _opacity(tree, node.inputs[0].links[0].from_socket) if node.inputs[0].is_linked else 1.0
+        return (
+            _opacity(tree, node.inputs[0].links[0].from_socket) if node.inputs[0].is_linked else 1.0
+        )
     if node.bl_idname == "ShaderNodeGroup":
         return None
     if node.bl_idname in ("ShaderNodeMixShader", "ShaderNodeAddShader"):
         shaders = [item for item in node.inputs if item.type == "SHADER"]
-        parts = [_opacity(tree, item.links[0].from_socket) if item.is_linked else 0.0 for item in shaders]
+        parts = [
+            _opacity(tree, item.links[0].from_socket) if item.is_linked else 0.0 for item in shaders
+        ]
         if None in parts:
             return None
         if parts[0] == parts[1] == 1.0:

@@ -153,7 +153,8 @@ def _raw(sequence: str, index: int, period: int) -> Offset:
 def jitter_at(sequence: str, index: int, period: int, centre: bool = False) -> Offset:
     """Jitter of the ``index``-th frame (from 0) of a shot; it repeats after ``period`` frames.
 
-    ``centre`` subtracts the mean of one period, which a finite block of most sequences does not have at 0."""
+    ``centre`` subtracts the mean of one period, which a finite block of most sequences does not have at 0.
+    """
     x, y = _raw(sequence, index, period)
     if centre:
         block = [_raw(sequence, n, period) for n in range(period)]

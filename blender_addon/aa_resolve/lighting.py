@@ -52,7 +52,10 @@ def lights_of(scene: bpy.types.Scene) -> list[bpy.types.Object]:
     return [
         item
         for item in sorted(bpy.data.objects, key=lambda item: item.name_full)
-        if item.type == "LIGHT" and item.users > 0 and not item.hide_render and _is_reachable(scene, item)
+        if item.type == "LIGHT"
+        and item.users > 0
+        and not item.hide_render
+        and _is_reachable(scene, item)
     ]
 
 
@@ -105,13 +108,20 @@ def noise_causes(scene: bpy.types.Scene, samples: int) -> list[str]:
         if light.type == "AREA":
             causes.append(f"area light '{item.name}'")
         elif light.type == "SUN" and light.angle > 0.0:
-            causes.append(f"sun '{item.name}' with an angle of {math.degrees(light.angle):.2g} degrees")
+            causes.append(
+                f"sun '{item.name}' with an angle of {math.degrees(light.angle):.2g} degrees"
+            )
         elif light.type in ("POINT", "SPOT") and light.shadow_soft_size > 0.0:
-            causes.append(f"{light.type.lower()} light '{item.name}' with a radius of {light.shadow_soft_size:.2g} m")
+            causes.append(
+                f"{light.type.lower()} light '{item.name}' with a radius of {light.shadow_soft_size:.2g} m"
+            )
     world = scene.world
     if world and world.cycles_visibility.diffuse:
         causes.append("light from the world")
-    if scene.cycles.max_bounces > 0 and scene.cycles.diffuse_bounces + scene.cycles.glossy_bounces > 0:
+    if (
+        scene.cycles.max_bounces > 0
+        and scene.cycles.diffuse_bounces + scene.cycles.glossy_bounces > 0
+    ):
         causes.append("indirect light")
     if emissive_materials():
         causes.append("meshes that emit light")
@@ -147,7 +157,9 @@ def mean_world_radiance(scene: bpy.types.Scene, folder: str) -> tuple[float, flo
         rendering.prepare(empty, layer)
         rendering.request_passes(layer, {"Depth"})
         rendering.sample_pixel_area(empty, 16, 0)
-        picture = rendering.render(empty, layer, folder).get("Combined")[:, :, :3].astype(np.float64)
+        picture = (
+            rendering.render(empty, layer, folder).get("Combined")[:, :, :3].astype(np.float64)
+        )
         weight = np.sin((np.arange(32) + 0.5) / 32.0 * math.pi)[:, None, None]
         mean = (picture * weight).sum(axis=(0, 1)) / (weight.sum() * 64.0)
         return float(mean[0]), float(mean[1]), float(mean[2])
@@ -165,7 +177,9 @@ def set_up(
         plan = LightPlan(model)
         causes = noise_causes(scene, 1)
         if causes:
-            plan.notes.append(f"light as it is; noisy at few samples because of {', '.join(causes)}")
+            plan.notes.append(
+                f"light as it is; noisy at few samples because of {', '.join(causes)}"
+            )
         return plan
     plan = LightPlan(model)
     cycles = scene.cycles
@@ -173,7 +187,9 @@ def set_up(
     if cycles.max_bounces > 0:
         changes.append("no bounces")
     cycles.max_bounces = 0
-    cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = cycles.volume_bounces = 0
+    cycles.diffuse_bounces = (
+        cycles.glossy_bounces
+    ) = cycles.transmission_bounces = cycles.volume_bounces = 0
     cycles.caustics_reflective = cycles.caustics_refractive = False
     compat.set_if_present(cycles, "use_fast_gi", False)
     world = scene.world
@@ -181,7 +197,9 @@ def set_up(
     if world:
         visibility = world.cycles_visibility
         world_lights = visibility.diffuse
-        visibility.diffuse = visibility.glossy = visibility.transmission = visibility.scatter = False
+        visibility.diffuse = (
+            visibility.glossy
+        ) = visibility.transmission = visibility.scatter = False
         world.cycles.sampling_method = "NONE"
     if ambient is not None:
         plan.ambient = ambient
@@ -189,7 +207,9 @@ def set_up(
         plan.ambient = mean_world_radiance(scene, folder)
     if any(plan.ambient):
         red, green, blue = plan.ambient
-        changes.append(f"ambient ({red:.3g}, {green:.3g}, {blue:.3g}) in place of light from the world")
+        changes.append(
+            f"ambient ({red:.3g}, {green:.3g}, {blue:.3g}) in place of light from the world"
+        )
     plan.lights = lights_of(scene)
     changes += [change for change in map(_make_delta, plan.lights) if change]
     emissive = emissive_materials()
@@ -201,7 +221,9 @@ def set_up(
         if item.type == "LIGHT":
             continue  # there the same switches mean whom the light shines on
         # What is left of a path after its first hit could only find emitters, at random.
-        item.visible_diffuse = item.visible_glossy = item.visible_transmission = item.visible_volume_scatter = False
+        item.visible_diffuse = (
+            item.visible_glossy
+        ) = item.visible_transmission = item.visible_volume_scatter = False
     if len(plan.lights) > 1:
         changes.append(f"{len(plan.lights)} lights rendered one by one and added")
     if changes:

@@ -10,7 +10,17 @@ from dataclasses import dataclass, field
 
 from .errors import UsageError
 
-PASSES = ("color", "albedo", "depth", "normal", "object", "motion", "subsamples", "subsampleColor", "edges")
+PASSES = (
+    "color",
+    "albedo",
+    "depth",
+    "normal",
+    "object",
+    "motion",
+    "subsamples",
+    "subsampleColor",
+    "edges",
+)
 
 
 @dataclass(frozen=True)
@@ -50,7 +60,9 @@ def parse_choices(texts: list[str]) -> list[MethodChoice]:
     for name, _ in choices:
         if name not in known:
             near = difflib.get_close_matches(name, known, 1)
-            hint = f"; did you mean '{near[0]}'?" if near else f"; known: {', '.join(sorted(known))}"
+            hint = (
+                f"; did you mean '{near[0]}'?" if near else f"; known: {', '.join(sorted(known))}"
+            )
             raise UsageError(f"--for: unknown method '{name}'{hint}")
     return [MethodChoice(name, parameters) for name, parameters in choices]
 
@@ -80,5 +92,7 @@ def pattern_from(choices: list[MethodChoice], passes: set[str]) -> str | None:
             wishes[choice.id] = f"grid{choice.parameters['N']}"
     if len(set(wishes.values())) > 1:
         listed = ", ".join(f"{name} wants {pattern}" for name, pattern in sorted(wishes.items()))
-        raise UsageError(f"--for: one shot holds one sub-sample pattern, but {listed}; export them as two shots")
+        raise UsageError(
+            f"--for: one shot holds one sub-sample pattern, but {listed}; export them as two shots"
+        )
     return next(iter(wishes.values()), None) if passes else None

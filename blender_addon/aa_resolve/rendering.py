@@ -31,13 +31,17 @@ class Layers:
             if (candidate, view) in self.passes:
                 return self.passes[candidate, view]
         found = ", ".join(sorted({key[0] for key in self.passes}))
-        raise SceneError(f"Cycles delivered no pass '{name}' (found: {found}); is this Blender version supported?")
+        raise SceneError(
+            f"Cycles delivered no pass '{name}' (found: {found}); is this Blender version supported?"
+        )
 
 
 _ORDER = {"R": 0, "G": 1, "B": 2, "A": 3, "X": 0, "Y": 1, "Z": 2, "W": 3, "V": 0}
 
 
-def _group(channels: dict[str, np.ndarray], layer: str, views: tuple[str, ...]) -> dict[tuple[str, str], np.ndarray]:
+def _group(
+    channels: dict[str, np.ndarray], layer: str, views: tuple[str, ...]
+) -> dict[tuple[str, str], np.ndarray]:
     """Gathers ``Layer.Pass[.view].C`` channels to passes."""
     groups: dict[tuple[str, str], dict[str, np.ndarray]] = {}
     for name, pixels in channels.items():
@@ -58,7 +62,12 @@ def _group(channels: dict[str, np.ndarray], layer: str, views: tuple[str, ...]) 
     return result
 
 
-def render(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer, folder: str, views: tuple[str, ...] = ()) -> Layers:
+def render(
+    scene: bpy.types.Scene,
+    view_layer: bpy.types.ViewLayer,
+    folder: str,
+    views: tuple[str, ...] = (),
+) -> Layers:
     """Renders the scene's current frame with its current settings."""
     path = os.path.join(folder, "native.exr")
     scene.render.filepath = path
@@ -66,9 +75,13 @@ def render(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer, folder: str,
     try:
         bpy.ops.render.render(write_still=True, scene=scene.name)
     except RuntimeError as error:
-        raise SceneError(f"Cycles could not render frame {scene.frame_current}: {str(error).strip()}") from error
+        raise SceneError(
+            f"Cycles could not render frame {scene.frame_current}: {str(error).strip()}"
+        ) from error
     if not os.path.exists(path):
-        raise SceneError(f"Cycles wrote no picture for frame {scene.frame_current}; is the temporary folder full?")
+        raise SceneError(
+            f"Cycles wrote no picture for frame {scene.frame_current}; is the temporary folder full?"
+        )
     channels = exr.read_channels(path)
     os.unlink(path)
     passes = _group(channels, view_layer.name, views)
@@ -179,7 +192,9 @@ def unlit_albedo(layers: Layers, view: str = "") -> np.ndarray:
     base = np.maximum(albedo - emission, 0.0)
     reflects = base.max(axis=-1, keepdims=True) > 1.0e-5
     colour = np.where(reflects, base, emission)
-    colours = layers.get("DiffCol", view) + layers.get("TransCol", view) + layers.get("GlossCol", view)
+    colours = (
+        layers.get("DiffCol", view) + layers.get("TransCol", view) + layers.get("GlossCol", view)
+    )
     empty = ~background & (colour.max(axis=-1, keepdims=True) <= 0.0)
     colour = np.where(empty, np.minimum(colours, 1.0), colour)
     return np.where(background, layers.get("Env", view), colour).astype(np.float32)

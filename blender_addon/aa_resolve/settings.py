@@ -21,7 +21,9 @@ def parse_frames(text: str, option: str) -> list[int]:
                 continue
             first, last = int(part[:position]), int(part[position + 1 :])
         except ValueError:
-            raise UsageError(f"{option}: expected frames such as 1-16 or 1,4,8, found '{text}'") from None
+            raise UsageError(
+                f"{option}: expected frames such as 1-16 or 1,4,8, found '{text}'"
+            ) from None
         if last < first:
             raise UsageError(f"{option}: the range '{part}' ends before it begins")
         numbers.update(range(first, last + 1))
@@ -58,7 +60,8 @@ class Settings:
     def fingerprint(self) -> dict:
         """What decides the content of every file: equal fingerprints, equal bytes.
 
-        The number of frames may grow between runs, the first one (where the jitter begins) may not."""
+        The number of frames may grow between runs, the first one (where the jitter begins) may not.
+        """
         wishes = asdict(self)
         for name in ("out", "methods", "truth_frames", "overwrite", "name", "extra"):
             wishes.pop(name)

@@ -51,7 +51,9 @@ def _read_json(path: str) -> dict:
         with open(path, encoding="utf-8") as file:
             return json.load(file)
     except (OSError, ValueError) as error:
-        raise SceneError(f"{path}: cannot be read ({error}); delete the shot folder and export again") from error
+        raise SceneError(
+            f"{path}: cannot be read ({error}); delete the shot folder and export again"
+        ) from error
 
 
 class Store:
@@ -71,8 +73,14 @@ class Store:
                 shutil.rmtree(os.path.join(self.folder, name), ignore_errors=True)
             with contextlib.suppress(FileNotFoundError):
                 os.unlink(os.path.join(self.folder, "shot.json"))
-        if os.path.isdir(self.folder) and not os.path.isdir(self.private) and os.listdir(self.folder):
-            raise UsageError(f"--out: '{self.folder}' is not empty and holds no export; choose a new folder")
+        if (
+            os.path.isdir(self.folder)
+            and not os.path.isdir(self.private)
+            and os.listdir(self.folder)
+        ):
+            raise UsageError(
+                f"--out: '{self.folder}' is not empty and holds no export; choose a new folder"
+            )
         try:
             for name in ("frames", "truth", ".aa/frames", ".aa/truth", ".aa/claims"):
                 os.makedirs(os.path.join(self.folder, name), exist_ok=True)

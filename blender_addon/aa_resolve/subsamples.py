@@ -20,7 +20,9 @@ _PREFIX = "AA Resolve View"
 class ViewSet:
     """K jittered cameras on one source camera, rendered as K views."""
 
-    def __init__(self, scene: bpy.types.Scene, source: bpy.types.Object, positions: list[tuple[float, float]]) -> None:
+    def __init__(
+        self, scene: bpy.types.Scene, source: bpy.types.Object, positions: list[tuple[float, float]]
+    ) -> None:
         self.scene = scene
         self.positions = positions
         self.names = tuple(f"s{index:02d}" for index in range(len(positions)))
@@ -32,7 +34,11 @@ class ViewSet:
             self.cameras.append(camera)
 
     def render(
-        self, view_layer: bpy.types.ViewLayer, frame: cam.Frame, depsgraph: bpy.types.Depsgraph, folder: str
+        self,
+        view_layer: bpy.types.ViewLayer,
+        frame: cam.Frame,
+        depsgraph: bpy.types.Depsgraph,
+        folder: str,
     ) -> rendering.Layers:
         """Renders all views with the current passes, lights and materials."""
         render = self.scene.render
@@ -79,12 +85,17 @@ def override_material() -> bpy.types.Material:
 
 
 def geometry_dissimilarity(
-    point_a: np.ndarray, normal_a: np.ndarray, point_b: np.ndarray, normal_b: np.ndarray, depth: np.ndarray
+    point_a: np.ndarray,
+    normal_a: np.ndarray,
+    point_b: np.ndarray,
+    normal_b: np.ndarray,
+    depth: np.ndarray,
 ) -> np.ndarray:
     """SADP, the sum of absolute dot products (Reshetov 2012): 0 within a plane, sqrt 2 across a right angle, 2 for
     parallel surfaces one behind the other. Points and normals H x W x 3 in one space, float64.
 
-    Coincident points have no direction: there 1 - a.b of the normals decides. A missing normal adds 1."""
+    Coincident points have no direction: there 1 - a.b of the normals decides. A missing normal adds 1.
+    """
     offset = point_b - point_a
     distance = np.sqrt((offset * offset).sum(axis=-1))
     near = distance < 1e-6 * np.maximum(1.0, depth)
@@ -109,13 +120,19 @@ def surface_mask(
     """H x W uint32: bit k is set where sub-sample k lies on the surface of the centre sample.
 
     One k-means step with two clusters on SADP (5.5.2); a sub-sample on another object is as far away as can be.
-    ``centre`` and ``samples`` hold ``depth`` (H x W), ``normal`` (H x W x 3, world) and ``id`` (H x W)."""
+    ``centre`` and ``samples`` hold ``depth`` (H x W), ``normal`` (H x W x 3, world) and ``id`` (H x W).
+    """
     to_view = camera.view[:3, :3]
 
-    def placed(sample: dict[str, np.ndarray], offset: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
+    def placed(
+        sample: dict[str, np.ndarray], offset: tuple[float, float]
+    ) -> tuple[np.ndarray, np.ndarray]:
         x, y = cam.sample_positions(frame, *offset)
         depth = sample["depth"].astype(np.float64)
-        return cam.unproject(x, y, depth, frame, camera), sample["normal"].astype(np.float64) @ to_view.T
+        return (
+            cam.unproject(x, y, depth, frame, camera),
+            sample["normal"].astype(np.float64) @ to_view.T,
+        )
 
     centre_point, centre_normal = placed(centre, jitter)
     centre_empty = centre["depth"] >= cam.BACKGROUND_DEPTH
@@ -128,7 +145,9 @@ def surface_mask(
         distances[index] = np.where(sample["id"] != centre["id"], 2.0, apart)
     farthest = distances.max(axis=0)
     similar = distances <= farthest / 2.0
-    mean_similar = (distances * similar).sum(axis=0) / (similar.sum(axis=0) + 1.0)  # the centre itself counts, with 0
+    mean_similar = (distances * similar).sum(axis=0) / (
+        similar.sum(axis=0) + 1.0
+    )  # the centre itself counts, with 0
     others = len(samples) - similar.sum(axis=0)
     mean_other = (distances * ~similar).sum(axis=0) / np.maximum(others, 1)
     similar = np.abs(distances - mean_similar) <= np.abs(distances - mean_other)

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Jitter means what the shot says: a jittered picture equals the matching sub-samples of one 8 times as large."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import support as t  # noqa: E402
+from support import bpy, np  # noqa: E402
+
+from aa_resolve import analysis, jitter, lighting, rendering  # noqa: E402
+from aa_resolve import camera as cam  # noqa: E402
+
+FACTOR = 8
+CELLS = ((1, 6), (7, 0), (3, 3))  # column and row of the sub-sample, of 8
+
+
+def scattered_cubes(width: int, height: int):
+    """Turned cubes of many sizes: edges of all slopes everywhere in the picture."""
+    scene = t.new_scene(width, height)
+    camera = t.add_camera(scene)
+    random = np.random.default_rng(7)
+    for index in range(40):
+        place = (random.uniform(-4, 4), random.uniform(-2, 3), random.uniform(-2.5, 3.5))
+        item = t.add_object(
+            scene,
+            f"Cube {index}",
+            None,
+            place,
+            random.uniform(0, 3, 3),
+            random.uniform(0.2, 1.1, 3),
+        )
+        item.data.materials.append(t.diffuse(f"Colour {index}", random.uniform(0.1, 0.9, 3)))
+    return scene, camera
+
+
+def recorder(scene):
+    """Renders id and depth of the current camera at a jitter, the way the exporter does."""
+    layer, _ = analysis.refuse_unsuitable(scene, None)
+    rendering.prepare(scene, layer)
+    rendering.request_passes(layer, {"Depth", "IndexOB"})
+    rendering.sample_points(scene, 1)
+    for index, item in enumerate(sorted(bpy.data.objects, key=lambda item: item.name), 1):
+        item.pass_index = index
+    folder = lighting.temporary_folder()
+
+    def record(jittered, x, y):
+        frame = cam.frame_of(scene)
+        jittered.aim(frame, bpy.context.evaluated_depsgraph_get(), x, y)
+        scene.camera = jittered.object
+        layers = rendering.render(scene, layer, folder)
+        return layers.get("IndexOB")[:, :, 0], layers.get("Depth")[:, :, 0]
+
+    return record
+
+
+def compare(scene, camera, label: str, cells=CELLS) -> None:
+    record = recorder(scene)
+    jittered = cam.JitterCamera(scene, camera, "Jittered")
+    render = scene.render
+    width, height = render.resolution_x, render.resolution_y
+    render.resolution_x, render.resolution_y = width * FACTOR, height * FACTOR
+    large_id, large_depth = record(jittered, 0.0, 0.0)
+    render.resolution_x, render.resolution_y = width, height
+    assert len(np.unique(large_id)) > 10, f"{label}: the picture shows too little to prove anything"
+    for column, row in cells:
+        x, y = (column + 0.5) / FACTOR - 0.5, (row + 0.5) / FACTOR - 0.5
+        ids, depth = record(jittered, x, y)
+        expected = large_id[row::FACTOR, column::FACTOR]
+        wrong = int((ids != expected).sum())
+        assert wrong == 0, f"{label}, jitter {x, y}: {wrong} ids differ of {ids.size}"
+        relative = np.abs(depth / large_depth[row::FACTOR, column::FACTOR] - 1.0).max()
+        assert relative < 1e-4, f"{label}, jitter {x, y}: depth differs by {relative}"
+        flipped, _ = record(jittered, x, -y)
+        assert (flipped != expected).any(), f"{label}: a flipped jitter must be seen"
+
+
+def test_all_fits_sizes_and_kinds() -> None:
+    sizes = ((32, 18, 1.0, 1.0), (18, 32, 1.0, 1.0), (30, 20, 1.0, 1.5), (24, 24, 2.0, 1.0))
+    for kind, fit, (width, height, aspect_x, aspect_y) in itertools.product(
+        ("PERSP", "ORTHO"), ("AUTO", "HORIZONTAL", "VERTICAL"), sizes
+    ):
+        scene, camera = scattered_cubes(width, height)
+        scene.render.pixel_aspect_x, scene.render.pixel_aspect_y = aspect_x, aspect_y
+        camera.data.type, camera.data.sensor_fit, camera.data.ortho_scale = kind, fit, 5.0
+        camera.data.sensor_width, camera.data.sensor_height = 36.0, 20.0
+        compare(
+            scene, camera, f"{kind} {fit} {width}x{height} aspect {aspect_x}:{aspect_y}", CELLS[:1]
+        )
+
+
+def test_existing_shift_and_percentage() -> None:
+    scene, camera = scattered_cubes(64, 36)
+    scene.render.resolution_percentage = 50
+    camera.data.shift_x, camera.data.shift_y = 0.13, -0.21
+    compare(scene, camera, "existing shift, 50 %")
+
+
+def test_keyed_shift_and_lens() -> None:
+    scene, camera = scattered_cubes(32, 18)
+    t.key(camera.data, "shift_x", {1: 0.0, 11: 0.5})
+    t.key(camera.data, "lens", {1: 30.0, 11: 60.0})
+    scene.frame_set(5)
+    assert abs(camera.data.shift_x - 0.2) < 1e-6
+    compare(scene, camera, "keyed shift and lens")
+
+
+def test_parent_with_scale() -> None:
+    scene, camera = scattered_cubes(32, 18)
+    parent = bpy.data.objects.new("Parent", None)
+    parent.scale = (2.0, 2.0, 2.0)
+    scene.collection.objects.link(parent)
+    camera.parent = parent
+    camera.location = camera.location / 2.0
+    bpy.context.view_layer.update()
+    compare(scene, camera, "camera under a scaled parent")
+
+
+def test_border() -> None:
+    """A border shows the same samples as the full picture."""
+    scene, camera = scattered_cubes(32, 20)
+    record = recorder(scene)
+    jittered = cam.JitterCamera(scene, camera, "Jittered")
+    full, _ = record(jittered, 0.3, -0.2)
+    scene.render.use_border = True
+    scene.render.border_min_x, scene.render.border_max_x = 0.25, 0.75
+    scene.render.border_min_y, scene.render.border_max_y = 0.1, 0.6
+    frame = cam.frame_of(scene)
+    part, _ = record(jittered, 0.3, -0.2)
+    assert part.shape == (frame.height, frame.width) == (10, 16), part.shape
+    window = full[frame.top : frame.top + frame.height, frame.left : frame.left + frame.width]
+    assert np.array_equal(part, window)
+
+
+def test_sequences() -> None:
+    expected = [(0, -1 / 6), (-1 / 4, 1 / 6), (1 / 4, -7 / 18), (-3 / 8, -1 / 18)]
+    expected += [(1 / 8, 5 / 18), (-1 / 8, -5 / 18), (3 / 8, 1 / 18), (-7 / 16, 7 / 18)]
+    for index, pair in enumerate(expected):
+        assert np.allclose(jitter.jitter_at("halton23", index, 16), pair, atol=1e-12), index
+    rr2 = [(0, 0), (1 / 2, 2 / 3), (1 / 4, 1 / 3), (3 / 4, 2 / 9), (1 / 8, 8 / 9), (5 / 8, 5 / 9)]
+    for index, (u, v) in enumerate(rr2):
+        assert np.allclose(
+            jitter.jitter_at("thesis", index, 16), (u - 0.5, v - 0.5), atol=1e-12
+        ), index
+    mean = np.mean([jitter.jitter_at("halton23", index, 16) for index in range(16)], axis=0)
+    assert np.allclose(mean, (-0.0293, -0.0370), atol=5e-5), mean
+    for name in jitter.SEQUENCES:
+        for index in range(40):
+            x, y = jitter.jitter_at(name, index, 16)
+            assert -0.5 <= x <= 0.5 and -0.5 <= y <= 0.5, (name, index, x, y)
+            assert (x, y) == jitter.jitter_at(name, index + 16, 16), (name, index)
+        centred = np.mean([jitter.jitter_at(name, index, 16, True) for index in range(16)], axis=0)
+        assert np.allclose(centred, 0.0, atol=1e-12), (name, centred)
+    for name, count in (("d3d2", 2), ("d3d4", 4), ("d3d8", 8), ("d3d16", 16), ("grid3", 9)):
+        positions = jitter.pattern_positions(name)
+        assert len(set(positions)) == count
+        assert name == "d3d16" or np.allclose(np.mean(positions, axis=0), 0.0), name
+
+
+if __name__ == "__main__":
+    t.main(
+        test_sequences,
+        test_border,
+        test_parent_with_scale,
+        test_existing_shift_and_percentage,
+        test_keyed_shift_and_lens,
+        test_all_fits_sizes_and_kinds,
+    )

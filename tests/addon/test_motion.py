@@ -1,0 +1,419 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Motion is exact: every pixel's motion against the projection of the very point it shows.
+
+The point is found from the exported depth; where it was a frame ago follows from the known affine movement of its
+object; both are projected by formulas of the support module.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import support as t  # noqa: E402
+from support import Matrix, Vector, bpy, np  # noqa: E402
+
+LIMIT_PX = 0.001
+FRAME = 5
+
+
+def stage(width: int = 64, height: int = 36):
+    scene = t.new_scene(width, height)
+    camera = t.add_camera(scene)
+    t.add_object(scene, "Still", None, (-1.5, 1.0, 0.4), (0.3, 0.2, 0.5))
+    t.add_object(scene, "Behind", None, (0.5, 4.0, 1.0), (0.1, 0.7, 0.2), (2.0, 1.0, 1.5))
+    return scene, camera
+
+
+def placements(scene, frame: int) -> tuple[dict[str, np.ndarray], object]:
+    """World matrix by object name, and the camera's projection, at a frame."""
+    scene.frame_set(frame)
+    bpy.context.view_layer.update()
+    render = scene.render
+    matrices = {item.name: np.array(item.matrix_world, np.float64) for item in scene.objects}
+    projection = t.Projection(scene.camera, render.resolution_x, render.resolution_y)
+    return matrices, projection
+
+
+def check(scene, label: str, moves=None, minimum: float = 0.3, limit: float = LIMIT_PX) -> dict:
+    """Exports frame 5 after 4 and compares.
+
+    ``moves``: object name -> function(points, name in the shot) that takes current world points to those of the frame
+    before, for everything that is not a rigid object."""
+    before, projection_before = placements(scene, FRAME - 1)
+    now, projection_now = placements(scene, FRAME)
+    out = os.path.join(t.temporary_folder(), "shot")
+    shot = t.export(
+        out, "--frames", f"{FRAME - 1}-{FRAME}", "--for", "taaSimplest",
+        "--passes", "object,depth", "--truth-frames", "none",
+    )  # fmt: skip
+    entry = shot["frames"][1]
+    path = os.path.join(out, entry["file"])
+    motion = t.stacked(t.read_part(path, "motion"), "motion.X motion.Y").astype(np.float64)
+    depth = t.read_part(path, "depth")["Z"].astype(np.float64)
+    ids = t.read_part(path, "object")["id"]
+    height, width = depth.shape
+    x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
+    x, y = x + entry["jitter"][0], y + entry["jitter"][1]
+    worst, largest = 0.0, 0.0
+    for identity in np.unique(ids):
+        pixels = ids == identity
+        here = np.stack([x[pixels], y[pixels]], -1)
+        if identity == 0:
+            direction = projection_now.unproject(x[pixels], y[pixels], np.full(pixels.sum(), 1.0e7))
+            origin = projection_now.unproject(x[pixels][:1], y[pixels][:1], np.zeros(1))
+            past = projection_before.project(direction if projection_now.perspective else origin)
+            if not projection_now.perspective:
+                past = here  # an orthographic camera sees one direction of the background
+        else:
+            name = shot["objects"][str(identity)]
+            points = projection_now.unproject(x[pixels], y[pixels], depth[pixels])
+            if moves and name.split(" #")[0] in moves:
+                points = moves[name.split(" #")[0]](points, name)
+            else:
+                move = before[name] @ np.linalg.inv(now[name])
+                points = points @ move[:3, :3].T + move[:3, 3]
+            past = projection_before.project(points)
+        expected = here - past
+        error = np.abs(motion[pixels] - expected).max()
+        worst, largest = max(worst, error), max(largest, np.abs(expected).max())
+        assert (
+            error <= limit
+        ), f"{label}: id {identity}: {error:.5f} px (motion up to {np.abs(expected).max():.2f})"
+    assert largest >= minimum, f"{label}: nothing moved ({largest} px)"
+    print(
+        f"     {label}: largest motion {largest:.2f} px, worst error {worst:.6f} px",
+        file=sys.stderr,
+    )
+    return shot
+
+
+def test_camera() -> None:
+    for label, path, values in (
+        ("pan", "location", {1: (0, -8, 1), 11: (1.5, -8, 1.4)}),
+        ("dolly", "location", {1: (0, -8, 1), 11: (0.3, -5, 1)}),
+        ("turn", "rotation_euler", {1: (1.5, 0, 0), 11: (1.52, 0.0, 0.3)}),
+        ("roll", "rotation_euler", {1: (1.5, 0, 0), 11: (1.5, 0.4, 0)}),
+    ):
+        scene, camera = stage()
+        t.key(camera, path, values)
+        check(scene, label)
+
+
+def test_lens() -> None:
+    scene, camera = stage()
+    t.key(camera.data, "lens", {1: 30.0, 11: 60.0})
+    check(scene, "zoom")
+    scene, camera = stage()
+    t.key(camera.data, "lens", {1: 30.0, 11: 50.0})
+    t.key(camera, "rotation_euler", {1: (1.5, 0, 0), 11: (1.5, 0.1, 0.3)})
+    t.key(camera.data, "shift_x", {1: 0.0, 11: 0.3})
+    t.key(camera.data, "shift_y", {1: 0.1, 11: -0.1})
+    check(scene, "zoom, turn and shift")
+    scene, camera = stage()
+    camera.data.type, camera.data.ortho_scale = "ORTHO", 7.0
+    t.key(camera.data, "ortho_scale", {1: 6.0, 11: 9.0})
+    check(scene, "orthographic zoom")
+    scene, camera = stage()
+    camera.data.type, camera.data.ortho_scale = "ORTHO", 7.0
+    t.key(camera, "location", {1: (0, -8, 1), 11: (1.5, -8, 0.4)})
+    t.key(camera.data, "shift_x", {1: 0.0, 11: 0.2})
+    check(scene, "orthographic pan and shift")
+
+
+def test_border() -> None:
+    """In a border the motion is that of the same pixels of the full picture."""
+
+    def make():
+        scene, camera = stage()
+        t.key(camera.data, "lens", {1: 30.0, 11: 60.0})
+        t.key(camera, "rotation_euler", {1: (1.5, 0, 0), 11: (1.5, 0.1, 0.3)})
+        return scene
+
+    def motion_of(scene):
+        out = os.path.join(t.temporary_folder(), "shot")
+        shot = t.export(out, "--frames", "4-5", "--for", "taaSimplest", "--truth-frames", "none")
+        path = os.path.join(out, shot["frames"][1]["file"])
+        return t.stacked(t.read_part(path, "motion"), "motion.X motion.Y"), shot
+
+    full, _ = motion_of(make())
+    scene = make()
+    scene.render.use_border = True
+    scene.render.border_min_x, scene.render.border_max_x = 0.25, 0.75
+    scene.render.border_min_y, scene.render.border_max_y = 0.25, 0.5
+    part, shot = motion_of(scene)
+    left, top = shot["window"]["offset"]
+    height, width = part.shape[:2]
+    assert (left, top, width, height) == (16, 18, 32, 9), (left, top, width, height)
+    assert np.abs(part - full[top : top + height, left : left + width]).max() <= LIMIT_PX
+
+
+def test_rigid() -> None:
+    scene, camera = stage()
+    moving = t.add_object(scene, "Moving", None, (0, -1, 0.5))
+    t.key(moving, "location", {1: (-1.5, -1, 0), 11: (1.5, -0.5, 1)})
+    t.key(moving, "rotation_euler", {1: (0, 0, 0), 11: (0.3, 0.2, 0.9)})
+    t.key(moving, "scale", {1: (1, 1, 1), 11: (1.5, 0.8, 1.2)})
+    t.key(camera, "location", {1: (0, -8, 1), 11: (0.5, -7, 1.4)})
+    check(scene, "move, turn and scale under a moving camera")
+
+
+def test_shape_key() -> None:
+    """The key stretches the cube along x: an affine map at every value."""
+    scene, _ = stage()
+    item = t.add_object(scene, "Shape", None, (0.4, -1, 0.5), (0, 0, 0.4))
+    item.shape_key_add(name="Basis")
+    stretched = item.shape_key_add(name="Stretched")
+    for point in stretched.data:
+        point.co.x *= 3.0
+    t.key(stretched, "value", {1: 0.0, 11: 1.0})
+    world = np.array(item.matrix_basis, np.float64)
+
+    def move(points, _name):
+        local = (points - world[:3, 3]) @ np.linalg.inv(world[:3, :3]).T
+        local[:, 0] *= (1 + 2 * 0.3) / (1 + 2 * 0.4)
+        return local @ world[:3, :3].T + world[:3, 3]
+
+    check(scene, "shape key", {"Shape": move})
+
+
+def test_armature() -> None:
+    scene, _ = stage()
+    data = bpy.data.armatures.new("Bones")
+    rig = bpy.data.objects.new("Rig", data)
+    scene.collection.objects.link(rig)
+    bpy.context.view_layer.objects.active = rig
+    bpy.ops.object.mode_set(mode="EDIT")
+    bone = data.edit_bones.new("Bone")
+    bone.head, bone.tail = (0, 0, 0), (0, 0, 1)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    item = t.add_object(scene, "Skin", None, (0, 0, 0))
+    for vertex in item.data.vertices:
+        vertex.co += Vector((0.8, -1.0, 0.6))
+    group = item.vertex_groups.new(name="Bone")
+    group.add(range(8), 1.0, "REPLACE")
+    item.modifiers.new("Armature", "ARMATURE").object = rig
+    pose = rig.pose.bones["Bone"]
+    pose.rotation_mode = "XYZ"
+    pose.keyframe_insert("rotation_euler", frame=1)
+    pose.rotation_euler = (0.2, 0.8, 0.3)
+    pose.keyframe_insert("rotation_euler", frame=11)
+    poses = {}
+    for frame in (FRAME - 1, FRAME):
+        scene.frame_set(frame)
+        bpy.context.view_layer.update()
+        rest = data.bones["Bone"].matrix_local
+        poses[frame] = np.array(pose.matrix @ rest.inverted(), np.float64)
+    move = poses[FRAME - 1] @ np.linalg.inv(poses[FRAME])
+    check(scene, "armature", {"Skin": lambda points, _: points @ move[:3, :3].T + move[:3, 3]})
+
+
+def test_collection_instance() -> None:
+    scene, _ = stage()
+    source = bpy.data.collections.new("Source")
+    part = bpy.data.objects.new("Part", t.cube_mesh("Part", 0.8))
+    source.objects.link(part)
+    empty = bpy.data.objects.new("Instance", None)
+    empty.instance_type, empty.instance_collection = "COLLECTION", source
+    scene.collection.objects.link(empty)
+    t.key(empty, "location", {1: (-1, -1.5, 0), 11: (1.4, -1, 1)})
+    t.key(empty, "rotation_euler", {1: (0, 0, 0), 11: (0.3, 0.2, 0.9)})
+    matrices = {}
+    for frame in (FRAME - 1, FRAME):
+        scene.frame_set(frame)
+        bpy.context.view_layer.update()
+        matrices[frame] = np.array(empty.matrix_world, np.float64)
+    move = matrices[FRAME - 1] @ np.linalg.inv(matrices[FRAME])
+    shot = check(
+        scene,
+        "collection instance",
+        {"Part": lambda points, _: points @ move[:3, :3].T + move[:3, 3]},
+    )
+    assert any(name.startswith("Part #") for name in shot["objects"].values()), shot["objects"]
+
+
+def instances_of(name: str) -> dict[str, np.ndarray]:
+    """Matrices of the instances of an object by their persistent number."""
+    found = {}
+    for instance in bpy.context.evaluated_depsgraph_get().object_instances:
+        if instance.is_instance and instance.object.name == name:
+            number = ".".join(str(part) for part in instance.persistent_id if part != 2147483647)
+            found[number] = np.array(instance.matrix_world, np.float64)
+    return found
+
+
+def check_instances(scene, label: str, name: str) -> dict:
+    """Like ``check`` for instances, which are known by their number in the names of the shot."""
+    scene.frame_set(FRAME - 1)
+    before = instances_of(name)
+    scene.frame_set(FRAME)
+    now = instances_of(name)
+    assert len(now) > 2 and set(now) == set(
+        before
+    ), f"{label}: {len(before)} and {len(now)} instances"
+
+    def move(points, label_in_shot):
+        number = label_in_shot.split(" #")[1].split(" of ")[0]
+        change = before[number] @ np.linalg.inv(now[number])
+        return points @ change[:3, :3].T + change[:3, 3]
+
+    shot = check(scene, label, {name: move})
+    seen = [value for value in shot["objects"].values() if value.startswith(f"{name} #")]
+    assert len(seen) > 2 and len(set(seen)) == len(seen), seen
+    return shot
+
+
+def test_particles() -> None:
+    """Cubes on a moving emitter: particle instances."""
+    scene, _ = stage()
+    source = t.add_object(scene, "Grain", t.cube_mesh("Grain", 1.0), (0, -40, 0))
+    mesh = bpy.data.meshes.new("Emitter")
+    mesh.from_pydata([(-2, -1, 0), (2, -1, 0), (2, -1, 2.4), (-2, -1, 2.4)], [], [(0, 1, 2, 3)])
+    emitter = t.add_object(scene, "Emitter", mesh)
+    emitter.modifiers.new("Particles", "PARTICLE_SYSTEM")
+    settings = emitter.particle_systems[0].settings
+    settings.count, settings.frame_start, settings.frame_end = 14, -20, -10
+    settings.lifetime, settings.physics_type = 1000, "NEWTON"
+    settings.normal_factor, settings.effector_weights.gravity = 0.0, 0.0
+    settings.object_factor, settings.factor_random = 0.0, 1.2
+    settings.render_type, settings.instance_object, settings.particle_size = "OBJECT", source, 0.35
+    for frame in range(-20, FRAME + 2):
+        scene.frame_set(frame)
+    check_instances(scene, "particles", "Grain")
+
+
+def test_geometry_nodes() -> None:
+    """Instances on the points of a grid whose object moves."""
+    scene, _ = stage()
+    source = t.add_object(scene, "Leaf", t.cube_mesh("Leaf", 0.5), (0, -40, 0))
+    mesh = bpy.data.meshes.new("Points")
+    mesh.from_pydata([(x, -1, z) for x in (-1.5, -0.5, 0.5, 1.5) for z in (0.1, 1.2)], [], [])
+    item = t.add_object(scene, "Points", mesh)
+    tree = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
+    tree.inputs.new("NodeSocketGeometry", "Geometry")
+    tree.outputs.new("NodeSocketGeometry", "Geometry")
+    start, end = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+    scatter = tree.nodes.new("GeometryNodeInstanceOnPoints")
+    info = tree.nodes.new("GeometryNodeObjectInfo")
+    info.inputs["Object"].default_value = source
+    info.inputs["As Instance"].default_value = True
+    tree.links.new(start.outputs[0], scatter.inputs["Points"])
+    tree.links.new(info.outputs["Geometry"], scatter.inputs["Instance"])
+    tree.links.new(scatter.outputs[0], end.inputs[0])
+    item.modifiers.new("Scatter", "NODES").node_group = tree
+    t.key(item, "location", {1: (-1, 0, 0), 11: (1, 0.5, 0.4)})
+    t.key(item, "rotation_euler", {1: (0, 0, 0), 11: (0.1, 0.2, 0.3)})
+    check_instances(scene, "geometry nodes", "Leaf")
+
+
+def test_hidden_before_is_invalid() -> None:
+    """What was hidden a frame ago has no motion; the shot says so instead of giving 0."""
+    scene, _ = stage()
+    item = t.add_object(scene, "Appears", None, (0, -2, 0.5))
+    t.key(item, "location", {1: (-1.5, -2, 0.5), 11: (1.5, -2, 0.5)})
+    item.hide_render = True
+    item.keyframe_insert("hide_render", frame=FRAME - 1)
+    item.hide_render = False
+    item.keyframe_insert("hide_render", frame=FRAME)
+    out = os.path.join(t.temporary_folder(), "shot")
+    shot = t.export(
+        out,
+        "--frames",
+        "4-6",
+        "--for",
+        "taaSimplest",
+        "--passes",
+        "object",
+        "--truth-frames",
+        "none",
+    )
+    entry = shot["frames"][1]
+    identity = {name: int(key) for key, name in shot["objects"].items()}["Appears"]
+    path = os.path.join(out, entry["file"])
+    pixels = t.read_part(path, "object")["id"] == identity
+    motion = t.read_part(path, "motion")["motion.X"]
+    assert pixels.any() and (motion[pixels] == 1e6).all() and (np.abs(motion[~pixels]) < 1e3).all()
+    assert entry["motion_invalid"] == {
+        "objects": ["Appears"],
+        "pixels": int(pixels.sum()),
+        "value": 1e6,
+    }
+    assert "motion_invalid" not in shot["frames"][2]
+
+
+def test_changing_topology_is_invalid() -> None:
+    scene, _ = stage()
+    item = t.add_object(scene, "Decimated", None, (0, -2, 0.5))
+    item.modifiers.new("Subdivision", "SUBSURF").levels = 3
+    decimate = item.modifiers.new("Decimate", "DECIMATE")
+    decimate.ratio = 1.0
+    decimate.keyframe_insert("ratio", frame=4)
+    decimate.ratio = 0.3
+    decimate.keyframe_insert("ratio", frame=6)
+    out = os.path.join(t.temporary_folder(), "shot")
+    shot = t.export(out, "--frames", "4-5", "--for", "taaSimplest", "--truth-frames", "none")
+    assert shot["frames"][1]["motion_invalid"]["objects"] == ["Decimated"], shot["frames"][1]
+
+
+def test_cuts() -> None:
+    """A marker that binds another camera, and a jump of one camera, drop the history."""
+    scene, camera = stage()
+    other = t.add_camera(scene, (6, -5, 2))
+    scene.camera = camera
+    for name, frame, bound in (("A", 1, camera), ("B", 5, other)):
+        scene.timeline_markers.new(name, frame=frame).camera = bound
+    out = os.path.join(t.temporary_folder(), "shot")
+    shot = t.export(out, "--frames", "3-6", "--for", "taaSimplest", "--truth-frames", "none")
+    assert [entry["reset"] for entry in shot["frames"]] == [True, False, True, False]
+    assert shot["frames"][1]["camera"]["view"] != shot["frames"][2]["camera"]["view"]
+    scene, camera = stage()
+    camera.rotation_euler = (1.5, 0, 0)
+    camera.keyframe_insert("rotation_euler", frame=4)
+    camera.rotation_euler = (1.5, 0, 2.0)
+    camera.keyframe_insert("rotation_euler", frame=5)
+    shot = t.export(
+        os.path.join(t.temporary_folder(), "s"),
+        "--frames",
+        "3-6",
+        "--for",
+        "taaSimplest",
+        "--truth-frames",
+        "none",
+    )
+    assert [entry["reset"] for entry in shot["frames"]] == [True, False, True, False]
+    scene, camera = stage()
+    t.key(camera, "location", {1: (0, -8, 1), 11: (0.5, -7, 1.4)})
+    shot = t.export(
+        os.path.join(t.temporary_folder(), "s"),
+        "--frames",
+        "1-2,4-5",
+        "--for",
+        "taaSimplest",
+        "--truth-frames",
+        "none",
+    )
+    assert [entry["reset"] for entry in shot["frames"]] == [
+        True,
+        False,
+        True,
+        False,
+    ], "a gap drops the history"
+
+
+if __name__ == "__main__":
+    t.main(
+        test_camera,
+        test_lens,
+        test_border,
+        test_rigid,
+        test_shape_key,
+        test_armature,
+        test_collection_instance,
+        test_particles,
+        test_geometry_nodes,
+        test_hidden_before_is_invalid,
+        test_changing_topology_is_invalid,
+        test_cuts,
+    )

@@ -1,0 +1,306 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Passes hold what DESIGN.md says: depth, normals, ids, albedo, colour, truth, and only the parts that are needed."""
+
+from __future__ import annotations
+
+import math
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import support as t  # noqa: E402
+from support import bpy, np  # noqa: E402
+
+ALL = "albedo,depth,normal,object,motion"
+
+
+def exported(*options: str) -> tuple[dict, str]:
+    out = os.path.join(t.temporary_folder(), "shot")
+    return t.export(out, *options), out
+
+
+def floor_scene(kind: str = "PERSP"):
+    """A floor of 200 m under the sky."""
+    scene = t.new_scene(64, 36)
+    camera = t.add_camera(scene, (0, -8, 2.3), (0, 0, 1.4))
+    camera.data.type, camera.data.ortho_scale = kind, 12.0
+    camera.data.clip_end = 500.0
+    mesh = bpy.data.meshes.new("Floor")
+    mesh.from_pydata(
+        [(-100, -100, 0), (100, -100, 0), (100, 100, 0), (-100, 100, 0)], [], [(0, 1, 2, 3)]
+    )
+    floor = t.add_object(scene, "Floor", mesh)
+    floor.data.materials.append(t.diffuse("Green", (0.2, 0.6, 0.1)))
+    return scene, camera, floor
+
+
+def test_depth_is_planar() -> None:
+    for kind in ("PERSP", "ORTHO"):
+        scene, camera, _ = floor_scene(kind)
+        projection = t.Projection(camera, 64, 36)
+        shot, out = exported("--frames", "3", "--passes", ALL, "--truth-frames", "none")
+        path = os.path.join(out, "frames/000003.exr")
+        depth = t.read_part(path, "depth")["Z"].astype(np.float64)
+        sky = depth >= 1e9
+        assert sky.any() and not sky.all() and (depth[sky] == 1e10).all()
+        x, y = np.meshgrid(np.arange(64) + 0.5, np.arange(36) + 0.5)
+        x, y = x + shot["frames"][0]["jitter"][0], y + shot["frames"][0]["jitter"][1]
+        near = projection.unproject(x, y, np.full(x.shape, 1.0))
+        far = projection.unproject(x, y, np.full(x.shape, 2.0))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            expected = 1.0 + near[..., 2] / (
+                near[..., 2] - far[..., 2]
+            )  # where the ray meets z = 0
+        hit = ~sky & (expected < 20)  # farther off, the grazing ray itself is known to 1e-7 only
+        error = np.abs(depth[hit] / expected[hit] - 1.0).max()
+        assert error < 1e-6, f"{kind}: relative error {error}"
+        projected = np.array(shot["frames"][0]["camera"]["projection"]).reshape(4, 4)
+        view = np.array(shot["frames"][0]["camera"]["view"]).reshape(4, 4)
+        points = projection.unproject(x[hit], y[hit], depth[hit])
+        clip = np.c_[points, np.ones(len(points))] @ view.T @ projected.T
+        ndc = clip[:, :3] / clip[:, 3:]
+        assert (
+            np.abs((ndc[:, 0] + 1) * 32 - x[hit]).max() < 1e-3
+        ), "matrices of the manifest carry no jitter"
+        assert np.abs((1 - ndc[:, 1]) * 18 - y[hit]).max() < 1e-3
+        assert (np.abs(ndc[:, 2]) <= 1.0).all()
+
+
+def test_normals() -> None:
+    scene, camera, floor = floor_scene()
+    t.add_object(scene, "Cube", None, (0, -2, 1), (0.3, 0.5, 0.7))
+    _, out = exported("--frames", "1", "--passes", ALL, "--truth-frames", "none")
+    path = os.path.join(out, "frames/000001.exr")
+    normal = t.stacked(t.read_part(path, "normal"), "N.X N.Y N.Z").astype(np.float64)
+    ids, depth = t.read_part(path, "object")["id"], t.read_part(path, "depth")["Z"]
+    length = np.linalg.norm(normal, axis=-1)
+    assert (length[depth >= 1e9] == 0).all() and np.abs(length[depth < 1e9] - 1).max() < 1e-6
+    names = t.read_manifest(out)["objects"]
+    identity = {name: int(key) for key, name in names.items()}
+    assert np.abs(normal[ids == identity["Floor"]] - (0, 0, 1)).max() < 1e-6, "world space"
+    axes = np.array(bpy.data.objects["Cube"].matrix_world, np.float64)[:3, :3]
+    along = np.abs(normal[ids == identity["Cube"]] @ axes).max(axis=-1)
+    assert np.abs(along - 1).max() < 1e-6
+
+
+def test_ids() -> None:
+    scene = t.new_scene()
+    t.add_camera(scene)
+    shared = t.cube_mesh("Shared", 0.5)
+    for index in range(12):
+        t.add_object(scene, f"Item {index}", shared, (index % 4 - 1.5, 0, index // 4 * 0.8 - 0.2))
+    shot, out = exported("--frames", "1", "--passes", "object", "--truth-frames", "none")
+    ids = t.read_part(os.path.join(out, "frames/000001.exr"), "object")["id"]
+    assert ids.dtype == np.uint32
+    seen = set(np.unique(ids)) - {0}
+    assert seen == {int(key) for key in shot["objects"]} and len(seen) == 12
+    assert sorted(shot["objects"].values()) == sorted(f"Item {index}" for index in range(12))
+    assert (ids == 0).any(), "background is 0"
+
+
+def test_albedo_recipe() -> None:
+    """One material per object against the table of base colours."""
+
+    def principled(name, **values):
+        material = bpy.data.materials.new(name)
+        material.use_nodes = True
+        shader = material.node_tree.nodes["Principled BSDF"]
+        shader.inputs["Base Color"].default_value = (0.8, 0.4, 0.2, 1)
+        for key, value in values.items():
+            shader.inputs[key.replace("_", " ")].default_value = value
+        return material
+
+    def simple(name, node, **values):
+        material = bpy.data.materials.new(name)
+        material.use_nodes = True
+        tree = material.node_tree
+        tree.nodes.clear()
+        shader = tree.nodes.new(node)
+        for key, value in values.items():
+            shader.inputs[key].default_value = value
+        output = tree.nodes.new("ShaderNodeOutputMaterial")
+        tree.links.new(shader.outputs[0], output.inputs["Surface"])
+        return material
+
+    base = np.array((0.8, 0.4, 0.2))
+    scene = t.new_scene(64, 36)
+    table = [
+        (t.diffuse("Diffuse", (0.8, 0.4, 0.2)), base, 1e-4),
+        (principled("Plain", Specular=0.0), base, 1e-3),
+        (principled("Specular"), base, 0.05),  # the specular layer adds 0.04
+        (principled("Metal", Metallic=1.0, Roughness=0.5), base, 0.02),
+        (
+            principled("Glowing", Specular=0.0, Emission=(1, 0.5, 0.25, 1), Emission_Strength=2.0),
+            base,
+            0.01,
+        ),
+        (
+            simple("Lamp", "ShaderNodeEmission", Color=(0.9, 0.8, 0.7, 1)),
+            np.array((0.9, 0.8, 0.7)),
+            1e-4,
+        ),
+        (
+            simple("Glossy", "ShaderNodeBsdfGlossy", Color=(0.9, 0.8, 0.7, 1), Roughness=0.5),
+            (0.9, 0.8, 0.7),
+            0.02,
+        ),
+        (
+            simple("Glass", "ShaderNodeBsdfGlass", Color=(0.9, 0.8, 0.7, 1), Roughness=0.0),
+            (0.9, 0.8, 0.7),
+            0.05,
+        ),
+    ]
+    t.add_camera(scene, (0, -12, 0), (0, 0, 0))
+    t.add_sun(scene)
+    for index, (material, _, _) in enumerate(table):
+        item = t.add_object(
+            scene, material.name, t.cube_mesh(material.name, 1.0), (index - 3.5, 0, 0)
+        )
+        item.data.materials.append(material)
+    world = bpy.data.worlds.new("World")
+    world.use_nodes = True
+    world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.2, 0.3, 0.4, 1)
+    scene.world = world
+    shot, out = exported("--frames", "1", "--passes", "albedo,object", "--truth-frames", "none")
+    path = os.path.join(out, "frames/000001.exr")
+    albedo = t.stacked(t.read_part(path, "albedo"), "albedo.R albedo.G albedo.B")
+    ids = t.read_part(path, "object")["id"]
+    names = {name: int(key) for key, name in shot["objects"].items()}
+    for material, expected, tolerance in table:
+        pixels = albedo[ids == names[material.name]]
+        error = np.abs(np.median(pixels, axis=0) - expected).max()
+        assert error <= tolerance, f"{material.name}: {np.median(pixels, axis=0)} for {expected}"
+    assert np.abs(albedo[ids == 0] - (0.2, 0.3, 0.4)).max() < 1e-4, "background shows the world"
+
+
+def test_only_what_is_required() -> None:
+    scene, _, _ = floor_scene()
+    t.add_sun(scene)
+    shot, out = exported("--frames", "1-3", "--for", "taaSimplest", "--truth-samples", "4")
+    assert shot["static"] is True and any("motion" in note for note in shot["notes"])
+    assert t.part_names(os.path.join(out, "frames/000002.exr")) == ["color"]
+    assert [entry["truth"] for entry in shot["frames"]] == ["truth/000001.exr"] * 3
+    assert os.listdir(os.path.join(out, "truth")) == ["000001.exr"]
+    scene, camera, _ = floor_scene()
+    t.key(camera, "location", {1: (0, -8, 1), 11: (1.5, -8, 1.4)})
+    shot, out = exported(
+        "--frames", "1-3", "--for", "taaSimplest", "--truth-frames", "1,3", "--truth-samples", "4"
+    )
+    assert shot["static"] is False
+    assert t.part_names(os.path.join(out, "frames/000002.exr")) == ["color", "motion"]
+    assert [entry.get("truth") for entry in shot["frames"]] == [
+        "truth/000001.exr",
+        None,
+        "truth/000003.exr",
+    ]
+    assert set(shot["frames"][0]["bytes"]) == {"color", "motion", "truth"}
+    assert {"color", "truth"} <= set(shot["frames"][0]["render_seconds"])
+
+
+def test_static_is_found_by_evaluation() -> None:
+    """Animation outside the range does not make a shot a moving one; a material that changes does."""
+    scene, camera, floor = floor_scene()
+    t.key(floor, "location", {20: (0, 0, 0), 30: (0, 0, 1)})
+    for curve in floor.animation_data.action.fcurves:
+        curve.extrapolation = "CONSTANT"
+    assert exported("--frames", "1-3", "--truth-frames", "none")[0]["static"] is True
+    scene, camera, floor = floor_scene()
+    t.key(floor, "location", {1: (0, 0, 0), 30: (0, 0, 1)})
+    floor.hide_viewport = True  # still rendered
+    assert exported("--frames", "1-3", "--truth-frames", "none")[0]["static"] is False
+    scene, camera, floor = floor_scene()
+    socket = floor.data.materials[0].node_tree.nodes["Diffuse BSDF"].inputs["Color"]
+    socket.keyframe_insert("default_value", frame=1)
+    assert exported("--frames", "1-3", "--truth-frames", "none")[0]["static"] is False
+
+
+def test_color_and_truth_share_one_light() -> None:
+    """A matt floor under the sun: colour = albedo * irradiance / pi, in every frame and in both halves."""
+    scene, _, _ = floor_scene()
+    sun = t.add_sun(scene, strength=2.0, rotation=(0.6, 0, 0))
+    sun.data.angle = 0.1  # taken away by noise-free light
+    shot, out = exported(
+        "--frames",
+        "1-2",
+        "--passes",
+        "depth",
+        "--truth-samples",
+        "8",
+        "--ambient",
+        "0.1",
+        "0.2",
+        "0.3",
+    )
+    expected = np.array((0.2, 0.6, 0.1)) * (
+        2.0 * math.cos(0.6) / math.pi + np.array((0.1, 0.2, 0.3))
+    )
+    for number in (1, 2):
+        path = os.path.join(out, f"frames/{number:06d}.exr")
+        color = t.stacked(t.read_part(path, "color"), "R G B")
+        floor = t.read_part(path, "depth")["Z"] < 1e9
+        assert np.abs(color[floor] - expected).max() < 1e-5, color[floor][0]
+    truth = os.path.join(out, "truth/000001.exr")
+    assert t.part_names(truth) == ["a", "b"]
+    halves = [t.stacked(t.read_part(truth, name), "R G B") for name in "ab"]
+    inside = np.zeros_like(floor)
+    inside[24:, :] = True
+    for half in halves:
+        assert np.abs(half[inside] - expected).max() < 1e-5
+    assert not np.array_equal(*halves), "two seeds"
+    assert shot["truth"] == {"samples_per_half": 8, "filter": "box", "filter_width": 1.0}
+
+
+def test_truth_is_the_box_mean() -> None:
+    """The truth's edge pixels against exact coverage of a half plane, both halves without a shift."""
+    scene = t.new_scene(32, 32)
+    camera = t.add_camera(scene, (0, -10, 0), (0, 0, 0))
+    camera.data.type, camera.data.ortho_scale = "ORTHO", 32.0  # one pixel is one metre
+    slope = 0.3
+    mesh = bpy.data.meshes.new("Half")
+    mesh.from_pydata(
+        [(-60, 0, -60 * slope), (60, 0, 60 * slope), (60, 0, -99), (-60, 0, -99)],
+        [],
+        [(0, 1, 2, 3)],
+    )
+    item = t.add_object(scene, "Half", mesh)
+    material = t.diffuse("White", (1, 1, 1))
+    item.data.materials.append(material)
+    t.add_sun(scene, strength=math.pi, rotation=(math.pi / 2, 0, 0))
+    _, out = exported("--frames", "1", "--truth-samples", "256")
+    truth = os.path.join(out, "truth/000001.exr")
+    fine = (np.arange(64) + 0.5) / 64
+    x, y = np.meshgrid(np.arange(32), np.arange(32))
+    below = (16 - y[..., None, None] - fine[:, None]) < slope * (
+        x[..., None, None] + fine[None, :] - 16
+    )
+    coverage = below.mean(axis=(-1, -2))
+    for half in "ab":
+        value = t.read_part(truth, half)["R"].astype(np.float64)
+        error = value - coverage
+        assert np.abs(error).max() < 0.05, np.abs(error).max()
+        partial = (coverage > 0.02) & (coverage < 0.98)
+        assert (
+            abs(error[partial].mean()) < 0.004
+        ), f"half {half} is shifted: mean error {error[partial].mean()}"
+
+
+def test_half_floats() -> None:
+    scene, _, _ = floor_scene()
+    t.add_sun(scene)
+    _, out = exported("--frames", "1", "--color-type", "half", "--truth-frames", "none")
+    source = t.oiio.ImageInput.open(os.path.join(out, "frames/000001.exr"))
+    assert str(source.spec().format) == "half"
+
+
+if __name__ == "__main__":
+    t.main(
+        test_depth_is_planar,
+        test_normals,
+        test_ids,
+        test_albedo_recipe,
+        test_only_what_is_required,
+        test_static_is_found_by_evaluation,
+        test_color_and_truth_share_one_light,
+        test_truth_is_the_box_mean,
+        test_half_floats,
+    )
