@@ -4,6 +4,8 @@
 #include "methods/method.h"
 #include "methods/noaa.h"
 #include "methods/ssaa.h"
+#include "methods/taa_simplest.h"
+#include "methods/uncharted.h"
 
 namespace aa {
 
@@ -15,6 +17,10 @@ const std::vector<MethodDescriptor>& registry() {
         fxaa311Descriptor(),
         // geometry
         // temporal
+        taaSimplestDescriptor(),
+        unchartedDescriptor(),
+        unchartedNormDescriptor(),
+        unchartedNoSharpenDescriptor(),
     };
     return methods;
 }

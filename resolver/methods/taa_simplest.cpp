@@ -1,0 +1,47 @@
+#include "methods/taa_simplest.h"
+
+#include "methods/taa_simplest_kernels.h"
+#include "methods/temporal.h"
+
+namespace aa {
+namespace {
+
+class TaaSimplest : public Method {
+  public:
+    explicit TaaSimplest(const Params& params) : params_(params) {}
+
+    void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
+        TaaSimplestArgs args{temporal::frameView(frame, frame.colorLinear, out), params_.realf("k")};
+        history_.begin(frame, "taaSimplest", args.in);
+        args.in.feedbackCeiling = temporal::feedbackCeiling(params_, history_.framesSinceReset());
+        args.in.filter = temporal::historyFilter(params_);
+        args.in.clampOutside = params_.choice("outside") == "clamp";
+        if (keepDebugLayers) args.in.debug = debug_.begin(frame.width, frame.height);
+        runKernel(taaSimplestKernelsFor(exec.isa).resolve, exec, args, frame.height);
+        history_.end();
+    }
+    size_t stateBytes() const override { return history_.bytes(); }
+    std::vector<DebugLayer> debugLayers() const override { return debug_.layers(); }
+
+  private:
+    Params params_;
+    ColourHistory history_;
+    TemporalDebugLayers debug_;
+};
+
+}  // namespace
+
+MethodDescriptor taaSimplestDescriptor() {
+    return {.id = "taaSimplest",
+            .title = "Simplest TAA",
+            .family = "temporal",
+            .summary = "Exponential blend with the reprojected history, without any rejection.",
+            .source = "seed 002 (Vulkan book ch. 11); methods/06 s.6.1",
+            .passes = Pass::color | Pass::motion,
+            .temporal = true,
+            .params = {realParam("k", "0.9", 0, 1, "weight of history", "seed 002: \"normally around 0.9\""),
+                       temporal::historyFilterParam("bilinear", "seed 002"), temporal::outsideParam(),
+                       temporal::warmupParam()},
+            .create = [](const Params& p, const ShotInfo&) { return std::make_unique<TaaSimplest>(p); }};
+}
+}  // namespace aa

@@ -1,0 +1,70 @@
+// Host side shared by the temporal methods: the colour history, their common parameters, the display-space sharpening
+// and the debug layers. The steps themselves are kernel text in temporal_blocks.kernel.h. Source: methods/06 s.6.0.
+//
+// The history holds the blend before sharpening (methods/06), RGBA float, two planes that swap roles. A frame with
+// `reset` set, and the first frame, drop it; a change of size without reset is an InputError (methods/08 s.8.3).
+#pragma once
+#include "methods/method.h"
+#include "methods/temporal_kernels.h"
+
+namespace aa {
+
+class ColourHistory {
+  public:
+    // Fills the history members of `in` for this frame: in.history stays null when there is none.
+    void begin(const Frame& frame, std::string_view method, TemporalIn& in);
+    // The blend of this frame is complete: fills its border and makes it the history of the next one.
+    void end();
+    size_t bytes() const { return planes_[0].bytes() + planes_[1].bytes(); }
+    int framesSinceReset() const { return frames_; }  // 0 on the first frame
+    const RgbaPlane& latest() const { return planes_[current_]; }
+
+  private:
+    RgbaPlane planes_[2];
+    size_t current_ = 0;
+    int frames_ = -1;
+};
+
+// Parameters that several methods share, each declared once.
+namespace temporal {
+ParamSpec dilationParam(std::string_view def, std::string_view source);
+ParamSpec historyFilterParam(std::string_view def, std::string_view source);
+ParamSpec neighbourhoodParam(std::string_view def, std::string_view source);
+ParamSpec clipTargetParam(std::string_view def, std::string_view source);
+ParamSpec warmupParam();
+ParamSpec outsideParam();
+ParamSpec sharpenParam(std::string_view def, std::string_view source);
+// The two ends of the luminance feedback B8.
+ParamSpec kMinParam(std::string_view def, std::string_view source);
+ParamSpec kMaxParam(std::string_view def, std::string_view source);
+void requireOrdered(std::string_view method, const Params& p);  // kmin <= kmax, else UsageError
+
+Dilation dilation(const Params& p);
+HistoryFilter historyFilter(const Params& p);
+Neighbourhood neighbourhood(const Params& p);
+ClipTarget clipTarget(const Params& p);
+// Depth is read only to dilate motion by it.
+PassSet dilationPasses(const Params& p);
+
+// The members of TemporalIn that come from the frame alone; `color` in the method's working space.
+TemporalIn frameView(const Frame& frame, const Rgb& color, Rgb& out);
+// Largest weight that history may have in the frame t after a reset: warmup=ramp gives each of the first frames the
+// weight 1/(t+1), as a running mean.
+float feedbackCeiling(const Params& p, int framesSinceReset);
+}  // namespace temporal
+
+// Sharpening of a display-encoded image (methods/06 s.6.10); never fed back.
+void sharpenEncoded(const Rgb& in, SharpenKernel kernel, const Exec& exec, Rgb& out);
+
+// Planes behind TemporalDebug and their names.
+class TemporalDebugLayers {
+  public:
+    TemporalDebug begin(int width, int height);
+    std::vector<DebugLayer> layers() const;
+
+  private:
+    Rgb boxLow_, boxHigh_;
+    PlaneF motionX_, motionY_, rejection_, clipAmount_, feedback_;
+};
+
+}  // namespace aa

@@ -1,0 +1,53 @@
+// What every temporal kernel reads and writes: plain views, shared by host and kernel text.
+#pragma once
+#include "kernels/table.h"
+
+namespace aa {
+
+enum class Dilation { closest3x3, closestX, longest3x3, none };  // methods/06 B2
+enum class HistoryFilter { bilinear, catmullRom, catmullRom5 };  // methods/06 B1
+enum class Neighbourhood { rounded, box3x3, plus };              // methods/06 B4
+enum class ClipTarget { aabbCentre, mean, current, clamp };      // methods/06 B6; clamp: B5 instead of a clip
+enum class SharpenKernel { none, xu, norm };                     // methods/06 s.6.10
+
+// Why a pixel's history was not used; 0 = it was. The numbers are those of the debug layer "validity".
+enum class Rejection { none = 0, outside = 1, disoccluded = 2, magnified = 3, otherObject = 4, firstFrame = 5 };
+
+// Intermediates for --debug-layers; null pointers are not written.
+struct TemporalDebug {
+    float *motionXPx = nullptr, *motionYPx = nullptr;  // after dilation
+    float* rejection = nullptr;                        // Rejection as a number
+    float *boxLow[3] = {}, *boxHigh[3] = {};           // the constraint's box, in the method's space
+    float* clipAmount = nullptr;                       // largest channel distance that the constraint moved history
+    float* feedback = nullptr;                         // weight of history in the blend
+};
+
+// One frame in a method's working space and the colour history. All planes have the frame's size, one stride (pixels)
+// and filled borders.
+struct TemporalIn {
+    RgbIn color;
+    const float* depthView = nullptr;
+    const float *motionXPx = nullptr, *motionYPx = nullptr;  // current - previous, y down
+    const float* history = nullptr;  // RGBA, the previous blend; null on the first frame after a reset
+    float* next = nullptr;           // RGBA, this frame's blend
+    RgbOut out;                      // this frame's blend again, planar
+    int stride = 0, width = 0, height = 0;
+    float jitterXPx = 0, jitterYPx = 0;
+    float feedbackCeiling = 1;  // largest history weight of this frame (warmup=ramp: 1 - 1/(t+1))
+    bool clampOutside = false;  // a history position outside the image is moved to its border, not rejected
+    Dilation dilation = Dilation::closest3x3;
+    HistoryFilter filter = HistoryFilter::bilinear;
+    TemporalDebug debug;
+};
+
+struct SharpenArgs {
+    RgbIn in;
+    RgbOut out;
+    int stride, width;
+    float gain;  // weight of each of the four neighbours: 1 (Xu), 1/4 (normalised)
+};
+struct TemporalKernels {
+    RowKernel<SharpenArgs> sharpen;
+};
+}  // namespace aa
+AA_KERNEL_TABLE(aa::TemporalKernels, temporalKernels)

@@ -1,0 +1,173 @@
+// Analytic gates of the temporal family: what theory says about weights, blur and shifts must come out of the methods.
+#include "methods/temporal.h"
+
+#include <gtest/gtest.h>
+
+#include "image/error.h"
+#include "methods/temporal_test_frames.h"
+
+namespace aa {
+namespace {
+using namespace testing;
+
+// Variance of white noise through an exponential history of current weight a: a / (2 - a) = 1 / N_eff.
+TEST(Temporal, EffectiveSampleCountOfExponentialHistory) {
+    for (const double alpha : {0.05, 0.1, 0.2}) {
+        RunningMethod m = running("taaSimplest:k=" + std::to_string(1 - alpha), 64, 64, true);
+        std::mt19937 random(7);
+        std::uniform_real_distribution<float> uniform(0, 1);
+        double sum = 0, squares = 0, count = 0;
+        for (int n = 0; n < 400; n++) {
+            m.resolve(temporalFrame(n, 64, 64, [&](int, int, int) { return uniform(random); }), {}, {});
+            if (n < 200 || n % 40) continue;  // settled, and 40 frames apart: independent at these feedbacks
+            for (const auto& plane : m.out.c)
+                for (int y = 0; y < 64; y++)
+                    for (int x = 0; x < 64; x++) {
+                        const double v = double(plane.at(x, y));
+                        sum += v, squares += v * v, count++;
+                    }
+        }
+        const double variance = squares / count - sum / count * sum / count;
+        const double nEff = (1.0 / 12) / variance;
+        EXPECT_NEAR(nEff, (2 - alpha) / alpha, 0.03 * (2 - alpha) / alpha) << alpha;
+    }
+}
+
+TEST(Temporal, AlternatingInputSettlesToItsTwoCycle) {
+    RunningMethod m = running("taaSimplest", 4, 4, true);
+    float last = 0, peakToPeak = 0;
+    for (int n = 0; n < 400; n++) {
+        m.resolve(temporalFrame(n, 4, 4, [&](int, int, int) { return float(n % 2); }), {}, {});
+        peakToPeak = std::fabs(m.out.c[0].at(1, 1) - last), last = m.out.c[0].at(1, 1);
+    }
+    EXPECT_NEAR(peakToPeak, 0.1 / 1.9, 1e-6);  // (1 - k) / (1 + k)
+}
+
+// Each bilinear read at fraction f adds variance f (1 - f); the exponential history sums them to f (1 - f) k / (1 - k).
+double blurVariancePx2(const std::string& method, double f) {
+    const int w = 256, h = 3;
+    RunningMethod m = running(method, w, h);
+    const auto blob = [&](double x) { return 0.2 + 0.5 * std::exp(-(x * x) / (2 * 4.0 * 4.0)); };
+    double centre = 60;
+    for (int n = 0; n < 120; n++, centre += f)
+        m.resolve(temporalFrame(n, w, h, [&](int x, int, int) { return float(blob(x - centre)); }, {f, 0}), {}, {});
+    centre -= f;
+    double mass = 0, first = 0, second = 0;
+    for (int x = 30; x < w - 30; x++) {
+        const double v = double(m.out.c[0].at(x, 1)) - 0.2, d = x - centre;
+        mass += v, first += v * d, second += v * d * d;
+    }
+    EXPECT_NEAR(first / mass, 0, 1e-3) << "the history must follow the surface";
+    return second / mass - 16.0;
+}
+TEST(Temporal, RepeatedBilinearReprojectionBlursByTheory) {
+    for (const double f : {0.25, 0.5, 0.75}) EXPECT_NEAR(blurVariancePx2("taaSimplest", f), f * (1 - f) * 9, 0.01) << f;
+    EXPECT_NEAR(blurVariancePx2("taaSimplest:k=0.8", 0.5), 0.25 * 4, 0.01);
+    EXPECT_LT(blurVariancePx2("taaSimplest:history=catmullRom", 0.5), 0.05);
+}
+
+const char* const kUnconstrained[] = {"taaSimplest", "taaSimplest:history=catmullRom",
+                                      "taaSimplest:history=catmullRom5"};
+const char* const kEveryClip[] = {"unchartedNoSharpen", "unchartedNoSharpen:history=catmullRom",
+                                  "unchartedNoSharpen:clipTarget=mean", "unchartedNoSharpen:clipTarget=clamp"};
+
+TEST(Temporal, WholePixelMotionDoesNotBlur) {
+    std::vector<std::string> methods(std::begin(kUnconstrained), std::end(kUnconstrained));
+    methods.insert(methods.end(), std::begin(kEveryClip), std::end(kEveryClip));
+    for (const auto& text : methods) {
+        RunningMethod m = running(text, 64, 40);
+        const Picture still = noisePicture(3);
+        for (int n = 0; n < 12; n++) {
+            const Frame f =
+                temporalFrame(n, 64, 40, [&](int x, int y, int c) { return still(x - 3 * n, y + 2 * n, c); }, {3, -2});
+            m.resolve(f, {}, {});
+            const Rgb& input = m.spec.method->input == Space::encoded ? f.colorEncoded : f.colorLinear;
+            EXPECT_TRUE(m.out.samePixels(input)) << text << " frame " << n;
+        }
+    }
+}
+TEST(Temporal, FlippedMotionSignIsSeen) {
+    RunningMethod m = running("taaSimplest", 64, 40);
+    const Picture still = noisePicture(3);
+    Frame f;
+    for (int n = 0; n < 12; n++) {
+        f = temporalFrame(n, 64, 40, [&](int x, int y, int c) { return still(x - 3 * n, y, c); }, {-3, 0});
+        m.resolve(f, {}, {});
+    }
+    EXPECT_FALSE(m.out.samePixels(f.colorLinear));
+}
+
+TEST(Temporal, FeedbackZeroAndOneAreExact) {
+    for (const char* text : {"taaSimplest:k=0", "unchartedNoSharpen:kmin=0,kmax=0"}) {
+        RunningMethod m = running(text, 20, 20);
+        for (int n = 0; n < 4; n++) {
+            const Frame f = temporalFrame(n, 20, 20, noisePicture(unsigned(n)), {0.3, 0.1});
+            m.resolve(f, {}, {});
+            EXPECT_TRUE(m.out.samePixels(m.spec.method->input == Space::encoded ? f.colorEncoded : f.colorLinear));
+        }
+    }
+    RunningMethod keep = running("taaSimplest:k=1", 20, 20);
+    const Frame first = temporalFrame(0, 20, 20, noisePicture(1));
+    keep.resolve(first, {}, {});
+    for (int n = 1; n < 4; n++) {
+        keep.resolve(temporalFrame(n, 20, 20, noisePicture(unsigned(n + 1))), {}, {});
+        EXPECT_TRUE(keep.out.samePixels(first.colorLinear));
+    }
+}
+
+TEST(Temporal, HistoryOutsideTheImageIsTheCurrentColour) {
+    for (const char* text : {"taaSimplest", "unchartedNoSharpen"})
+        for (const glm::dvec2 motion : {glm::dvec2(25, 0), {0, -1e30}, {std::nan(""), 0}}) {
+            RunningMethod m = running(text, 20, 20);
+            m.resolve(temporalFrame(0, 20, 20, noisePicture(1)), {}, {});
+            const Frame f = temporalFrame(1, 20, 20, noisePicture(2), motion);
+            m.resolve(f, {}, {});
+            EXPECT_TRUE(m.out.samePixels(m.spec.method->input == Space::encoded ? f.colorEncoded : f.colorLinear))
+                << text;
+        }
+}
+
+TEST(Temporal, RampWarmupIsARunningMean) {
+    RunningMethod m = running("taaSimplest:warmup=ramp,k=0.999", 8, 8, true);
+    double mean = 0;
+    for (int n = 0; n < 16; n++) {
+        const float v = float((n * 37) % 16) / 16;
+        m.resolve(temporalFrame(n, 8, 8, [&](int, int, int) { return v; }), {}, {});
+        mean += double(v);
+        EXPECT_NEAR(m.out.c[1].at(4, 4), mean / (n + 1), 1e-6);
+    }
+}
+
+TEST(Temporal, SizeChangeWithoutResetIsAnError) {
+    RunningMethod m = running("uncharted", 20, 20);
+    m.resolve(temporalFrame(0, 20, 20, noisePicture(1)), {}, {});
+    EXPECT_THROW(m.resolve(temporalFrame(1, 24, 20, noisePicture(1)), {}, {}), InputError);
+    Frame cut = temporalFrame(2, 24, 20, noisePicture(1));
+    cut.reset = true;
+    EXPECT_NO_THROW(m.resolve(cut, {}, {}));
+}
+
+TEST(Temporal, KMinAboveKMaxIsAUsageError) { EXPECT_THROW(running("uncharted:kmin=0.9,kmax=0.5", 8, 8), UsageError); }
+
+TEST(Temporal, NothingDivergesOverTenThousandFrames) {
+    for (const auto& method : registry()) {
+        if (method.family != "temporal") continue;
+        const int w = 19, h = 11;
+        RunningMethod m = running(std::string(method.id), w, h);
+        std::vector<Frame> frames;
+        for (int n = 0; n < 8; n++) {
+            frames.push_back(temporalFrame(n, w, h, noisePicture(unsigned(n)), {0.37 * (n % 3), -0.21 * (n % 5)}));
+            for (auto& s : frames.back().subSamples) s.colorLinear = frames.back().colorLinear;
+        }
+        for (int n = 0; n < 10000; n++) m.resolve(frames[size_t(n ? 1 + n % 7 : 0)], {}, {.parallel = false});
+        for (const auto& plane : m.out.c)
+            for (int y = 0; y < h; y++)
+                for (int x = 0; x < w; x++) {
+                    ASSERT_GE(plane.at(x, y), -1e-6f) << method.id;
+                    ASSERT_LE(plane.at(x, y), 1.0f + 1e-6f) << method.id;
+                }
+    }
+}
+
+}  // namespace
+}  // namespace aa

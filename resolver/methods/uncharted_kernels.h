@@ -1,0 +1,15 @@
+#pragma once
+#include "methods/temporal_kernels.h"
+
+namespace aa {
+struct UnchartedArgs {
+    TemporalIn in;
+    float kMin, kMax;
+    Neighbourhood neighbourhood;
+    ClipTarget clipTarget;
+};
+struct UnchartedKernels {
+    RowKernel<UnchartedArgs> resolve;
+};
+}  // namespace aa
+AA_KERNEL_TABLE(aa::UnchartedKernels, unchartedKernels)
