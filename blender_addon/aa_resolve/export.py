@@ -483,7 +483,8 @@ class Exporter:
             if wants_color:
                 color = lighting.compose(self.light, renders, view)
                 names += [f"{view}.R", f"{view}.G", f"{view}.B"]
-                kinds += [self.settings.color_type] * 3
+                # One part holds integers and floats of 32 bits, or colours of any type.
+                kinds += ["float" if wants_geometry else self.settings.color_type] * 3
                 planes += list(np.moveaxis(color[:, :, :3], -1, 0))
         pixels = np.stack([plane.astype(np.float64) for plane in planes], axis=-1)
         if len(set(kinds)) == 1:

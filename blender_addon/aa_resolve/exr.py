@@ -16,7 +16,7 @@ import numpy as np
 from . import compat
 from .errors import SceneError
 
-_UINT_MAX = 4294967295.0
+_EXR_FLOAT = 2  # pixel type in a channel list; UINT is 0, HALF 1
 
 
 @dataclass
@@ -47,18 +47,11 @@ def write_parts(path: str, parts: list[Part]) -> None:
     arrays = []
     for part in parts:
         height, width, count = part.pixels.shape
-        spec = oiio.ImageSpec(width, height, count, _oiio_type(oiio, part.types[0]))
+        kind = "uint" if len(set(part.types)) > 1 else part.types[0]
+        spec = oiio.ImageSpec(width, height, count, _oiio_type(oiio, kind))
         pixels = np.ascontiguousarray(part.pixels)
         if len(set(part.types)) > 1:
-            spec.channelformats = tuple(
-                oiio.TypeDesc(_oiio_type(oiio, kind)) for kind in part.types
-            )
-            # One array feeds channels of several types: OIIO maps 0..1 to the range of an integer channel, and
-            # double holds every 32-bit integer and every float exactly on that way.
-            pixels = pixels.astype(np.float64)
-            for index, kind in enumerate(part.types):
-                if kind == "uint":
-                    pixels[:, :, index] /= _UINT_MAX
+            pixels = _bits(part)
         spec.channelnames = part.channels
         spec.attribute("oiio:subimagename", part.name)
         spec.attribute("compression", part.compression)
@@ -80,11 +73,47 @@ def write_parts(path: str, parts: list[Part]) -> None:
                 )
         if not output.close():
             raise SceneError(f"{path}: cannot be completed: {output.geterror()}; is the disk full?")
+        _name_float_channels(temporary, parts)
         os.replace(temporary, path)
     except BaseException:
         if os.path.exists(temporary):
             os.unlink(temporary)
         raise
+
+
+def _bits(part: Part) -> np.ndarray:
+    """Pixels of a part with float and uint channels as 32-bit patterns, H x W x C.
+
+    OpenImageIO takes one array type per write and converts mixed channels through float, which rounds integers above
+    2^24. So such a part is written as integers that hold the bits of the floats, and ``_name_float_channels`` then
+    corrects the header: every compression on offer treats the two types alike, as four bytes."""
+    assert set(part.types) <= {"float", "uint"}, part.types
+    bits = np.empty(part.pixels.shape, np.uint32)
+    for index, kind in enumerate(part.types):
+        plane = part.pixels[:, :, index]
+        bits[:, :, index] = plane if kind == "uint" else plane.astype(np.float32).view(np.uint32)
+    return bits
+
+
+def _name_float_channels(path: str, parts: list[Part]) -> None:
+    """Gives the float channels of mixed parts their type in the file's header."""
+    if all(len(set(part.types)) == 1 for part in parts):
+        return
+    with open(path, "r+b") as file:
+        content = file.read(1 << 22)
+        position = 8
+        for part in parts:
+            attributes, after = _read_header(content, position)
+            if len(set(part.types)) > 1:
+                types = dict(zip(part.channels, part.types))
+                cursor = attributes["channels"].start
+                while content[cursor] != 0:
+                    end = content.index(b"\0", cursor)
+                    if types[content[cursor:end].decode()] == "float":
+                        file.seek(end + 1)
+                        file.write(struct.pack("<i", _EXR_FLOAT))
+                    cursor = end + 1 + 16
+            position = after
 
 
 def _oiio_type(oiio, kind: str):
@@ -117,40 +146,36 @@ def part_bytes(path: str) -> dict[str, int]:
     """Compressed bytes of each part, from the file's own chunk headers (the EXR 2.0 layout)."""
     with open(path, "rb") as file:
         content = file.read()
-    version = struct.unpack_from("<I", content, 4)[0]
-    multipart = bool(version & 0x1000)
+    multipart = bool(struct.unpack_from("<I", content, 4)[0] & 0x1000)
     position = 8
     names: list[str] = []
-    chunk_counts: list[int] = []
+    chunks = 0
     while True:
         attributes, position = _read_header(content, position)
         if not attributes:
             break
-        names.append(attributes.get("name", b"\0")[:].rstrip(b"\0").decode())
-        chunk_counts.append(
-            struct.unpack("<i", attributes["chunkCount"])[0] if "chunkCount" in attributes else 0
-        )
+        name = attributes.get("name")
+        names.append(content[name].rstrip(b"\0").decode() if name else "")
         if not multipart:
-            break
-    if not multipart:
-        return {names[0]: len(content)}
-    position += 8 * sum(chunk_counts)  # offset tables
+            return {names[0]: len(content)}
+        chunks += struct.unpack("<i", content[attributes["chunkCount"]])[0]
+    position += 8 * chunks  # offset tables
     sizes = dict.fromkeys(names, 0)
-    for _ in range(sum(chunk_counts)):
+    for _ in range(chunks):
         part, _row, size = struct.unpack_from("<iii", content, position)
         sizes[names[part]] += size + 12
         position += size + 12
     return sizes
 
 
-def _read_header(content: bytes, position: int) -> tuple[dict[str, bytes], int]:
-    """One part's attributes (raw values) and the position behind them; empty at the end of the list of headers."""
-    attributes: dict[str, bytes] = {}
+def _read_header(content: bytes, position: int) -> tuple[dict[str, slice], int]:
+    """Where one part's attributes lie, and the position behind them; empty after the last header of several."""
+    attributes: dict[str, slice] = {}
     while content[position] != 0:
         end = content.index(b"\0", position)
         name = content[position:end].decode()
         position = content.index(b"\0", end + 1) + 1
         size = struct.unpack_from("<i", content, position)[0]
-        attributes[name] = content[position + 4 : position + 4 + size]
+        attributes[name] = slice(position + 4, position + 4 + size)
         position += 4 + size
     return attributes, position + 1

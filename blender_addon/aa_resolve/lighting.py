@@ -23,8 +23,8 @@ from . import compat, rendering
 from .errors import SceneError
 
 MODELS = ("noise-free", "as-is")
-# An area light shines power / pi along its axis, a spot power / (4 pi).
-_AREA_TO_SPOT_POWER = 4.0
+# Along its axis a Blender area light shines with power / 4 per steradian, a spot with power / (4 pi).
+_AREA_TO_SPOT_POWER = math.pi
 
 
 @dataclass

@@ -20,15 +20,13 @@ def exported(*options: str) -> tuple[dict, str]:
 
 
 def floor_scene(kind: str = "PERSP"):
-    """A floor of 200 m under the sky."""
+    """A floor of 16 m under the sky."""
     scene = t.new_scene(64, 36)
-    camera = t.add_camera(scene, (0, -8, 2.3), (0, 0, 1.4))
-    camera.data.type, camera.data.ortho_scale = kind, 12.0
+    camera = t.add_camera(scene, (0, -8, 5), (0, 0, 0.5))
+    camera.data.type, camera.data.ortho_scale = kind, 20.0
     camera.data.clip_end = 500.0
     mesh = bpy.data.meshes.new("Floor")
-    mesh.from_pydata(
-        [(-100, -100, 0), (100, -100, 0), (100, 100, 0), (-100, 100, 0)], [], [(0, 1, 2, 3)]
-    )
+    mesh.from_pydata([(-8, -8, 0), (8, -8, 0), (8, 8, 0), (-8, 8, 0)], [], [(0, 1, 2, 3)])
     floor = t.add_object(scene, "Floor", mesh)
     floor.data.materials.append(t.diffuse("Green", (0.2, 0.6, 0.1)))
     return scene, camera, floor
@@ -51,9 +49,10 @@ def test_depth_is_planar() -> None:
             expected = 1.0 + near[..., 2] / (
                 near[..., 2] - far[..., 2]
             )  # where the ray meets z = 0
-        hit = ~sky & (expected < 20)  # farther off, the grazing ray itself is known to 1e-7 only
+        hit = ~sky
         error = np.abs(depth[hit] / expected[hit] - 1.0).max()
-        assert error < 1e-6, f"{kind}: relative error {error}"
+        # Planar to 1e-6; an orthographic ray starts at a float position and meets the floor at a slant.
+        assert error < (1e-6 if kind == "PERSP" else 2e-6), f"{kind}: relative error {error}"
         projected = np.array(shot["frames"][0]["camera"]["projection"]).reshape(4, 4)
         view = np.array(shot["frames"][0]["camera"]["view"]).reshape(4, 4)
         points = projection.unproject(x[hit], y[hit], depth[hit])

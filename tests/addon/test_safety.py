@@ -1,0 +1,243 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The command line: exit codes, resume after a kill, several processes, and a .blend that never changes."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import support as t  # noqa: E402
+from support import bpy  # noqa: E402
+
+FOLDER = t.temporary_folder()
+COMMON = (
+    "--for",
+    "taaSimplest",
+    "--passes",
+    "object,depth",
+    "--truth-samples",
+    "16",
+    "--truth-frames",
+    "1,4",
+)
+
+
+def digest(path: str) -> str:
+    with open(path, "rb") as file:
+        return hashlib.sha256(file.read()).hexdigest()
+
+
+def contents(shot: str) -> dict[str, str]:
+    """Digest of every picture of a shot."""
+    found = {}
+    for kind in ("frames", "truth"):
+        for name in sorted(os.listdir(os.path.join(shot, kind))):
+            found[f"{kind}/{name}"] = digest(os.path.join(shot, kind, name))
+    return found
+
+
+def without_times(shot: dict) -> dict:
+    """shot.json less what depends on the clock and the name of the folder."""
+    plain = json.loads(json.dumps(shot))
+    plain.pop("name")
+    for entry in plain["frames"]:
+        entry.pop("render_seconds")
+    return plain
+
+
+def make_blend(name: str = "scene.blend", camera: bool = True) -> str:
+    scene = t.new_scene(48, 27)
+    t.add_sun(scene)
+    if camera:
+        t.add_camera(scene)
+    item = t.add_object(scene, "Cube", None, (0, 0, 0.5))
+    item.data.materials.append(t.diffuse("Colour", (0.3, 0.5, 0.7)))
+    t.key(item, "location", {1: (-1, 0, 0.5), 11: (1, 0.4, 0.8)})
+    return t.save(scene, os.path.join(FOLDER, name))
+
+
+BLEND = make_blend()
+BEFORE = digest(BLEND)
+
+
+def test_wrong_usage_is_2_and_one_line() -> None:
+    cases = (
+        ((), "--out"),
+        (("--out", "x", "--for", "fxa311"), "did you mean 'fxaa311'"),
+        (("--out", "x", "--frames", "9-2"), "ends before"),
+        (("--out", "x", "--jitter", "haltom"), "unknown sequence"),
+        (("--out", "x", "--truth-samples", "0"), "expected 1 to"),
+        (("--out", "x", "--passes", "colour"), "unknown pass"),
+        (("--out", "x", "--frames", "1-3", "--truth-frames", "7"), "not among --frames"),
+        (("--out", "x", "--subsamples", "d3d9", "--passes", "subsamples"), "d3d9"),
+        (("--out", "x", "--subsamples", "d3d8"), "no effect"),
+        (("--out", "x", "--wrong", "1"), "--wrong"),
+    )
+    script = os.path.join(FOLDER, "cases.py")
+    with open(script, "w", encoding="utf-8") as file:  # one Blender for all of them
+        file.write(
+            "import sys, json\n"
+            f"sys.path.insert(0, {os.path.join(t.ROOT, 'blender_addon')!r})\n"
+            "from aa_resolve import headless\n"
+            f"for options in {[list(case[0]) for case in cases]!r}:\n"
+            "    print('CODE', headless.run(options), file=sys.stderr, flush=True)\n"
+        )
+    done = subprocess.run(
+        [bpy.app.binary_path, "-b", "--factory-startup", BLEND, "--python-exit-code", "9", "-P", script],
+        capture_output=True, text=True, timeout=60,
+    )  # fmt: skip
+    lines = [line for line in done.stderr.splitlines() if line.startswith(("error", "CODE"))]
+    assert len(lines) == 2 * len(cases), done.stderr
+    for (options, expected), message, code in zip(cases, lines[::2], lines[1::2]):
+        assert code == "CODE 2", (options, message, code)
+        assert message.startswith("error: ") and expected in message, (options, message)
+
+
+def test_exit_codes_of_the_process() -> None:
+    usage = t.run_headless(BLEND, "--out", os.path.join(FOLDER, "u"), "--for", "nothing")
+    assert usage.returncode == 2 and usage.stderr.count("\n") == 1, (usage.returncode, usage.stderr)
+    blind = t.run_headless(
+        make_blend("blind.blend", camera=False), "--out", os.path.join(FOLDER, "b"), "--frames", "1"
+    )
+    assert blind.returncode == 3 and "has no camera" in blind.stderr, (
+        blind.returncode,
+        blind.stderr,
+    )
+    unwritable = t.run_headless(BLEND, "--out", "/proc/nowhere/shot", "--frames", "1")
+    assert unwritable.returncode == 3 and "cannot be made" in unwritable.stderr, unwritable.stderr
+    told = t.run_headless(BLEND, "--help")
+    assert told.returncode == 0 and "--truth-samples" in told.stdout and "halton23" in told.stdout
+    assert digest(BLEND) == BEFORE
+
+
+def test_kill_and_resume() -> None:
+    whole, broken = os.path.join(FOLDER, "whole"), os.path.join(FOLDER, "broken")
+    done = t.run_headless(BLEND, "--out", whole, "--frames", "1-4", *COMMON, "--json")
+    assert done.returncode == 0, done.stderr
+    events = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
+    assert [event["event"] for event in events if event["event"] in ("frame", "truth", "done")] == [
+        "frame", "truth", "frame", "frame", "frame", "truth", "done",
+    ]  # fmt: skip
+    process = subprocess.Popen(
+        t.blender_command(BLEND, "--out", broken, "--frames", "1-4", *COMMON),
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    for line in process.stdout:
+        if line.startswith("frame 2"):
+            break
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    process.stdout.close()
+    early = t.read_manifest(broken)
+    assert 2 <= len(early["frames"]) < 4, "killed in the middle; what was finished is in shot.json"
+    left = t.run_headless(BLEND, "--out", broken, "--frames", "1-4", *COMMON)
+    assert left.returncode == 0 and "were finished before" in left.stdout, left.stdout + left.stderr
+    assert contents(whole) == contents(broken)
+    assert without_times(t.read_manifest(whole)) == without_times(t.read_manifest(broken))
+    assert not [name for _, _, names in os.walk(broken) for name in names if ".tmp" in name]
+    changed = t.run_headless(BLEND, "--out", broken, "--frames", "1-4", *COMMON, "--period", "8")
+    assert (
+        changed.returncode == 2 and "--period was 16 and now is 8" in changed.stderr
+    ), changed.stderr
+    assert contents(whole) == contents(broken)
+    damaged = os.path.join(broken, "frames/000003.exr")
+    with open(damaged, "r+b") as file:
+        file.truncate(1000)
+    repaired = t.run_headless(BLEND, "--out", broken, "--frames", "1-4", *COMMON)
+    assert repaired.returncode == 0 and contents(whole) == contents(
+        broken
+    ), "a truncated file is made again"
+    replaced = t.run_headless(
+        BLEND, "--out", broken, "--frames", "1-2", "--truth-frames", "none", "--overwrite"
+    )
+    assert replaced.returncode == 0 and sorted(contents(broken)) == [
+        "frames/000001.exr",
+        "frames/000002.exr",
+    ]
+    assert digest(BLEND) == BEFORE
+
+
+def test_two_processes_share_a_range() -> None:
+    shared, alone = os.path.join(FOLDER, "shared"), os.path.join(FOLDER, "whole")
+    options = ("--out", shared, "--frames", "1-4", *COMMON, "--json")
+    processes = [
+        subprocess.Popen(
+            t.blender_command(BLEND, *options),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        for _ in range(2)
+    ]
+    rendered = 0
+    for process in processes:
+        output, errors = process.communicate(timeout=120)
+        assert process.returncode == 0, errors
+        rendered += json.loads(
+            output.splitlines()[-2 if "quit" in output.splitlines()[-1] else -1]
+        )["rendered"]
+    assert rendered == 6, f"every picture is made once, {rendered} were made"
+    assert contents(shared) == contents(alone)
+    assert without_times(t.read_manifest(shared)) == without_times(t.read_manifest(alone))
+
+
+def test_foreign_folder_is_left_alone() -> None:
+    folder = os.path.join(FOLDER, "foreign")
+    os.makedirs(folder)
+    with open(os.path.join(folder, "precious.txt"), "w", encoding="utf-8") as file:
+        file.write("mine")
+    time.sleep(0)
+    for extra in ((), ("--overwrite",)):
+        done = t.run_headless(BLEND, "--out", folder, "--frames", "1", *extra)
+        assert done.returncode == 2 and "not empty" in done.stderr, done.stderr
+    assert os.listdir(folder) == ["precious.txt"]
+
+
+def test_scenes_that_are_refused_or_told() -> None:
+    """In this process: two view layers, stereo, panorama; and what is switched off is said."""
+    from aa_resolve.errors import SceneError
+
+    def attempt(change) -> str:
+        scene = t.new_scene(16, 9)
+        camera = t.add_camera(scene)
+        t.add_object(scene, "Cube")
+        change(scene, camera)
+        out = os.path.join(t.temporary_folder(), "s")
+        try:
+            return " ".join(t.export(out, "--frames", "1", "--truth-frames", "none")["notes"])
+        except SceneError as error:
+            return f"refused: {error}"
+
+    assert "choose one with --view-layer" in attempt(
+        lambda scene, _: scene.view_layers.new("Second")
+    )
+    assert "stereo" in attempt(lambda scene, _: setattr(scene.render, "use_multiview", True))
+    assert "type PANO" in attempt(lambda _, camera: setattr(camera.data, "type", "PANO"))
+    assert "motion blur is switched off" in attempt(
+        lambda scene, _: setattr(scene.render, "use_motion_blur", True)
+    )
+    assert "depth of field" in attempt(lambda _, camera: setattr(camera.data.dof, "use_dof", True))
+    assert "compositor is switched off" in attempt(
+        lambda scene, _: setattr(scene, "use_nodes", True)
+    )
+    assert "rendered with Cycles" in attempt(
+        lambda scene, _: setattr(scene.render, "engine", "BLENDER_EEVEE")
+    )
+
+
+if __name__ == "__main__":
+    t.main(
+        test_wrong_usage_is_2_and_one_line,
+        test_exit_codes_of_the_process,
+        test_kill_and_resume,
+        test_two_processes_share_a_range,
+        test_foreign_folder_is_left_alone,
+        test_scenes_that_are_refused_or_told,
+    )

@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sub-samples: several views in one render equal separate renders; the mask agrees with ids and SADP."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import support as t  # noqa: E402
+from support import bpy, np  # noqa: E402
+
+from aa_resolve import jitter  # noqa: E402
+
+
+def scene_with_edges(width: int = 48, height: int = 32):
+    scene = t.new_scene(width, height)
+    t.add_camera(scene, (0, -8, 2), (0, 0, 0.5))
+    t.add_sun(scene)
+    random = np.random.default_rng(3)
+    for index in range(14):
+        place = (random.uniform(-3, 3), random.uniform(-1, 3), random.uniform(-1, 2.5))
+        item = t.add_object(
+            scene,
+            f"Cube {index}",
+            None,
+            place,
+            random.uniform(0, 3, 3),
+            random.uniform(0.2, 1.0, 3),
+        )
+        item.data.materials.append(t.diffuse(f"Colour {index}", random.uniform(0.1, 0.9, 3)))
+    return scene
+
+
+def exported(*options: str) -> tuple[dict, dict[str, np.ndarray], str]:
+    out = os.path.join(t.temporary_folder(), "shot")
+    shot = t.export(out, "--frames", "1", "--truth-frames", "none", *options)
+    path = os.path.join(out, "frames/000001.exr")
+    return shot, t.read_part(path, "subsamples"), path
+
+
+def test_views_equal_separate_renders() -> None:
+    scene_with_edges()
+    shot, samples, _ = exported("--passes", "subsamples,subsampleColor", "--subsamples", "d3d4")
+    assert shot["subsamples"]["pattern"] == "d3d4"
+    assert shot["subsamples"]["positions"] == [
+        list(pair) for pair in jitter.pattern_positions("d3d4")
+    ]
+    for index, (x, y) in enumerate(shot["subsamples"]["positions"]):
+        scene_with_edges()
+        from aa_resolve import export as module
+
+        original = module.jitter.jitter_at
+        module.jitter.jitter_at = lambda *_args, x=x, y=y: (x, y)
+        try:
+            out = os.path.join(t.temporary_folder(), "single")
+            t.export(
+                out, "--frames", "1", "--truth-frames", "none", "--passes", "depth,normal,object"
+            )
+        finally:
+            module.jitter.jitter_at = original
+        path = os.path.join(out, "frames/000001.exr")
+        view = f"s{index:02d}"
+        pairs = [
+            (samples[f"{view}.Z"], t.read_part(path, "depth")["Z"]),
+            (samples[f"{view}.id"], t.read_part(path, "object")["id"]),
+        ]
+        normal, color = t.read_part(path, "normal"), t.read_part(path, "color")
+        pairs += [(samples[f"{view}.{axis}"], normal[axis]) for axis in ("N.X", "N.Y", "N.Z")]
+        pairs += [(samples[f"{view}.{axis}"], color[axis]) for axis in "RGB"]
+        for one, other in pairs:
+            assert one.dtype == other.dtype and np.array_equal(one, other), view
+
+
+def test_override_keeps_the_geometry() -> None:
+    """Without colour the override material is used; depth, normals and ids stay the same."""
+    scene_with_edges()
+    _, plain, path = exported("--passes", "subsamples", "--subsamples", "d3d2")
+    scene_with_edges()
+    _, shaded, _ = exported("--passes", "subsamples,subsampleColor", "--subsamples", "d3d2")
+    assert "s00.R" not in plain and "s00.R" in shaded
+    for name in plain:
+        if ".N." in name:  # rounded elsewhere in the shader: the last bit may differ
+            assert np.abs(plain[name] - shaded[name]).max() < 1e-6, name
+        else:
+            assert np.array_equal(plain[name], shaded[name]), name
+    scene_with_edges()
+    only_color = exported("--passes", "subsampleColor", "--subsamples", "d3d2")[1]
+    assert sorted(only_color) == ["s00.B", "s00.G", "s00.R", "s01.B", "s01.G", "s01.R"]
+
+
+def scalar_mask(centre, others) -> int:
+    """The clustering of methods/05-geometry.md 5.5.2, one pixel, written as the text says it."""
+
+    def dissimilarity(a, b) -> float:
+        if a["id"] != b["id"]:
+            return 2.0
+        if a["id"] == 0:
+            return 0.0
+        offset = b["point"] - a["point"]
+        distance = float(np.linalg.norm(offset))
+        if distance < 1e-6 * max(1.0, a["depth"]):
+            return 1.0 - float(a["normal"] @ b["normal"])
+        direction = offset / distance
+        return abs(float(a["normal"] @ direction)) + abs(float(b["normal"] @ direction))
+
+    distances = [dissimilarity(centre, other) for other in others]
+    largest = max(distances)
+    if largest < 0.2:
+        return (1 << len(others)) - 1
+    similar = [value <= largest / 2 for value in distances]
+    near = [0.0] + [value for value, bit in zip(distances, similar) if bit]
+    far = [value for value, bit in zip(distances, similar) if not bit]
+    mean_near, mean_far = sum(near) / len(near), sum(far) / len(far)
+    return sum(
+        1 << k
+        for k, value in enumerate(distances)
+        if abs(value - mean_near) <= abs(value - mean_far)
+    )
+
+
+def test_mask() -> None:
+    scene = scene_with_edges()
+    projection = t.Projection(scene.camera, 48, 32)
+    shot, samples, path = exported(
+        "--passes", "subsamples,depth,normal,object", "--subsamples", "d3d8"
+    )
+    mask = samples["mask"]
+    assert mask.dtype == np.uint32
+    depth, ids = t.read_part(path, "depth")["Z"], t.read_part(path, "object")["id"]
+    normal = t.stacked(t.read_part(path, "normal"), "N.X N.Y N.Z")
+    jittered = shot["frames"][0]["jitter"]
+
+    def record(row, column, offset, z, n, identity):
+        point = projection.unproject(
+            np.array([column + 0.5 + offset[0]]),
+            np.array([row + 0.5 + offset[1]]),
+            np.array([float(z)]),
+        )[0]
+        return {
+            "point": point,
+            "normal": n.astype(np.float64),
+            "id": int(identity),
+            "depth": float(z),
+        }
+
+    different = 0
+    for row in range(32):
+        for column in range(48):
+            centre = record(
+                row, column, jittered, depth[row, column], normal[row, column], ids[row, column]
+            )
+            others = []
+            for k, offset in enumerate(shot["subsamples"]["positions"]):
+                n = np.array([samples[f"s{k:02d}.N.{axis}"][row, column] for axis in "XYZ"])
+                others.append(
+                    record(
+                        row,
+                        column,
+                        offset,
+                        samples[f"s{k:02d}.Z"][row, column],
+                        n,
+                        samples[f"s{k:02d}.id"][row, column],
+                    )
+                )
+            different += scalar_mask(centre, others) != int(mask[row, column])
+    partial = (mask != 255).mean()
+    assert 0.1 < partial < 0.9, partial
+    assert different == 0, f"{different} masks differ"
+
+
+def test_cutouts_use_real_materials() -> None:
+    """Leaves with holes: depth and ids of sub-samples see through the holes."""
+    scene = t.new_scene(48, 32)
+    t.add_camera(scene, (0, -8, 0), (0, 0, 0))
+    t.add_sun(scene)
+    wall = t.add_object(scene, "Wall", None, (0, 3, 0), (0, 0, 0), (9, 0.1, 9))
+    wall.data.materials.append(t.diffuse("Grey", (0.5, 0.5, 0.5)))
+    mesh = bpy.data.meshes.new("Leaf")
+    mesh.from_pydata([(-2, 0, -2), (2, 0, -2), (2, 0, 2), (-2, 0, 2)], [], [(0, 1, 2, 3)])
+    leaf = t.add_object(scene, "Leaf", mesh)
+    material = bpy.data.materials.new("Holes")
+    material.use_nodes = True
+    tree = material.node_tree
+    checker = tree.nodes.new("ShaderNodeTexChecker")
+    checker.inputs["Scale"].default_value = 2.0
+    coordinates = tree.nodes.new("ShaderNodeTexCoord")
+    tree.links.new(coordinates.outputs["Generated"], checker.inputs["Vector"])
+    tree.links.new(checker.outputs["Fac"], tree.nodes["Principled BSDF"].inputs["Alpha"])
+    leaf.data.materials.append(material)
+    shot, samples, path = exported(
+        "--passes", "subsamples,object,depth", "--subsamples", "d3d2", "--jitter", "none"
+    )
+    names = {name: int(key) for key, name in shot["objects"].items()}
+    ids = samples["s00.id"]
+    inside = np.zeros(ids.shape, bool)
+    inside[10:22, 18:30] = True
+    share = (ids[inside] == names["Leaf"]).mean()
+    assert 0.3 < share < 0.7, f"the leaf covers {share:.2f} of its area"
+    assert any("cut-outs" in note for note in shot["notes"])
+    assert (samples["s00.Z"][ids == names["Wall"]] > 9).all() and (
+        samples["s00.Z"][ids == names["Leaf"]] < 9
+    ).all()
+
+
+def test_uint_channels_are_exact() -> None:
+    """Ids share a part with floats; every 32-bit value survives the way through OpenImageIO."""
+    from aa_resolve import exr
+
+    values = np.array(
+        [
+            [0, 1, 2, 255],
+            [32767, 65536, 16777217, 2147483648],
+            [4294967295, 4294967294, 3, 123456789],
+        ]
+    )
+    floats = np.array(
+        [[0.1, 1e10, -1.5, 1e-30], [3.0, 7.0, 0.3, 1 / 3], [1e5, -1e10, 2.5, 65504.0]], np.float32
+    )
+    path = os.path.join(t.temporary_folder(), "mixed.exr")
+    pixels = np.stack([values.astype(np.float64), floats.astype(np.float64)], -1)
+    exr.write_parts(path, [exr.Part("p", ("id", "Z"), ("uint", "float"), pixels)])
+    back = t.read_part(path, "p")
+    assert np.array_equal(back["id"], values.astype(np.uint32)) and np.array_equal(
+        back["Z"], floats
+    )
+    sizes = exr.part_bytes(path)
+    assert sizes.keys() == {"p"} and 0 < sizes["p"] <= os.path.getsize(path)
+
+
+if __name__ == "__main__":
+    t.main(
+        test_uint_channels_are_exact,
+        test_views_equal_separate_renders,
+        test_override_keeps_the_geometry,
+        test_mask,
+        test_cutouts_use_real_materials,
+    )
