@@ -1,6 +1,7 @@
 #include "metrics/measure.h"
 
 #include "metrics/error_bar.h"
+#include "metrics/flip.h"
 
 namespace aa {
 
@@ -35,6 +36,7 @@ FrameMetrics measure(const Rgb& encoded, const Rgb* linear, const Reference& ref
     m.ssimLuma = ssimLuma(encoded, reference.encoded, exec);
     if (linear) m.relMse = relMse(*linear, reference.linear, exec);
     if (options.ssimRgb) m.ssimRgb = ssimRgb(encoded, reference.encoded, exec);
+    if (options.flip) m.flip = flip(encoded, reference.encoded, exec);
     return m;
 }
 

@@ -24,7 +24,7 @@ struct Reference {
 Reference makeReference(const Rgb& halfA, const Rgb& halfB, const DisplayChain& display, const Exec& exec);
 
 struct MeasureOptions {
-    bool ssimRgb = false;
+    bool ssimRgb = false, flip = false;
 };
 // `encoded` is the method's image after the display chain; `linear` is null when the method gives encoded colour. The
 // tile errors of the encoded image are added to `pool`.

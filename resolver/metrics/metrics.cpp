@@ -12,7 +12,7 @@ namespace {
 double inOrder(const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0); }
 
 // Rows per block of the windowed kernels: each block repeats 10 rows of the along-x pass.
-constexpr int kWindowRows = 64;
+constexpr int kWindowRows = 128;
 
 double ssim(const Rgb& test, const Rgb& reference, const Exec& exec, SsimSignal signal, PlaneF* map) {
     assert(test.width() == reference.width() && test.height() == reference.height());

@@ -1,57 +1,43 @@
 #include "kernels/lanes.h"
 #include "metrics/metrics_kernels.h"
+#include "metrics/strip.h"
 
 namespace AA_ARCH {
 using namespace aa;
 
-// Adds the first `count` lanes to the strands of their x; x is a multiple of N<R>.
-template <class R>
-AA_INLINE void add_to_strands(R value, int x, int count, double* strands) {
-    double* at = strands + x % kSumStrands;
-    if constexpr (N<R> == 1)
-        *at += double(value);
-    else if (count >= N<R>)
-        for (int i = 0; i < N<R>; i++) at[i] += double(value.v[i]);
-    else
-        for (int i = 0; i < count; i++) at[i] += double(value.v[i]);
-}
-AA_INLINE double sum_of_strands(const double* s) {
-    return ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]));
-}
-
 template <class R>
 __attribute__((flatten)) void squaredErrorRows(const SquaredErrorArgs& a, int y0, int y1) {
     for (int y = y0; y < y1; y++) {
-        double reference[kSumStrands] = {};
+        Strands<R> reference;
         for (int tile = 0; tile < a.tilesX; tile++) {
-            double error[kSumStrands] = {};
+            Strands<R> error;
             const int begin = tile * kErrorTilePx, tileEnd = begin + kErrorTilePx,
                       end = tileEnd < a.width ? tileEnd : a.width;
             for (int c = 0; c < 3; c++)
                 for (int x = begin; x < end; x += N<R>) {
                     const long o = long(y) * a.stride + x;
                     const R r = load<R>(a.reference.c[c] + o), d = load<R>(a.test.c[c] + o) - r;
-                    add_to_strands(d * d, x, end - x, error);
-                    add_to_strands(r * r, x, end - x, reference);
+                    error.add(d * d, x, end - x);
+                    reference.add(r * r, x, end - x);
                 }
-            a.tileRows[long(y) * a.tilesX + tile] = sum_of_strands(error);
+            a.tileRows[long(y) * a.tilesX + tile] = error.total();
         }
-        a.referenceRows[y] = sum_of_strands(reference);
+        a.referenceRows[y] = reference.total();
     }
 }
 
 template <class R>
 __attribute__((flatten)) void relativeErrorRows(const RelativeErrorArgs& a, int y0, int y1) {
     for (int y = y0; y < y1; y++) {
-        double error[kSumStrands] = {};
+        Strands<R> error;
         for (int c = 0; c < 3; c++)
             for (int x = 0; x < a.width; x += N<R>) {
                 const long o = long(y) * a.stride + x;
                 const R r = load<R>(a.reference.c[c] + o), d = load<R>(a.test.c[c] + o) - r;
                 // 0.01: the floor that keeps black from dividing by zero, methods/07 s.8
-                add_to_strands(d * d / (r * r + R(Elem<R>(0.01))), x, a.width - x, error);
+                error.add(d * d / (r * r + R(Elem<R>(0.01))), x, a.width - x);
             }
-        a.rows[y] = sum_of_strands(error);
+        a.rows[y] = error.total();
     }
 }
 
@@ -65,7 +51,6 @@ __attribute__((flatten)) void relativeErrorRows(const RelativeErrorArgs& a, int 
 //   var = sum_j w_j (var_j + (mean_j - mean)^2).
 
 constexpr int kTaps = 11, kReach = 5;
-constexpr int kStrip = 64;               // columns at a time: the ring of rows stays in the first-level cache
 constexpr int kPadded = kStrip + 2 * 8;  // a strip and its neighbourhood, a whole number of lanes
 // exp(-i^2 / (2 1.5^2)) / sum, i = 0..5 (methods/07 s.2; here to double precision)
 constexpr double kGauss[kReach + 1] = {0.2660117248617943,  0.21300553771125366,  0.1093606895097,
@@ -81,13 +66,6 @@ template <class T>
 struct alignas(64) MomentRow {
     T mean[2][kStrip], variance[2][kStrip];
 };
-template <class R>
-AA_INLINE R load_own(const Elem<R>* p) {  // storage in the arithmetic's own precision
-    if constexpr (N<R> == 1)
-        return *p;
-    else
-        return typename R::V(*(const typename R::Vu*)p);
-}
 template <class R>
 AA_INLINE R weight(int i) {
     return R(Elem<R>(kGauss[i]));
@@ -108,21 +86,31 @@ AA_INLINE Moments<R> moments_along_x(const Elem<R>* p) {
     }
     return {mean, variance};
 }
+// `rows` are the window's 11 rows in order.
 template <class R, class T>
-AA_INLINE Moments<R> moments_along_y(const MomentRow<T>* const* rows, int signal, int x) {
+AA_INLINE Moments<R> moments_along_y(const MomentRow<T>* rows, int signal, int x) {
     R m[kTaps];
-    for (int j = 0; j < kTaps; j++) m[j] = load_own<R>(rows[j]->mean[signal] + x);
+    for (int j = 0; j < kTaps; j++) m[j] = load_own<R>(rows[j].mean[signal] + x);
     R mean = m[kReach] * weight<R>(0);
     for (int j = 1; j <= kReach; j++) mean = mean + (m[kReach - j] + m[kReach + j]) * weight<R>(j);
     const auto part = [&](int j) __attribute__((always_inline)) {
         const R e = m[j] - mean;
-        return load_own<R>(rows[j]->variance[signal] + x) + e * e;
+        return load_own<R>(rows[j].variance[signal] + x) + e * e;
     };
     R variance = part(kReach) * weight<R>(0);
     for (int j = 1; j <= kReach; j++) variance = variance + (part(kReach - j) + part(kReach + j)) * weight<R>(j);
     return {mean, variance};
 }
 
+AA_INLINE void prefetch_row(const SsimArgs& a, int signal, int y, int first) {
+    if (y < 0 || y >= a.height) return;
+    for (int c = 0; c < 3; c++) {
+        if (signal < 3 && c != signal) continue;
+        const long o = long(y) * a.stride + first;
+        prefetch(a.test.c[c] + o, kPadded);
+        prefetch(a.reference.c[c] + o, kPadded);
+    }
+}
 // s and d of row y, columns [x0 - 8, x0 + kStrip + 8), coordinates clamped to the image.
 template <class R>
 AA_INLINE void load_row(const SsimArgs& a, int signal, int x0, int y, Elem<R>* s, Elem<R>* d) {
@@ -133,6 +121,7 @@ AA_INLINE void load_row(const SsimArgs& a, int signal, int x0, int y, Elem<R>* s
     };
     const int first = x0 - 8;
     if (first >= 0 && first + kPadded <= a.width) {
+        prefetch_row(a, signal, y + kRowsAhead, first);
         for (int i = 0; i < kPadded; i += N<R>) {
             const R t = pixel(a.test, row + first + i, R{}), r = pixel(a.reference, row + first + i, R{});
             store(t + r, s + i), store(t - r, d + i);
@@ -170,30 +159,37 @@ AA_INLINE Moments<R> moments_across_channels(const Moments<R>* m, int channel) {
 template <class R, int Signals>
 AA_INLINE void ssim_strip(const SsimArgs& a, int x0, int y0, int y1) {
     using T = Elem<R>;
-    MomentRow<T> ring[Signals][kTaps];
+    // Every row is stored twice, kTaps apart, so that any 11 successive rows lie one after the other.
+    MomentRow<T> ring[Signals][2 * kTaps];
     alignas(64) T s[kPadded], d[kPadded];
     const int columns = a.width - x0 < kStrip ? a.width - x0 : kStrip;
     for (int y = y0 - kReach; y < y1 + kReach; y++) {
         const int slot = (y - y0 + kReach) % kTaps;
         for (int k = 0; k < Signals; k++) {
             load_row<R>(a, Signals == 1 ? 3 : k, x0, y, s, d);
-            MomentRow<T>& row = ring[k][slot];
-            for (int x = 0; x < columns; x += N<R>) {
-                const Moments<R> ms = moments_along_x<R>(s + 8 + x), md = moments_along_x<R>(d + 8 + x);
-                store(ms.mean, row.mean[0] + x), store(ms.variance, row.variance[0] + x);
-                store(md.mean, row.mean[1] + x), store(md.variance, row.variance[1] + x);
-            }
+            MomentRow<T>&row = ring[k][slot], &again = ring[k][slot + kTaps];
+            for (int signal = 0; signal < 2; signal++)
+                for (int x = 0; x < columns; x += N<R>) {
+                    const Moments<R> m = moments_along_x<R>((signal ? d : s) + 8 + x);
+                    store(m.mean, row.mean[signal] + x), store(m.variance, row.variance[signal] + x);
+                    store(m.mean, again.mean[signal] + x), store(m.variance, again.variance[signal] + x);
+                }
         }
         const int centre = y - kReach;
         if (centre < y0) continue;
-        const MomentRow<T>* rows[Signals][kTaps];
+        MomentRow<T> window[Signals];
         for (int k = 0; k < Signals; k++)
-            for (int j = 0; j < kTaps; j++) rows[k][j] = &ring[k][(slot + 1 + j) % kTaps];
+            for (int signal = 0; signal < 2; signal++)
+                for (int x = 0; x < columns; x += N<R>) {
+                    const Moments<R> m = moments_along_y<R>(&ring[k][slot + 1], signal, x);
+                    store(m.mean, window[k].mean[signal] + x), store(m.variance, window[k].variance[signal] + x);
+                }
+        Strands<R> sum;
         for (int x = 0; x < columns; x += N<R>) {
             Moments<R> ms[Signals], md[Signals];
             for (int k = 0; k < Signals; k++) {
-                ms[k] = moments_along_y<R>(rows[k], 0, x);
-                md[k] = moments_along_y<R>(rows[k], 1, x);
+                ms[k] = {load_own<R>(window[k].mean[0] + x), load_own<R>(window[k].variance[0] + x)};
+                md[k] = {load_own<R>(window[k].mean[1] + x), load_own<R>(window[k].variance[1] + x)};
             }
             R value;
             if constexpr (Signals == 1)
@@ -206,12 +202,13 @@ AA_INLINE void ssim_strip(const SsimArgs& a, int x0, int y0, int y1) {
                                      : ssim_of(ms[k], md[k]));
                 value = sum / R(T(3));
             }
-            add_to_strands(value, x, columns - x, a.rows + long(centre) * kSumStrands);
+            sum.add(value, x, columns - x);
             if (a.map) {
                 float* out = a.map + long(centre) * a.mapStride + x0 + x;
                 store(value, out);
             }
         }
+        sum.add_to(a.rows + long(centre) * kSumStrands);
     }
 }
 template <class R>

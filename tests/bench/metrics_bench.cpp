@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "metrics/flip.h"
+#include "metrics/fourier.h"
 #include "metrics/metrics.h"
 
 namespace aa {
@@ -29,13 +31,16 @@ void measure(benchmark::State& state, Metric metric) {
     exec.parallel = false;
     image(0);
     for (auto _ : state) benchmark::DoNotOptimize(metric(image(0), image(1), exec));
-    state.counters["ns/px"] = benchmark::Counter(double(state.iterations()) * kWidth * kHeight * 1e-9,
-                                                 benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    // seconds per iteration * 1e9 / pixels
+    state.counters["ns/px"] = benchmark::Counter(
+        double(kWidth) * kHeight * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 BENCHMARK_CAPTURE(measure, squaredError, [](auto& t, auto& r, auto& e) { return squaredError(t, r, e).mse; });
 BENCHMARK_CAPTURE(measure, relMse, [](auto& t, auto& r, auto& e) { return relMse(t, r, e); });
 BENCHMARK_CAPTURE(measure, ssimLuma, [](auto& t, auto& r, auto& e) { return ssimLuma(t, r, e); });
 BENCHMARK_CAPTURE(measure, ssimRgb, [](auto& t, auto& r, auto& e) { return ssimRgb(t, r, e); });
 BENCHMARK_CAPTURE(measure, ssimMatlab3D, [](auto& t, auto& r, auto& e) { return ssimMatlab3D(t, r, e); });
+BENCHMARK_CAPTURE(measure, flip, [](auto& t, auto& r, auto& e) { return flip(t, r, e); });
+BENCHMARK_CAPTURE(measure, fourier, [](auto& t, auto& r, auto& e) { return fourierError(t, r, e).fmse; });
 }  // namespace
 }  // namespace aa

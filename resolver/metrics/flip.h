@@ -1,0 +1,25 @@
+// LDR-FLIP, Andersson et al. 2020 (methods/07 s.4): the difference that a viewer sees when flipping between two images
+// at 67 pixels per degree (0.7 m from a 0.7 m wide monitor of 3840 px).
+//
+//   colour:  opponent space, blurred by the eye's contrast sensitivity, CIELab with Hunt's adjustment, HyAB distance
+//   feature: differences of edges and points of the unblurred luminance
+//   FLIP   = colour^(1 - feature)
+//
+// All filters are separable (the blue-yellow one is a sum of two), which is exact. The viewing place is fixed so that
+// the filters are constants.
+#pragma once
+#include "metrics/metrics.h"
+
+namespace aa {
+
+// Encoded images in [0,1]; values outside count as 0 or 1, NaN as 0. Mean over the pixels, in [0,1]; the map when `map`
+// is given.
+double flip(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr);
+
+// Pooled values of a map: quartiles weighted by the error itself, as the reference implementation prints them.
+struct FlipStatistics {
+    double mean = 0, firstQuartile = 0, median = 0, thirdQuartile = 0, max = 0;
+};
+FlipStatistics flipStatistics(const PlaneF& map);
+
+}  // namespace aa
