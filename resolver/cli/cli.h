@@ -30,5 +30,6 @@ void addList(CLI::App& app, Context& context);
 void addPlan(CLI::App& app, Context& context);
 void addRun(CLI::App& app, Context& context);
 void addFilter(CLI::App& app, Context& context);
+void addLearnRsaa(CLI::App& app, Context& context);
 
 }  // namespace aa

@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
         aa::addPlan,
         aa::addRun,
         aa::addFilter,
+        aa::addLearnRsaa,
     };
     for (const auto add : commands) add(app, context);
     try {

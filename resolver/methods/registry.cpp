@@ -3,6 +3,7 @@
 #include "methods/fxaa.h"
 #include "methods/method.h"
 #include "methods/noaa.h"
+#include "methods/rsaa.h"
 #include "methods/ssaa.h"
 #include "methods/taa_simplest.h"
 #include "methods/uncharted.h"
@@ -16,6 +17,7 @@ const std::vector<MethodDescriptor>& registry() {
         // spatial
         fxaa311Descriptor(),
         // geometry
+        rsaaDescriptor(),
         // temporal
         taaSimplestDescriptor(),
         unchartedDescriptor(),

@@ -1,0 +1,71 @@
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "cli/cli.h"
+#include "image/error.h"
+#include "methods/rsaa_lut_data.h"
+
+namespace aa {
+namespace {
+
+struct Learned {
+    size_t samples, trained;
+    RsaaErrors errors;
+    double gainDb(double mse) const { return 10 * std::log10(errors.noaa / mse); }
+};
+Learned learn(size_t samples, RsaaTraining training) {
+    const auto positionsPx = d3dPattern(samples);
+    const auto entries = learnRsaa(positionsPx, training);
+    return {samples, entries.size(), halfPlaneErrors(positionsPx, rsaaTable(samples, entries))};
+}
+void writeText(const std::string& path, const std::string& text) {
+    std::ofstream file(path, std::ios::binary);
+    file << text;
+    if (!file.flush()) throw InputError(path + ": cannot be written; check that its folder exists and has room");
+}
+
+}  // namespace
+
+void addLearnRsaa(CLI::App& app, Context&) {
+    struct Options {
+        bool json = false;
+        std::string training = "all", source;
+    };
+    auto o = std::make_shared<Options>();
+    auto* c = app.add_subcommand("learn-rsaa", "Learns RSAA's offsets for 4, 8 and 16 sub-samples and measures them");
+    c->add_option("--training", o->training, "classes of training pictures")
+        ->check(CLI::IsMember({"all", "halfPlanes"}));
+    c->add_option("-o,--output", o->source, "write the offsets of --training all as C++ source here")->default_str("");
+    c->add_flag("--json", o->json, "as JSON");
+    c->callback([o] {
+        const auto training = o->training == "all" ? RsaaTraining::all : RsaaTraining::halfPlanes;
+        if (!o->source.empty()) {
+            if (training != RsaaTraining::all)
+                throw UsageError("learn-rsaa: -o writes the shipped offsets, which need --training all");
+            writeText(o->source, learnedRsaaSource());
+        }
+        nlohmann::ordered_json all = nlohmann::ordered_json::array();
+        if (!o->json)
+            std::puts("sub-samples  masks  learned  gain over noaa on half-planes: resampled  sub-sample mean");
+        for (const size_t samples : {4u, 8u, 16u}) {
+            const Learned l = learn(samples, training);
+            if (o->json)
+                all.push_back({{"samples", l.samples},
+                               {"learnedMasks", l.trained},
+                               {"noaaMse", l.errors.noaa},
+                               {"rsaaMse", l.errors.rsaa},
+                               {"msaaMse", l.errors.msaa},
+                               {"rsaaGainDb", l.gainDb(l.errors.rsaa)},
+                               {"msaaGainDb", l.gainDb(l.errors.msaa)}});
+            else
+                std::printf("%11zu  %5d  %7zu  %34.2f dB  %12.2f dB\n", l.samples, 1 << l.samples, l.trained,
+                            l.gainDb(l.errors.rsaa), l.gainDb(l.errors.msaa));
+        }
+        if (o->json) std::cout << all.dump(1) << "\n";
+    });
+}
+
+}  // namespace aa

@@ -1,0 +1,178 @@
+#include "methods/rsaa.h"
+
+#include <algorithm>
+
+#include "image/error.h"
+#include "methods/rsaa_kernels.h"
+#include "methods/rsaa_lut_data.h"
+#include "methods/subsample_geometry.h"
+
+namespace aa {
+namespace {
+
+struct Options {
+    Dissimilarity measure;
+    float floor;
+    bool adaptive, tuning, tuneAdaptive, quadrant, maskPass, ids;
+    RsaaTraining training;
+    explicit Options(const Params& p)
+        : measure(Dissimilarity(p.choiceIndex("measure"))),
+          floor(p.realf(measure == Dissimilarity::sadp    ? "sadpFloor"
+                        : measure == Dissimilarity::depth ? "depthFloor"
+                                                          : "normalFloor")),
+          adaptive(p.choice("clustering") == "adaptive"),
+          tuning(p.choice("tuning") != "off"),
+          tuneAdaptive(p.choice("tuning") == "adaptive"),
+          quadrant(p.choice("neighbours") == "quadrant"),
+          maskPass(p.choice("mask") == "pass"),
+          ids(p.flag("ids")),
+          training(RsaaTraining(p.choiceIndex("training"))) {}
+    bool readsGeometry() const { return !maskPass || tuning; }
+};
+
+std::vector<float> offsetTable(const std::vector<glm::dvec2>& positionsPx, RsaaTraining training) {
+    const size_t samples = positionsPx.size();
+    const auto shipped = shippedRsaaEntries(samples);
+    if (training == RsaaTraining::all && !shipped.empty() && positionsPx == d3dPattern(samples))
+        return rsaaTable(samples, shipped);
+    return rsaaTable(samples, learnRsaa(positionsPx, training));
+}
+
+// The pixels that are asked for the surface of a sub-sample at `offsetPx` from this pixel's centre sample. quadrant:
+// all three on its side, which are those that a fetch toward it blends. Otherwise the nearest of the eight; on a tie
+// one across an edge rather than one across a corner.
+std::vector<glm::ivec2> neighboursOf(glm::dvec2 offsetPx, bool quadrant) {
+    const int sx = offsetPx.x < 0 ? -1 : 1, sy = offsetPx.y < 0 ? -1 : 1;
+    if (quadrant) return {{sx, 0}, {0, sy}, {sx, sy}};
+    static const glm::ivec2 axisFirst[] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
+    return {*std::min_element(std::begin(axisFirst), std::end(axisFirst), [&](glm::ivec2 a, glm::ivec2 b) {
+        const glm::dvec2 da = offsetPx - glm::dvec2(a), db = offsetPx - glm::dvec2(b);
+        return da.x * da.x + da.y * da.y < db.x * db.x + db.y * db.y;
+    })};
+}
+
+class RsaaMethod : public Method {
+  public:
+    RsaaMethod(const Options& options, const std::vector<glm::dvec2>& positionsPx)
+        : options_(options), offsetsPx_(offsetTable(positionsPx, options.training)) {}
+
+    void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
+        RsaaArgs a{};
+        a.color = view(frame.colorLinear), a.out = view(out);
+        a.stride = out.stride(), a.width = frame.width, a.height = frame.height;
+        a.samples = int(frame.subSamples.size()), a.offsetsPx = offsetsPx_.data();
+        a.measure = options_.measure, a.floor = options_.floor, a.adaptive = options_.adaptive;
+        a.tuning = options_.tuning, a.tuneAdaptive = options_.tuneAdaptive;
+        if (options_.maskPass) a.maskPass = frame.subSampleMask.row(0);
+        std::vector<RsaaSample> samples;
+        if (options_.readsGeometry()) {
+            samples = geometry(frame, a);
+            a.sample = samples.data();
+        }
+        if (keepDebugLayers) keepLayers(frame, a);
+        runKernel(rsaaKernelsFor(exec.isa).resolve, exec, a, frame.height);
+    }
+    size_t stateBytes() const override { return offsetsPx_.size() * sizeof(float); }
+    std::vector<DebugLayer> debugLayers() const override { return layers_; }
+
+  private:
+    std::vector<RsaaSample> geometry(const Frame& frame, RsaaArgs& a) const {
+        a.depthView = frame.depthView.row(0);
+        const bool normals = options_.measure != Dissimilarity::depth;
+        if (normals) a.normalWorld = view(frame.normalWorld);
+        if (options_.ids) a.objectId = frame.objectId.row(0);
+        if (options_.measure == Dissimilarity::sadp) {
+            const CameraRays rays = cameraRays(frame, "rsaa:measure=sadp");
+            const glm::dvec2 first = frame.jitterPx + 0.5;  // centre sample of pixel (0, 0)
+            for (size_t i = 0; i < 3; i++) {
+                a.ray[i] = float(rays.ray[i] + first.x * rays.rayX[i] + first.y * rays.rayY[i]);
+                a.rayX[i] = float(rays.rayX[i]), a.rayY[i] = float(rays.rayY[i]);
+                a.originX[i] = float(rays.originX[i]), a.originY[i] = float(rays.originY[i]);
+            }
+        }
+        std::vector<RsaaSample> samples;
+        for (size_t k = 0; k < frame.subSamples.size(); k++) {
+            const SubSample& s = frame.subSamples[k];
+            const glm::dvec2 offsetPx = frame.subSamplePositionsPx[k] - frame.jitterPx;
+            RsaaSample sample{s.depthView.row(0),
+                              normals ? view(s.normalWorld) : RgbIn{},
+                              options_.ids ? s.objectId.row(0) : nullptr,
+                              {float(offsetPx.x), float(offsetPx.y)},
+                              {},
+                              0};
+            for (const glm::ivec2 n : neighboursOf(offsetPx, options_.quadrant)) {
+                sample.neighbours[sample.neighbourCount][0] = n.x;
+                sample.neighbours[sample.neighbourCount++][1] = n.y;
+            }
+            samples.push_back(sample);
+        }
+        return samples;
+    }
+    void keepLayers(const Frame& frame, RsaaArgs& a) {
+        layers_.clear();
+        for (const char* layer : {"mask", "tunedMask", "dissimilarity", "offsetXPx", "offsetYPx"})
+            layers_.push_back({layer, {PlaneF(frame.width, frame.height)}});
+        a.maskLayer = layers_[0].planes[0].row(0), a.tunedLayer = layers_[1].planes[0].row(0);
+        a.dissimilarityLayer = layers_[2].planes[0].row(0);
+        a.offsetXLayer = layers_[3].planes[0].row(0), a.offsetYLayer = layers_[4].planes[0].row(0);
+    }
+
+    Options options_;
+    std::vector<float> offsetsPx_;
+    std::vector<DebugLayer> layers_;
+};
+
+}  // namespace
+
+MethodDescriptor rsaaDescriptor() {
+    return {
+        .id = "rsaa",
+        .title = "Resampling anti-aliasing",
+        .family = "geometry",
+        .summary =
+            "Fetches the colour beside the pixel centre, at an offset learned for its mask of sub-samples on other "
+            "surfaces.",
+        .source = "Reshetov 2012 (seed 004); methods/05 s.5.5",
+        .passes = Pass::color | Pass::subsamples,
+        .params = {choiceParam("measure", "sadp", {"sadp", "depth", "normal"}, "dissimilarity of two geometry samples",
+                               "seed 004 slides 24-27"),
+                   realParam("sadpFloor", "0.2", 0.001, 2, "below this SADP everything is one surface",
+                             "methods/05 s.5.5", "measure=sadp"),
+                   realParam("depthFloor", "0.02", 0.0001, 2, "below this relative depth everything is one surface",
+                             "methods/05 s.5.5", "measure=depth"),
+                   realParam("normalFloor", "0.1", 0.001, 2, "below this 1 - cosine everything is one surface",
+                             "methods/05 s.5.5", "measure=normal"),
+                   choiceParam("clustering", "adaptive", {"adaptive", "threshold"},
+                               "similar or different by one k-means iteration, or by the floor alone",
+                               "seed 004 slides 20-22", "mask=geometry"),
+                   choiceParam(
+                       "tuning", "on", {"on", "off", "adaptive"},
+                       "drop different sub-samples that no neighbour shows; adaptive: nearer than half of the own "
+                       "dissimilarity counts as shown",
+                       "seed 004 slides 32-33"),
+                   choiceParam("neighbours", "quadrant", {"quadrant", "nearest"},
+                               "who may show it: the three pixels on the sub-sample's side, or the one nearest to it",
+                               "ours: nearest costs 1.8 dB on isolated edges", "tuning=on|adaptive"),
+                   choiceParam("mask", "geometry", {"geometry", "pass"}, "masks computed here, or the shot's mask pass",
+                               "methods/05 s.5.5"),
+                   flagParam("ids", true, "sub-samples on another object are different whatever their geometry",
+                             "ours: the shot's mask pass does so"),
+                   choiceParam("training", "all", {"all", "halfPlanes"}, "what the offsets were learned from",
+                               "methods/11 #33")},
+        .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
+            requireSubSamples(shot.subSamplePositionsPx, "rsaa", size_t(kRsaaMaxSamples));
+            return std::make_unique<RsaaMethod>(Options(p), shot.subSamplePositionsPx);
+        },
+        .morePasses =
+            [](const Params& p) {
+                const Options o(p);
+                PassSet passes;
+                if (!o.readsGeometry()) return passes;
+                passes |= Pass::depth;
+                if (o.measure != Dissimilarity::depth) passes |= Pass::normal;
+                if (o.ids) passes |= Pass::object;
+                return passes;
+            },
+        .reachPx = 2};
+}
+}  // namespace aa

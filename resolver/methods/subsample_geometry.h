@@ -1,0 +1,29 @@
+// What the geometry-aware methods know of a frame's sub-samples, as plain views for kernels (methods/05 s.5.0).
+//
+// Positions. Sub-sample k lies at the pixel centre plus its offset, whatever the jitter; the frame's colour, depth,
+// normal and object were sampled at the pixel centre plus the jitter ("centre sample"). So the offset between the two
+// is position - jitter, and that is what every vector between points uses. Pixels that hold the centre sample's colour
+// stay centred on their own pixel: a method that blends with a neighbour decides with the sub-samples, which are not
+// jittered, how much of that neighbour's colour the pixel shows. Jitter 0 is the case that the papers describe.
+#pragma once
+#include <array>
+
+#include "shot/frame.h"
+
+namespace aa {
+
+using Vec3d = std::array<double, 3>;
+
+// Position of the point seen at pixel position p with planar depth z, relative to the camera, in world axes:
+// z * (ray + p.x rayX + p.y rayY) + (origin + p.x originX + p.y originY). The origin part is 0 for perspective.
+struct CameraRays {
+    Vec3d ray{}, rayX{}, rayY{}, origin{}, originX{}, originY{};
+};
+// From the un-jittered matrices. Throws InputError when the frame has no camera or one without a projection matrix;
+// `reader` names the method and its option for the message.
+CameraRays cameraRays(const Frame& frame, std::string_view reader);
+
+// Throws InputError when the shot has no sub-samples or more than `most`.
+void requireSubSamples(const std::vector<glm::dvec2>& positionsPx, std::string_view method, size_t most);
+
+}  // namespace aa
