@@ -16,6 +16,8 @@ import numpy as np
 from . import compat
 from .errors import SceneError
 
+# OpenImageIO would write the time of day, and the same work would never give the same bytes.
+_NO_DATE = "1970:01:01 00:00:00"
 _EXR_FLOAT = 2  # pixel type in a channel list; UINT is 0, HALF 1
 
 
@@ -55,6 +57,7 @@ def write_parts(path: str, parts: list[Part]) -> None:
         spec.channelnames = part.channels
         spec.attribute("oiio:subimagename", part.name)
         spec.attribute("compression", part.compression)
+        spec.attribute("DateTime", _NO_DATE)
         specs.append(spec)
         arrays.append(pixels)
     temporary = f"{path}.{os.getpid()}.tmp.exr"

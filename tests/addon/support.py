@@ -32,6 +32,9 @@ from aa_resolve.export import Exporter  # noqa: E402
 from aa_resolve.store import Store  # noqa: E402
 
 
+_folders: list[str] = []
+
+
 class Silent:
     """A reporter that keeps what was said."""
 
@@ -44,8 +47,10 @@ class Silent:
 
 
 def temporary_folder() -> str:
-    """A fresh folder, removed when Blender ends."""
-    return tempfile.mkdtemp(prefix="aa_addon_test_", dir=bpy.app.tempdir)
+    """A fresh folder, removed at the end of ``main``."""
+    folder = tempfile.mkdtemp(prefix="aa_addon_test_")
+    _folders.append(folder)
+    return folder
 
 
 def new_scene(width: int = 64, height: int = 36) -> bpy.types.Scene:
@@ -252,8 +257,6 @@ def main(*tests: Callable[[], None]) -> None:
             traceback.print_exc()
             sys.stderr.flush()
     print(f"{len(tests) - failed} of {len(tests)} passed", file=sys.stderr, flush=True)
+    for folder in _folders:
+        shutil.rmtree(folder, ignore_errors=True)
     sys.exit(1 if failed or not tests else 0)
-
-
-def remove(path: str) -> None:
-    shutil.rmtree(path, ignore_errors=True)

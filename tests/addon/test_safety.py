@@ -9,7 +9,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import support as t  # noqa: E402
@@ -193,7 +192,6 @@ def test_foreign_folder_is_left_alone() -> None:
     os.makedirs(folder)
     with open(os.path.join(folder, "precious.txt"), "w", encoding="utf-8") as file:
         file.write("mine")
-    time.sleep(0)
     for extra in ((), ("--overwrite",)):
         done = t.run_headless(BLEND, "--out", folder, "--frames", "1", *extra)
         assert done.returncode == 2 and "not empty" in done.stderr, done.stderr
