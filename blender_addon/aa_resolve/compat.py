@@ -95,3 +95,13 @@ def remove_curve(animation_data, curve) -> None:
 def is_cycles_available() -> bool:
     """True when the Cycles add-on is enabled."""
     return hasattr(bpy.types.Scene, "cycles")
+
+
+def draw_progress(layout: bpy.types.UILayout, fraction: float, text: str) -> None:
+    """A progress bar, or its percentage where layouts have none (before 4.0)."""
+    if hasattr(layout, "progress"):
+        layout.progress(factor=fraction, text=text)
+    else:
+        filled = int(round(20 * fraction))
+        layout.label(text=f"[{'#' * filled}{'.' * (20 - filled)}] {100 * fraction:.0f} %")
+        layout.label(text=text)

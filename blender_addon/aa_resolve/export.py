@@ -196,6 +196,10 @@ class Exporter:
             store.write_manifest(head, settings.frames)
         return summary
 
+    def seconds_of(self, kind: str) -> float:
+        """Seconds of the last picture of a kind (``frames``, ``truth``)."""
+        return self._seconds[kind][-1]
+
     def _truth_frames(self) -> set[int]:
         settings = self.settings
         if settings.truth_frames == "none":

@@ -10,9 +10,11 @@ program. Errors are one line on standard error. The .blend file is only read.
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import hashlib
 import os
 import sys
+import tempfile
 import time
 
 import bpy
@@ -148,6 +150,11 @@ def build_parser() -> argparse.ArgumentParser:
         metavar="SECONDS",
         help="after this time work claimed by a process on another machine is taken over (3600)",
     )
+    add(
+        "--estimate",
+        action="store_true",
+        help="render one frame and a little of its truth elsewhere, say how long the export would take, write nothing",
+    )
     add("--json", action="store_true", help="progress as one JSON object per line")
     return parser
 
@@ -238,6 +245,49 @@ def file_identity(path: str) -> str:
     return digest.hexdigest()
 
 
+_PROBE_SAMPLES = 8
+
+
+def _estimate(scene: bpy.types.Scene, settings: Settings, reporter: Reporter) -> int:
+    """Measures one frame and ``_PROBE_SAMPLES`` samples of truth, and scales them up."""
+    frames = settings.frames
+    truth = frames if settings.truth_frames == "all" else settings.truth_frames
+    with tempfile.TemporaryDirectory(prefix="aa_resolve_probe_") as folder:
+        probe = dataclasses.replace(
+            settings,
+            out=os.path.join(folder, "shot"),
+            frames=frames[:2],
+            truth_frames=[frames[0]],
+            truth_samples=min(settings.truth_samples, _PROBE_SAMPLES),
+        )
+        exporter = Exporter(scene, probe, reporter, ADDON_VERSION)
+        exporter.prepare()
+        store = Store(probe.out, 1.0)
+        store.open(probe.fingerprint(), False)
+        exporter.run(store)
+        frame_seconds, truth_seconds = exporter.seconds_of("frames"), exporter.seconds_of("truth")
+        size = os.path.getsize(os.path.join(probe.out, store.picture("frames", frames[0])))
+    truths = 0 if truth == "none" else 1 if exporter.static else len(truth)
+    per_truth = truth_seconds * settings.truth_samples / probe.truth_samples
+    total = frame_seconds * len(frames) + per_truth * truths
+    reporter.say(
+        "estimate",
+        f"about {_duration(total)}: {len(frames)} frames of {frame_seconds:.2g} s, {truths} truths of "
+        f"{per_truth:.2g} s, {size * len(frames) / 1e6:.0f} MB",
+        seconds=round(total, 1),
+        frame_seconds=round(frame_seconds, 3),
+        truth_seconds=round(per_truth, 3),
+        bytes=size * len(frames),
+    )
+    return 0
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 100:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.1f} h"
+
+
 def run(argv: list[str]) -> int:
     """Exports the open file; returns the exit code."""
     try:
@@ -245,6 +295,8 @@ def run(argv: list[str]) -> int:
         reporter = Reporter(arguments.json)
         scene = bpy.context.scene
         settings = settings_from(arguments, scene)
+        if arguments.estimate:
+            return _estimate(scene, settings, reporter)
         started = time.perf_counter()
         exporter = Exporter(scene, settings, reporter, ADDON_VERSION)
         exporter.prepare()

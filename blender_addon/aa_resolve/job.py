@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Work in child processes for the panel: the export on a copy of the open file, then the resolver.
+
+Nothing here blocks and nothing here touches the scene: a thread reads what a child prints, ``poll`` hands it out.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import queue
+import shutil
+import subprocess
+import tempfile
+import threading
+from dataclasses import dataclass, field
+
+import bpy
+
+HEADLESS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "headless.py")
+
+
+@dataclass
+class Step:
+    """One command of a job, with the sentence that is shown while it runs."""
+
+    title: str
+    command: list[str]
+
+
+@dataclass
+class Job:
+    """Commands that run one after the other; a failure or ``cancel`` ends the chain."""
+
+    steps: list[Step]
+    folder: str
+    done: int = 0
+    total: int = 0
+    message: str = ""
+    error: str = ""
+    estimate: dict | None = None
+    _process: subprocess.Popen | None = None
+    _lines: queue.Queue = field(default_factory=queue.Queue)
+    _errors: list[str] = field(default_factory=list)
+
+    def start(self) -> None:
+        """Begins with the first step."""
+        self._launch()
+
+    def _launch(self) -> None:
+        step = self.steps[0]
+        self.message = step.title
+        self.done = self.total = 0
+        self._errors = []
+        try:
+            process = subprocess.Popen(
+                step.command,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                text=True,
+                errors="replace",
+            )
+        except OSError as error:
+            self.error = f"{step.command[0]}: cannot be started: {error.strerror}"
+            return
+        self._process = process
+        for stream, target in (
+            (process.stdout, self._lines.put),
+            (process.stderr, self._errors.append),
+        ):
+            threading.Thread(target=_drain, args=(stream, target), daemon=True).start()
+
+    def poll(self) -> bool:
+        """Takes in what happened since the last call; False when everything is over."""
+        while True:
+            try:
+                self._take(self._lines.get_nowait())
+            except queue.Empty:
+                break
+        if self.error:
+            return self._end()
+        if self._process is None or self._process.poll() is None:
+            return self._process is not None
+        if self._process.returncode != 0:
+            told = [line.strip() for line in self._errors if line.strip()]
+            said = [line for line in told if line.startswith("error")] or told[-1:]
+            self.error = (
+                said[-1] if said else f"{self.message}: ended with code {self._process.returncode}"
+            )
+            return self._end()
+        self.steps.pop(0)
+        if not self.steps:
+            return self._end()
+        self._launch()
+        return True
+
+    def _take(self, line: str) -> None:
+        if not line.startswith("{"):
+            return
+        try:
+            event = json.loads(line)
+        except ValueError:
+            return
+        kind = event.get("event")
+        if kind in ("frame", "truth"):
+            self.done += 1
+            self.total = self.done + event["remaining"]
+        if kind == "estimate":
+            self.estimate = event
+        if "text" in event:
+            self.message = event["text"]
+
+    @property
+    def fraction(self) -> float:
+        """Share of the current step's pictures that are finished, 0 to 1."""
+        return self.done / self.total if self.total else 0.0
+
+    def cancel(self) -> None:
+        """Ends the running child. Finished frames stay valid, an export resumes."""
+        if self._process is not None and self._process.poll() is None:
+            self._process.kill()
+            self._process.wait()
+        self._end()
+
+    def _end(self) -> bool:
+        shutil.rmtree(self.folder, ignore_errors=True)
+        return False
+
+
+def _drain(stream, target) -> None:
+    for line in stream:
+        target(line)
+    stream.close()
+
+
+def copy_of_open_file() -> tuple[str, str]:
+    """Saves a copy of the open scene, changed or not, beside nothing of the user's; returns folder and path."""
+    folder = tempfile.mkdtemp(prefix="aa_resolve_")
+    path = os.path.join(folder, "scene.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path, copy=True, check_existing=False)
+    return folder, path
+
+
+def identity_of_open_file() -> str:
+    """Identity for resuming: the file's content when nothing is unsaved, else the name of the file alone."""
+    from .headless import file_identity
+
+    path = bpy.data.filepath
+    if path and not bpy.data.is_dirty and os.path.exists(path):
+        return file_identity(path)
+    return f"unsaved {path}"
+
+
+def export_command(blend: str, options: list[str]) -> list[str]:
+    """Command line of a child that exports ``blend``."""
+    command = [bpy.app.binary_path, "-b"]
+    if bpy.context.preferences.filepaths.use_scripts_auto_execute:
+        command.append("--enable-autoexec")
+    return [*command, blend, "--python-exit-code", "9", "-P", HEADLESS, "--", *options, "--json"]
+
+
+def find_resolver(preferred: str) -> str | None:
+    """Path of ``aaresolve``: the one of the preferences, else one on the PATH."""
+    if preferred:
+        return preferred if os.path.exists(bpy.path.abspath(preferred)) else None
+    return shutil.which("aaresolve")
