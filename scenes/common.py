@@ -14,6 +14,7 @@ Units: metres, z up. Colours are linear BT.709.
 from __future__ import annotations
 
 import argparse
+import hashlib
 import math
 import os
 import sys
@@ -414,9 +415,28 @@ def key_linear(
             point.interpolation = "LINEAR"
 
 
-def save(out: str) -> None:
-    """Writes the .blend, making its folder; the path is printed."""
-    path = os.path.abspath(out)
+def run(script: str, description: str, build: Callable[[Sequence[int]], None]) -> None:
+    """The command line of a scene: builds it and writes the .blend, unless one of the same sources is there.
+
+    Blender never writes the same scene as the same bytes twice, and to an exporter a changed file is a changed scene;
+    so a file that is up to date is kept. It carries the digest of its sources as the name of an empty text.
+    """
+    arguments = parse_arguments(description)
+    digest = hashlib.sha256(
+        repr(tuple(arguments.resolution)).encode() + bpy.app.version_string.encode()
+    )
+    for path in (os.path.abspath(__file__), os.path.abspath(script)):
+        with open(path, "rb") as file:
+            digest.update(file.read())
+    mark = f"sources {digest.hexdigest()[:40]}"
+    path = os.path.abspath(arguments.out)
+    if os.path.exists(path):
+        with bpy.data.libraries.load(path) as (content, _):
+            if mark in content.texts:
+                print(f"{path} is up to date")
+                return
+    build(arguments.resolution)
+    bpy.data.texts.new(mark)
     os.makedirs(os.path.dirname(path), exist_ok=True)
     bpy.context.preferences.filepaths.save_version = 0
     bpy.ops.wm.save_as_mainfile(filepath=path, check_existing=False)

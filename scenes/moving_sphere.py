@@ -121,6 +121,4 @@ def build(resolution) -> None:
 
 
 if __name__ == "__main__":
-    arguments = c.parse_arguments(__doc__)
-    build(arguments.resolution)
-    c.save(arguments.out)
+    c.run(__file__, __doc__, build)

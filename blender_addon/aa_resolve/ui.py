@@ -153,7 +153,9 @@ class AAResolveSettings(bpy.types.PropertyGroup):
         default="float",
     )
     overwrite: BoolProperty(
-        name="Replace", description="Replace an export with other settings", default=False
+        name="Replace Other Export",
+        description="Replace an export with other settings",
+        default=False,
     )
 
     def chosen(self) -> list[str]:
@@ -379,17 +381,27 @@ class AA_RESOLVE_OT_compare(_JobOperator, bpy.types.Operator):
         steps = [
             step[1],
             job.Step("Running the methods", [resolver, "run", shot, *methods, "-o", self._results]),
-            job.Step("Making the contact sheet", [resolver, "sheet", self._results]),
-            job.Step("Writing the report", [resolver, "report", self._results]),
+            job.Step(
+                "Making the contact sheet",
+                [resolver, "sheet", self._results, "-o", os.path.join(self._results, "sheet.png")],
+            ),
+            job.Step(
+                "Writing the report",
+                [
+                    resolver,
+                    "report",
+                    self._results,
+                    "-o",
+                    os.path.join(self._results, "report.html"),
+                ],
+            ),
         ]
         return job.Job(steps, step[0])
 
     def finish(self, context, _finished):
         report = os.path.join(self._results, "report.html")
         _State.report = report if os.path.exists(report) else ""
-        sheets = sorted(name for name in os.listdir(self._results) if name.endswith(".png"))
-        if sheets:
-            _show_image(context, os.path.join(self._results, sheets[0]))
+        _show_image(context, os.path.join(self._results, "sheet.png"))
         _State.result = f"Results: {self._results}"
 
 
