@@ -42,7 +42,7 @@ def parse_arguments(
         "--resolution",
         nargs=2,
         type=int,
-        default=(480, 270),
+        default=[480, 270],
         metavar=("W", "H"),
         help="pixels (480 270)",
     )
@@ -415,7 +415,12 @@ def key_linear(
             point.interpolation = "LINEAR"
 
 
-def run(script: str, description: str, build: Callable[[Sequence[int]], None]) -> None:
+def run(
+    script: str,
+    description: str,
+    build: Callable[[argparse.Namespace], None],
+    extra: Callable[[argparse.ArgumentParser], None] | None = None,
+) -> None:
     """The command line of a scene: builds it and writes the .blend, unless one of the same sources is there.
 
     Blender never writes the same scene as the same bytes twice, and to an exporter a changed file is a changed scene;
@@ -435,7 +440,7 @@ def run(script: str, description: str, build: Callable[[Sequence[int]], None]) -
             if mark in content.texts:
                 print(f"{path} is up to date")
                 return
-    build(arguments.resolution)
+    build(arguments)
     bpy.data.texts.new(mark)
     os.makedirs(os.path.dirname(path), exist_ok=True)
     bpy.context.preferences.filepaths.save_version = 0

@@ -114,9 +114,9 @@ def add_letters(black, white) -> None:
     )
 
 
-def build(resolution) -> None:
+def build(arguments) -> None:
     """Makes the scene in the open (empty) file."""
-    scene = c.new_scene(resolution)
+    scene = c.new_scene(arguments.resolution)
     c.add_sky(scene, horizon=(0.62, 0.74, 0.90), zenith=(0.16, 0.34, 0.70))
     blue = c.material("Window Blue", (0.055, 0.16, 0.46))
     dark = c.material("Dark Inside", (0.012, 0.014, 0.02))

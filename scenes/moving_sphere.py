@@ -56,9 +56,9 @@ def add_floor(light, dark) -> None:
     c.add_boxes("Floor Tiles", tiles, dark)
 
 
-def build(resolution) -> None:
+def build(arguments) -> None:
     """Makes the scene in the open (empty) file."""
-    scene = c.new_scene(resolution, FRAMES)
+    scene = c.new_scene(arguments.resolution, FRAMES)
     c.add_sky(scene, horizon=(0.66, 0.77, 0.90), zenith=(0.14, 0.32, 0.68))
     stone = c.material("Column Stone", (0.72, 0.62, 0.47))
     trim = c.material("Trim Stone", (0.60, 0.49, 0.36))
