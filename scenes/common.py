@@ -202,6 +202,86 @@ def material(
     return result
 
 
+def cut_out(surface: bpy.types.Material, image: bpy.types.Image) -> None:
+    """Lets a material exist only where the image's alpha is above one half (uv map of the mesh)."""
+    tree = surface.node_tree
+    output = tree.get_output_node("ALL")
+    shader = output.inputs["Surface"].links[0].from_socket
+    texture = tree.nodes.new("ShaderNodeTexImage")
+    texture.image = image
+    threshold = tree.nodes.new("ShaderNodeMath")
+    threshold.operation = "GREATER_THAN"
+    threshold.inputs[1].default_value = 0.5
+    clear = tree.nodes.new("ShaderNodeBsdfTransparent")
+    mix = tree.nodes.new("ShaderNodeMixShader")
+    tree.links.new(texture.outputs["Alpha"], threshold.inputs[0])
+    tree.links.new(threshold.outputs[0], mix.inputs["Fac"])
+    tree.links.new(clear.outputs[0], mix.inputs[1])
+    tree.links.new(shader, mix.inputs[2])
+    tree.links.new(mix.outputs[0], output.inputs["Surface"])
+
+
+def make_checkered(surface: bpy.types.Material, other: RGB, scale: float) -> None:
+    """Turns a solid material into checks of its own and another colour, in the object's own space."""
+    tree = surface.node_tree
+    tint = next(
+        node
+        for node in tree.nodes
+        if node.bl_idname == "ShaderNodeMixRGB" and node.blend_type == "MULTIPLY"
+    )
+    diffuse = next(node for node in tree.nodes if node.bl_idname == "ShaderNodeBsdfDiffuse")
+    checker = tree.nodes.new("ShaderNodeTexChecker")
+    checker.inputs["Scale"].default_value = scale
+    checker.inputs["Color1"].default_value = diffuse.inputs["Color"].default_value
+    checker.inputs["Color2"].default_value = (*other, 1.0)
+    coordinates = tree.nodes.new("ShaderNodeTexCoord")
+    tree.links.new(coordinates.outputs["Object"], checker.inputs["Vector"])
+    tree.links.new(checker.outputs["Color"], tint.inputs["Color1"])
+    tree.links.new(checker.outputs["Color"], diffuse.inputs["Color"])
+
+
+def tube_parts(
+    points: Sequence[Sequence[float]], radius: float, sides: int, first: int
+) -> tuple[list[Vector], list[tuple[int, ...]]]:
+    """Vertices and faces of a tube along a polyline, its vertices counted from ``first``; the ends are closed."""
+    path = [Vector(point) for point in points]
+    vertices: list[Vector] = []
+    side = (path[1] - path[0]).orthogonal().normalized()
+    for index, point in enumerate(path):
+        ahead = path[min(index + 1, len(path) - 1)] - path[max(index - 1, 0)]
+        axis = ahead.normalized()
+        side = (
+            side - axis * side.dot(axis)
+        ).normalized()  # carried along, so that the tube does not twist
+        other = axis.cross(side)
+        for step in range(sides):
+            angle = 2.0 * math.pi * step / sides
+            vertices.append(point + (side * math.cos(angle) + other * math.sin(angle)) * radius)
+    faces: list[tuple[int, ...]] = []
+    for index in range(len(path) - 1):
+        low, high = first + index * sides, first + (index + 1) * sides
+        for step in range(sides):
+            following = (step + 1) % sides
+            faces.append((low + step, low + following, high + following, high + step))
+    last = first + (len(path) - 1) * sides
+    faces.append(tuple(first + step for step in reversed(range(sides))))
+    faces.append(tuple(last + step for step in range(sides)))
+    return vertices, faces
+
+
+def add_tubes(
+    name: str, paths: Iterable[Sequence[Sequence[float]]], radius: float, sides: int, surface
+) -> bpy.types.Object:
+    """One object made of tubes along polylines."""
+    vertices: list = []
+    faces: list = []
+    for path in paths:
+        tube_vertices, tube_faces = tube_parts(path, radius, sides, len(vertices))
+        vertices += tube_vertices
+        faces += tube_faces
+    return add_mesh(name, vertices, faces, surface)
+
+
 def add_mesh(
     name: str,
     vertices: Iterable[Sequence[float]],
@@ -426,10 +506,9 @@ def run(
     Blender never writes the same scene as the same bytes twice, and to an exporter a changed file is a changed scene;
     so a file that is up to date is kept. It carries the digest of its sources as the name of an empty text.
     """
-    arguments = parse_arguments(description)
-    digest = hashlib.sha256(
-        repr(tuple(arguments.resolution)).encode() + bpy.app.version_string.encode()
-    )
+    arguments = parse_arguments(description, extra)
+    wishes = sorted((key, value) for key, value in vars(arguments).items() if key != "out")
+    digest = hashlib.sha256(f"{wishes} {bpy.app.version_string}".encode())
     for path in (os.path.abspath(__file__), os.path.abspath(script)):
         with open(path, "rb") as file:
             digest.update(file.read())
