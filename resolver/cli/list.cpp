@@ -87,7 +87,8 @@ nlohmann::ordered_json describe(const MethodDescriptor& m) {
                                 {"passes", names(m.passes)},
                                 {"input", name(m.input)},
                                 {"output", name(m.output)},
-                                {"temporal", m.temporal}};
+                                {"temporal", m.temporal},
+                                {"sampling", m.sampling() == Sampling::jittered ? "jittered" : "centre"}};
     j["parameters"] = nlohmann::ordered_json::array();
     for (const auto& p : m.params) {
         nlohmann::ordered_json q = {{"name", p.name}, {"type", name(p.type)}};

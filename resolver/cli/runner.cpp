@@ -2,6 +2,7 @@
 
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <sstream>
@@ -23,9 +24,12 @@ std::string frameName(int frame, const char* extension) {
 
 // A method that asks for a pass which the shot lacks is named together with the pass.
 void requirePasses(const ShotReader& shot, const std::vector<MethodSpec>& methods) {
-    const PassSet offered = shot.offered();
+    const PassSet jittered = shot.offered();
+    const PassSet centre = shot.hasCentreFrames() ? shot.offered(Sampling::centre) : jittered;
     for (const auto& m : methods)
-        if (const auto missing = names(m.passes().without(offered)); !missing.empty()) {
+        if (const auto missing =
+                names(m.passes().without(m.method->sampling() == Sampling::centre ? centre : jittered));
+            !missing.empty()) {
             std::string all;
             for (const auto& s : methods) all += (all.empty() ? "" : ",") + std::string(s.method->id);
             throw InputError(shot.manifest().folder.string() + ": method '" + m.text + "' needs the pass '" +
@@ -72,6 +76,10 @@ RunResults describeRun(const Manifest& m, const RunOptions& o) {
         result.family = spec.method->family;
         result.source = spec.method->source;
         result.folder = spec.folderName();
+        const bool unjittered =
+            std::all_of(m.frames.begin(), m.frames.end(), [](const auto& f) { return f.jitterPx == glm::dvec2(0.0); });
+        const bool centre = unjittered || (spec.method->sampling() == Sampling::centre && !m.frames[0].centre.empty());
+        result.sampling = centre ? "centre" : "jittered";
         const Params params = spec.params();
         result.parameters.insert(params.all().begin(), params.all().end());
         for (auto n : names(spec.passes())) result.passes.emplace_back(n);
@@ -159,16 +167,21 @@ RunResults run(const ShotReader& shot, const RunOptions& o, Progress& progress) 
     std::optional<Reference> reference;
     std::shared_ptr<const Truth> truth;
 
-    FrameStream stream(shot, o.frames, passesOf(o.methods), /*withTruth=*/true);
+    // Methods that accumulate read the jittered frames, all others the centre-sampled ones where the shot has them.
+    const bool split = shot.hasCentreFrames();
+    const PassSet wanted = split ? passesOf(o.methods, Sampling::jittered) : passesOf(o.methods);
+    const PassSet wantedOfCentre = split ? passesOf(o.methods, Sampling::centre) : PassSet{};
+    FrameStream stream(shot, o.frames, wanted, /*withTruth=*/true, wantedOfCentre);
     for (size_t i = 0; auto frame = stream.next(); i++) {
         if (i == 0) frame->reset = true;  // a sequence may start in the middle
-        prepareFrame(*frame, methods, o.display, o.exec);
+        if (!wanted.empty()) prepareFrame(*frame, methods, o.display, o.exec);
+        if (stream.centre() && stream.centre()->colorEncoded.empty())
+            prepareFrame(*stream.centre(), methods, o.display, o.exec);
         if (stream.truth() != truth) {
             truth = stream.truth();
             reference.reset();
             if (truth) reference = makeReference(truth->a, truth->b, o.display, o.exec);
         }
-        // Of a static shot the last frame is the one to look at: there every history is longest.
         const bool write = o.writeAllFrames || (reference && (!manifest.isStatic || i + 1 == o.frames.size()));
         if (write && reference) {
             const std::string file = (fs::path("truth") / frameName(frame->number, ".exr")).string();
@@ -176,17 +189,22 @@ RunResults run(const ShotReader& shot, const RunOptions& o, Progress& progress) 
             results.truthImages[frame->number] = file;
         }
         if (reference) noise += reference->noise, withTruth++;
+        // A static shot is judged at its last frame, as the published protocol does: there every history is longest.
+        if (manifest.isStatic) errors.assign(methods.size(), {});
         for (size_t k = 0; k < methods.size(); k++) {
             FrameResult result;
             result.frame = frame->number;
-            result.seconds = methods[k].resolve(*frame, o.display, o.exec);
+            const bool centre = split && methods[k].spec.method->sampling() == Sampling::centre;
+            result.seconds = methods[k].resolve(centre ? *stream.centre() : *frame, o.display, o.exec);
             if (reference) {
                 const bool linear = methods[k].spec.method->output == Space::linear;
                 result.metrics = measure(methods[k].outEncoded, linear ? &methods[k].out : nullptr, *reference,
                                          o.measure, o.exec, errors[k]);
             }
             if (write) result.image = writeImage(methods[k], frame->number, o);
-            results.methods[k].frames.push_back(std::move(result));
+            auto& done = results.methods[k].frames;
+            if (manifest.isStatic && !done.empty()) done.back().judged = false;
+            done.push_back(std::move(result));
             results.methods[k].stateBytes = std::max(results.methods[k].stateBytes, methods[k].method->stateBytes());
         }
         progress.step("frame " + std::to_string(frame->number));

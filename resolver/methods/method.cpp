@@ -55,6 +55,13 @@ std::string MethodSpec::folderName() const {
 
 std::unique_ptr<Method> MethodSpec::create(const ShotInfo& shot) const { return method->create(params(), shot); }
 
+PassSet passesOf(const std::vector<MethodSpec>& methods, Sampling sampling) {
+    PassSet all;
+    for (const auto& m : methods)
+        if (m.method->sampling() == sampling) all |= m.passes();
+    return all;
+}
+
 PassSet passesOf(const std::vector<MethodSpec>& methods) {
     PassSet all;
     for (const auto& m : methods) all |= m.passes();

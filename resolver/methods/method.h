@@ -47,7 +47,8 @@ struct MethodDescriptor {
     std::string_view source;             // paper or seed section
     PassSet passes = {};
     Space input = Space::linear, output = Space::linear;
-    bool temporal = false;  // keeps state between frames
+    bool temporal = false;  // accumulates frames: keeps state between them and reads jittered ones
+    Sampling sampling() const { return temporal ? Sampling::jittered : Sampling::centre; }
     std::vector<ParamSpec> params = {};
     // Throws UsageError/InputError when the shot cannot serve the method (a static-only method on a moving shot).
     std::function<std::unique_ptr<Method>(const Params&, const ShotInfo&)> create;
@@ -78,5 +79,7 @@ struct MethodSpec {
 // Throws UsageError: unknown method, malformed, bad parameter.
 MethodSpec parseMethod(std::string_view text);
 PassSet passesOf(const std::vector<MethodSpec>& methods);
+// Of the methods that read frames of this sampling only.
+PassSet passesOf(const std::vector<MethodSpec>& methods, Sampling sampling);
 
 }  // namespace aa

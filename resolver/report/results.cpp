@@ -118,7 +118,7 @@ std::optional<double> meanOf(const std::vector<const FrameMetrics*>& frames, Get
 std::optional<PooledMetrics> pool(const MethodResult& method, double noise) {
     std::vector<const FrameMetrics*> frames;
     for (const auto& f : method.frames)
-        if (f.metrics) frames.push_back(&*f.metrics);
+        if (f.metrics && f.judged) frames.push_back(&*f.metrics);
     if (frames.empty()) return {};
     PooledMetrics p;
     p.frames = int(frames.size());
@@ -209,6 +209,7 @@ std::string toJsonText(const RunResults& run) {
                   {"family", m.family},
                   {"source", m.source},
                   {"folder", m.folder},
+                  {"sampling", m.sampling},
                   {"parameters", m.parameters},
                   {"passes", m.passes},
                   {"stateBytes", m.stateBytes},
@@ -218,7 +219,7 @@ std::string toJsonText(const RunResults& run) {
                   {"pooled", m.pooled ? toJson(*m.pooled) : json(nullptr)},
                   {"frames", json::array()}};
         for (const auto& f : m.frames) {
-            json r = {{"frame", f.frame}, {"seconds", f.seconds}};
+            json r = {{"frame", f.frame}, {"seconds", f.seconds}, {"judged", f.judged}};
             if (!f.image.empty()) r["image"] = f.image;
             if (f.metrics) r["metrics"] = toJson(*f.metrics);
             q["frames"].push_back(r);
@@ -305,6 +306,7 @@ RunResults readResults(const fs::path& folder) {
             m.text = q.at("text").get<std::string>();
             m.title = q.at("title").get<std::string>();
             m.family = q.at("family").get<std::string>();
+            m.sampling = q.at("sampling").get<std::string>();
             m.source = q.at("source").get<std::string>();
             m.folder = q.at("folder").get<std::string>();
             q.at("parameters").get_to(m.parameters);
@@ -318,6 +320,7 @@ RunResults readResults(const fs::path& folder) {
                 FrameResult f;
                 f.frame = r.at("frame").get<int>();
                 f.seconds = r.at("seconds").get<double>();
+                f.judged = r.at("judged").get<bool>();
                 f.image = r.value("image", "");
                 if (r.contains("metrics")) f.metrics = frameMetrics(r.at("metrics"));
                 m.frames.push_back(f);

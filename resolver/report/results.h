@@ -17,11 +17,12 @@ struct FrameResult {
     int frame = 0;
     double seconds = 0;                   // of this resolve
     std::optional<FrameMetrics> metrics;  // only when the frame has ground truth
+    bool judged = true;                   // counts in the pooled figures; of a static shot only the last frame does
     std::string image;                    // relative path of the written image; empty when none was
 };
 
-// Figures over the frames that have truth. MSE, reference power, SSIM, relMse and FLIP are means over the frames; PSNR
-// and SNR come from the mean MSE, never from a mean of decibels.
+// Figures over the judged frames that have truth. MSE, reference power, SSIM, relMse and FLIP are means over the
+// frames; PSNR and SNR come from the mean MSE, never from a mean of decibels.
 struct PooledMetrics {
     int frames = 0;
     FrameMetrics mean;
@@ -34,6 +35,7 @@ struct PooledMetrics {
 struct MethodResult {
     std::string id, text, title, family, source;  // text: as written, smaa1x:preset=HIGH
     std::string folder;                           // below the run's folder
+    std::string sampling;                         // where its input was sampled: "jittered" or "centre"
     std::map<std::string, std::string, std::less<>> parameters;
     std::vector<std::string> passes;
     std::vector<FrameResult> frames;

@@ -2,8 +2,13 @@
 
 namespace aa {
 
-FrameStream::FrameStream(const ShotReader& reader, std::vector<size_t> indices, PassSet wanted, bool withTruth)
-    : reader_(reader), indices_(std::move(indices)), wanted_(wanted), withTruth_(withTruth) {
+FrameStream::FrameStream(const ShotReader& reader, std::vector<size_t> indices, PassSet wanted, bool withTruth,
+                         PassSet wantedOfCentre)
+    : reader_(reader),
+      indices_(std::move(indices)),
+      wanted_(wanted),
+      withTruth_(withTruth),
+      wantedOfCentre_(wantedOfCentre) {
     startDecoding();
 }
 FrameStream::~FrameStream() {
@@ -12,24 +17,25 @@ FrameStream::~FrameStream() {
 
 void FrameStream::startDecoding() {
     if (started_ == indices_.size()) return;
-    pending_ = std::async(std::launch::async, [this, index = indices_[started_], last = truth_, lastFile = truthFile_] {
-        return decode(index, last, lastFile);
-    });
+    pending_ = std::async(std::launch::async,
+                          [this, index = indices_[started_], last = Last{centre_, truth_, centreFile_, truthFile_}] {
+                              return decode(index, last);
+                          });
     started_++;
 }
 
-FrameStream::Decoded FrameStream::decode(size_t index, std::shared_ptr<const Truth> lastTruth,
-                                         const std::string& lastTruthFile) const {
+FrameStream::Decoded FrameStream::decode(size_t index, const Last& last) const {
+    const FrameEntry& entry = reader_.manifest().frames.at(index);
     Decoded d;
     d.frame = reader_.read(index, wanted_, &d.counts);
-    const std::string& file = reader_.manifest().frames.at(index).truth;
-    if (!withTruth_ || file.empty()) return d;
-    if (lastTruth && file == lastTruthFile) {
-        d.truth = std::move(lastTruth);
-        return d;
-    }
-    lastTruth.reset();
-    d.truth = std::make_shared<const Truth>(*reader_.readTruth(index));
+    if (!wantedOfCentre_.empty())
+        d.centre = last.centre && entry.centre == last.centreFile
+                       ? last.centre
+                       : std::make_shared<Frame>(reader_.readCentre(index, wantedOfCentre_, &d.counts));
+    if (withTruth_ && !entry.truth.empty())
+        d.truth = last.truth && entry.truth == last.truthFile
+                      ? last.truth
+                      : std::make_shared<const Truth>(*reader_.readTruth(index));
     return d;
 }
 
@@ -42,8 +48,11 @@ std::optional<Frame> FrameStream::next() {
         started_ = indices_.size();
         throw;
     }
+    const FrameEntry& entry = reader_.manifest().frames.at(indices_[started_ - 1]);
+    centre_ = std::move(d.centre);
+    centreFile_ = entry.centre;
     truth_ = std::move(d.truth);
-    truthFile_ = reader_.manifest().frames.at(indices_[started_ - 1]).truth;
+    truthFile_ = entry.truth;
     counts_ += d.counts;
     startDecoding();
     return std::move(d.frame);

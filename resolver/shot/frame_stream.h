@@ -13,13 +13,17 @@ namespace aa {
 class FrameStream {
   public:
     // `indices` into manifest().frames, in the order of delivery.
-    FrameStream(const ShotReader& reader, std::vector<size_t> indices, PassSet wanted, bool withTruth = false);
+    FrameStream(const ShotReader& reader, std::vector<size_t> indices, PassSet wanted, bool withTruth = false,
+                PassSet wantedOfCentre = {});
     ~FrameStream();
     FrameStream(const FrameStream&) = delete;
     FrameStream& operator=(const FrameStream&) = delete;
 
     // The next frame; nullopt after the last. Ends after an error.
     std::optional<Frame> next();
+    // The centre-sampled frame of the same instant; null when nothing of it was wanted. Frames that share a file (a
+    // static shot) share one Frame. The caller may add to it (colorEncoded).
+    const std::shared_ptr<Frame>& centre() const { return centre_; }
     // Truth of the frame that next() returned; null when it has none or none was asked for. Frames that share a truth
     // file (a static shot) share one Truth.
     const std::shared_ptr<const Truth>& truth() const { return truth_; }
@@ -29,20 +33,29 @@ class FrameStream {
   private:
     struct Decoded {
         Frame frame;
+        std::shared_ptr<Frame> centre;
         std::shared_ptr<const Truth> truth;
         SanitiseCounts counts;
     };
     void startDecoding();
-    Decoded decode(size_t index, std::shared_ptr<const Truth> lastTruth, const std::string& lastTruthFile) const;
+    // What the last frame holds, so that a shared file is decoded once.
+    struct Last {
+        std::shared_ptr<Frame> centre;
+        std::shared_ptr<const Truth> truth;
+        std::string centreFile, truthFile;
+    };
+    Decoded decode(size_t index, const Last& last) const;
 
     const ShotReader& reader_;
     std::vector<size_t> indices_;
     PassSet wanted_;
     bool withTruth_;
+    PassSet wantedOfCentre_;
     size_t started_ = 0;  // how many of indices_ have been given to the background
     std::future<Decoded> pending_;
+    std::shared_ptr<Frame> centre_;
     std::shared_ptr<const Truth> truth_;
-    std::string truthFile_;  // of truth_
+    std::string centreFile_, truthFile_;
     SanitiseCounts counts_;
 };
 

@@ -149,13 +149,15 @@ FrameEntry parseFrame(const Member& m, bool jittered) {
     FrameEntry f;
     f.frame = m["frame"].integer(-1048574, 1048574);  // Blender's MINAFRAME..MAXFRAME
     f.file = m["file"].relativePath();
+    if (const auto c = m.find("centre"); c && !c->value().is_null()) f.centre = c->relativePath();
     if (const auto t = m.find("truth"); t && !t->value().is_null()) f.truth = t->relativePath();
     if (const auto r = m.find("reset")) f.reset = r->flag();
     if (const auto j = m.find("jitter"))
         f.jitterPx = j->offsetPx();
     else if (jittered)
         m["jitter"];
-    f.extra = unknownMembers(m.value(), {"frame", "file", "truth", "reset", "jitter", "camera", "render_seconds"});
+    f.extra =
+        unknownMembers(m.value(), {"frame", "file", "centre", "truth", "reset", "jitter", "camera", "render_seconds"});
     if (const auto c = m.find("camera")) f.camera = parseCamera(*c, f.extra);
     if (const auto seconds = m.find("render_seconds"))
         for (const auto& [name, value] : seconds->object().items())
@@ -233,6 +235,7 @@ json toJson(const FrameEntry& f) {
     json j = f.extra;
     j["frame"] = f.frame;
     j["file"] = f.file;
+    if (!f.centre.empty()) j["centre"] = f.centre;
     if (!f.truth.empty()) j["truth"] = f.truth;
     if (f.reset) j["reset"] = true;
     j["jitter"] = offset(f.jitterPx);

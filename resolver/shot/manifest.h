@@ -24,6 +24,8 @@ struct Camera {
 struct FrameEntry {
     int frame = 1;
     std::string file;          // relative to the shot's folder
+    std::string centre;        // relative; the same instant sampled at the pixel centres (no jitter), for methods that
+                               // do not accumulate; empty when there is none
     std::string truth;         // relative; empty when this frame has no ground truth
     bool reset = false;        // history must be dropped before this frame (first frame, camera cut)
     glm::dvec2 jitterPx{0.0};  // sample position minus pixel centre, y down

@@ -20,6 +20,10 @@ enum class Pass : uint32_t {
     edges = 256,           // signed axis distances to the visible triangle's nearest edge, px
 };
 
+// Where in the pixel a frame is sampled. Methods that accumulate frames read jittered ones; all others judge a picture
+// that nobody would jitter, so they read the pixel centres (methods/01 s.1.1).
+enum class Sampling { jittered, centre };
+
 // A set of passes.
 struct PassSet {
     uint32_t bits = 0;

@@ -10,12 +10,12 @@ namespace {
 // Decodes one frame's file into a Frame, pass by pass.
 class FrameDecoder {
   public:
-    FrameDecoder(const Manifest& manifest, const FrameEntry& entry, InputPolicy policy, Frame& frame,
-                 SanitiseCounts& counts)
+    FrameDecoder(const Manifest& manifest, const FrameEntry& entry, const std::string& file, InputPolicy policy,
+                 Frame& frame, SanitiseCounts& counts)
         : manifest_(manifest),
           entry_(entry),
           policy_(policy),
-          file_(manifest.folder / entry.file),
+          file_(manifest.folder / file),
           frame_(frame),
           counts_(counts) {}
 
@@ -155,8 +155,9 @@ class FrameDecoder {
 ShotReader::ShotReader(const std::filesystem::path& shot, InputPolicy policy)
     : manifest_(readManifest(shot)), policy_(policy) {}
 
-PassSet ShotReader::offered() const {
-    const ExrFile file(manifest_.folder / manifest_.frames.at(0).file);
+PassSet ShotReader::offered(Sampling sampling) const {
+    const FrameEntry& first = manifest_.frames.at(0);
+    const ExrFile file(manifest_.folder / (sampling == Sampling::centre ? first.centre : first.file));
     PassSet r;
     for (const auto& info : allPasses()) {
         const ExrPart* part = file.find(info.part);
@@ -169,21 +170,30 @@ PassSet ShotReader::offered() const {
     return r;
 }
 
-Frame ShotReader::read(size_t index, PassSet wanted, SanitiseCounts* counts) const {
+Frame ShotReader::decode(size_t index, PassSet wanted, Sampling sampling, SanitiseCounts* counts) const {
     const FrameEntry& entry = manifest_.frames.at(index);
+    const bool centre = sampling == Sampling::centre;
     Frame f;
     f.number = entry.frame;
     f.width = manifest_.width;
     f.height = manifest_.height;
     f.reset = entry.reset;
-    f.jitterPx = entry.jitterPx;
+    if (!centre) f.jitterPx = entry.jitterPx;
     f.camera = entry.camera;
     if (index > 0 && !entry.reset) f.previousCamera = manifest_.frames[index - 1].camera;
     f.passes = wanted;
     SanitiseCounts own;
-    FrameDecoder(manifest_, entry, policy_, f, own).decode(wanted);
+    FrameDecoder(manifest_, entry, centre ? entry.centre : entry.file, policy_, f, own).decode(wanted);
     if (counts) *counts += own;
     return f;
+}
+
+Frame ShotReader::read(size_t index, PassSet wanted, SanitiseCounts* counts) const {
+    return decode(index, wanted, Sampling::jittered, counts);
+}
+
+Frame ShotReader::readCentre(size_t index, PassSet wanted, SanitiseCounts* counts) const {
+    return decode(index, wanted, Sampling::centre, counts);
 }
 
 std::optional<Truth> ShotReader::readTruth(size_t index) const {

@@ -25,14 +25,20 @@ class ShotReader {
 
     // Passes that the shot offers, found in the header of the first frame's file. A static shot offers `motion` without
     // storing it (zeros). Opens that file at every call.
-    PassSet offered() const;
+    PassSet offered(Sampling sampling = Sampling::jittered) const;
+    // Whether the shot holds frames sampled at the pixel centres beside jittered ones.
+    bool hasCentreFrames() const { return !manifest_.frames.at(0).centre.empty(); }
     // Decodes the wanted passes of manifest().frames[index]. Thread-safe. Throws InputError: file missing, truncated,
     // wrong resolution, missing part or channel (named), wrong type, NaN under InputPolicy::strict.
     Frame read(size_t index, PassSet wanted, SanitiseCounts* counts = nullptr) const;
+    // The same instant sampled at the pixel centres, from FrameEntry::centre: jitter 0. Asking it of a shot without
+    // centre frames is a programming error.
+    Frame readCentre(size_t index, PassSet wanted, SanitiseCounts* counts = nullptr) const;
     // Ground truth of a frame; nullopt when the frame has none. Thread-safe.
     std::optional<Truth> readTruth(size_t index) const;
 
   private:
+    Frame decode(size_t index, PassSet wanted, Sampling sampling, SanitiseCounts* counts) const;
     Manifest manifest_;
     InputPolicy policy_;
 };
