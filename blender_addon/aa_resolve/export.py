@@ -15,7 +15,7 @@ import numpy as np
 
 from . import analysis
 from . import camera as cam
-from . import exr, instances, jitter, lighting, rendering, subsamples
+from . import edges, exr, instances, jitter, lighting, rendering, subsamples
 from .errors import SceneError
 from .report import Reporter
 from .settings import Settings
@@ -46,7 +46,7 @@ class Exporter:
         self._view_sets: dict[str, subsamples.ViewSet] = {}
         self._states: dict[int, analysis.FrameState] = {}
         self._static_samples: list[rendering.Layers] | None = None
-        self._seconds: dict[str, list[float]] = {"frames": [], "truth": []}
+        self._seconds: dict[str, list[float]] = {"frames": [], "centre": [], "truth": []}
 
     # --- before the first render ---------------------------------------------------------------------------------
 
@@ -61,12 +61,15 @@ class Exporter:
         self.cuts = cam.CameraCuts(scene)
         self.cuts.at(settings.frames[0])
         analysis.show_what_renders(scene)
-        self.passes = set(settings.passes)
+        # What each kind of picture holds: jittered frames, and the same instants at the pixel centres.
+        self.passes_of = {"frames": set(settings.passes), "centre": set(settings.centre_passes)}
+        self.passes = set(settings.passes) | set(settings.centre_passes)
         motion = analysis.find_motion(scene, settings.frames, self.frame, self.cuts)
         self.static = motion.static
         left_out = []
         if self.static:
             self.passes.discard("motion")
+            self.passes_of["frames"].discard("motion")
             left_out.append(
                 f"motion ({motion.reason}: the shot is static, one truth serves all frames)"
             )
@@ -99,11 +102,11 @@ class Exporter:
 
     def _passes_of_main(self) -> set[str]:
         needed = set(self.light.passes)
-        if self.passes & {"depth", "motion", "albedo", "subsamples"}:
+        if self.passes & {"depth", "motion", "albedo", "subsamples", "edges"}:
             needed.add("Depth")
         if self.passes & {"normal", "subsamples"}:
             needed.add("Normal")
-        if self.passes & {"object", "subsamples"}:
+        if self.passes & {"object", "subsamples", "edges"}:
             needed.add("IndexOB")
         if "motion" in self.passes:
             needed |= {"Vector", "IndexOB"}
@@ -167,6 +170,8 @@ class Exporter:
         work = []
         for number in settings.frames:
             work.append(("frames", number))
+            if self.passes_of["centre"] and (not self.static or number == settings.frames[0]):
+                work.append(("centre", number))
             if number in truth_frames:
                 work.append(("truth", number))
         summary = Summary()
@@ -181,9 +186,9 @@ class Exporter:
             try:
                 path = os.path.join(store.folder, store.picture(kind, number))
                 record = (
-                    self._export_frame(number, path)
-                    if kind == "frames"
-                    else self._export_truth(number, path)
+                    self._export_truth(number, path)
+                    if kind == "truth"
+                    else self._export_frame(kind, number, path)
                 )
             except BaseException:
                 store.release(kind, number)
@@ -219,7 +224,7 @@ class Exporter:
             for name, values in self._seconds.items()
         }
         left = sum(typical[name] for name, _ in rest)
-        label = "frame" if kind == "frames" else "truth"
+        label = {"frames": "frame"}.get(kind, kind)
         parts = ", ".join(
             f"{name} {value:.2f} s" for name, value in record["render_seconds"].items()
         )
@@ -277,12 +282,20 @@ class Exporter:
                 renders.append(rendering.render(self.scene, self.view_layer, self.folder))
         return renders
 
-    def _export_frame(self, number: int, path: str) -> dict:
+    def _export_frame(self, kind_of_frame: str, number: int, path: str) -> dict:
+        """A jittered frame ("frames"), or the same instant at the pixel centres ("centre")."""
         settings = self.settings
+        self.passes = self.passes_of[kind_of_frame]
+        self.wants_samples = bool(self.passes & {"subsamples", "subsampleColor"})
         position = settings.frames.index(number)
-        offset = jitter.jitter_at(
-            settings.jitter, number - settings.frames[0], settings.period, settings.jitter_centred
-        )
+        offset = (0.0, 0.0)
+        if kind_of_frame == "frames":
+            offset = jitter.jitter_at(
+                settings.jitter,
+                number - settings.frames[0],
+                settings.period,
+                settings.jitter_centred,
+            )
         before = None
         if not self.static:
             before = self._state(number - 1)
@@ -298,7 +311,7 @@ class Exporter:
         parts = [self._part("color", "RGBA", kind, color)]
         entry = {
             "frame": number,
-            "file": f"frames/{number:06d}.exr",
+            "file": f"{kind_of_frame}/{number:06d}.exr",
             "reset": self._is_reset(position, now, before),
             "jitter": [float(offset[0]), float(offset[1])],
             "camera": now.camera.as_manifest(),
@@ -321,7 +334,7 @@ class Exporter:
         if "normal" in self.passes:
             parts.append(self._part("normal", ("N.X", "N.Y", "N.Z"), "float", main.get("Normal")))
         ids = None
-        if self.passes & {"object", "motion", "subsamples"}:
+        if self.passes & {"object", "motion", "subsamples", "edges"}:
             self.ids.look(bpy.context.evaluated_depsgraph_get())
             ids = self.ids.resolve(main)
         if "object" in self.passes:
@@ -334,6 +347,16 @@ class Exporter:
             if invalid:
                 entry["motion_invalid"] = invalid
             parts.append(self._part("motion", ("motion.X", "motion.Y"), "float", motion))
+        if "edges" in self.passes:
+            started = time.perf_counter()
+            finder = edges.EdgeFinder(self.frame, now.camera)
+            depsgraph = bpy.context.evaluated_depsgraph_get()
+            edges.collect(finder, depsgraph, self.ids.identify, set(np.unique(ids).tolist()))
+            distances, missing = finder.measure(ids, depth, offset)
+            if missing:
+                entry["pixels_without_edges"] = missing
+            parts.append(self._part("edges", ("edge.X", "edge.Y"), "float", distances))
+            seconds["edges"] = time.perf_counter() - started
         if self.wants_samples:
             part, spent = self._subsample_part(number, offset, now.camera, main, ids, depth)
             parts.append(part)

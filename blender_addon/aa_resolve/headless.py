@@ -90,7 +90,11 @@ def build_parser() -> argparse.ArgumentParser:
         metavar="LIST",
         help="frames with ground truth: all, none or e.g. 1,8,16 (all); a static shot has one for all frames",
     )
-    add("--jitter", default="halton23", metavar="SEQUENCE", help=f"default halton23. {sequences}")
+    add(
+        "--jitter",
+        metavar="SEQUENCE",
+        help=f"default halton23, or none where no method of --for accumulates frames. {sequences}",
+    )
     add(
         "--period",
         type=int,
@@ -167,7 +171,15 @@ def _check_range(option: str, value: int, low: int, high: int) -> None:
 def settings_from(arguments: argparse.Namespace, scene: bpy.types.Scene) -> Settings:
     """Checks the options against each other and the scene."""
     choices = registry.parse_choices(arguments.methods or ["noaa"])
-    passes = registry.required_passes(choices)
+    # Methods that accumulate read jittered frames, all others the pixel centres: with both kinds chosen the shot holds
+    # both, with one kind only the frames themselves are of that kind.
+    passes = registry.required_passes(choices, "jittered")
+    centre_passes = registry.required_passes(choices, "centre")
+    if arguments.jitter is None:
+        arguments.jitter = "halton23" if passes or not arguments.methods else "none"
+    if not passes or arguments.jitter == "none":
+        passes |= centre_passes
+        centre_passes = set()
     for name in filter(None, (part.strip() for part in arguments.passes.split(","))):
         if name not in registry.PASSES:
             raise UsageError(
@@ -188,7 +200,8 @@ def settings_from(arguments: argparse.Namespace, scene: bpy.types.Scene) -> Sett
         raise UsageError(f"--ambient: expected three numbers >= 0, found {arguments.ambient}")
     if arguments.ambient and arguments.lighting == "as-is":
         raise UsageError("--ambient: has no effect with --lighting as-is; leave one of them out")
-    pattern = arguments.subsamples or registry.pattern_from(choices, passes) or "d3d8"
+    both = passes | centre_passes
+    pattern = arguments.subsamples or registry.pattern_from(choices, both) or "d3d8"
     try:
         jitter.pattern_positions(pattern)
     except ValueError:
@@ -196,7 +209,7 @@ def settings_from(arguments: argparse.Namespace, scene: bpy.types.Scene) -> Sett
         raise UsageError(
             f"--subsamples: expected {known} or grid1 to grid8, found '{pattern}'"
         ) from None
-    if arguments.subsamples and not passes & {"subsamples", "subsampleColor"}:
+    if arguments.subsamples and not both & {"subsamples", "subsampleColor"}:
         raise UsageError("--subsamples: has no effect, none of the methods reads sub-samples")
     frames = (
         parse_frames(arguments.frames, "--frames")
@@ -213,6 +226,7 @@ def settings_from(arguments: argparse.Namespace, scene: bpy.types.Scene) -> Sett
         out=arguments.out,
         methods=[choice.id for choice in choices],
         passes=sorted(passes),
+        centre_passes=sorted(centre_passes),
         frames=frames,
         name=arguments.name or os.path.basename(os.path.abspath(arguments.out)),
         resolution=tuple(arguments.resolution) if arguments.resolution else None,

@@ -37,7 +37,9 @@ class ObjectIds:
         for index, item in enumerate(sorted(bpy.data.objects, key=lambda item: item.name_full), 1):
             item.pass_index = index
             self.table[index] = item.name_full
+        self._indices = {name: index for index, name in self.table.items()}
         self._names: dict[int, str] = {}
+        self._by_random: dict[tuple[str, int], int] = {}
         self._instances: dict[int, tuple[np.ndarray, np.ndarray]] = {}
         self.tells_instances = tell_instances and _may_instance(scene)
         if self.tells_instances:
@@ -64,7 +66,8 @@ class ObjectIds:
                 label = f"{source} #{number}" + (f" of {parent}" if parent else "")
                 found.setdefault(source, []).append((instance.random_id & 0xFFFFFFFF, label))
         taken: dict[int, str] = {}
-        indices = {name: index for index, name in self.table.items()}
+        self._by_random = {}
+        indices = self._indices
         for source in sorted(found):
             if source not in indices:
                 continue
@@ -76,12 +79,22 @@ class ObjectIds:
                     identity = 0x80000000 | (identity + 1) & 0x7FFFFFFF
                 taken[identity] = label
                 ids.append(identity)
+                self._by_random[source, random] = identity
             values = np.array(
                 [np.float32(random) * np.float32(1.0 / 4294967295.0) for random, _ in pairs],
                 np.float64,
             )
             self._instances[indices[source]] = values, np.array(ids, np.uint32)
         self._names.update(taken)
+
+    def identify(self, instance: bpy.types.DepsgraphObjectInstance) -> int:
+        """Id of an entry of the depsgraph that ``look`` has seen."""
+        name = instance.object.original.name_full
+        if instance.is_instance:
+            identity = self._by_random.get((name, instance.random_id & 0xFFFFFFFF))
+            if identity is not None:
+                return identity
+        return self._indices.get(name, 0)
 
     def resolve(self, layers: rendering.Layers, view: str = "") -> np.ndarray:
         """Ids (H x W uint32) of a render."""

@@ -67,12 +67,18 @@ def parse_choices(texts: list[str]) -> list[MethodChoice]:
     return [MethodChoice(name, parameters) for name, parameters in choices]
 
 
-def required_passes(choices: list[MethodChoice]) -> set[str]:
-    """Union of the passes the methods read; colour is always among them."""
+def required_passes(choices: list[MethodChoice], sampling: str | None = None) -> set[str]:
+    """Union of the passes the methods read, colour always among them; empty where no method reads this sampling.
+
+    Methods that accumulate frames read ``jittered`` ones, all others the pixel ``centre``."""
     known = load_methods()
-    needed = {"color"}
+    needed: set[str] = set()
     for choice in choices:
-        needed.update(known[choice.id]["passes"])
+        if sampling in (None, known[choice.id]["sampling"]):
+            needed |= {"color", *known[choice.id]["passes"]}
+            more = known[choice.id]["passesWhen"]
+            for key, value in choice.parameters.items():
+                needed.update(more.get(f"{key}={value}", ()))
     return needed & set(PASSES)
 
 

@@ -36,8 +36,9 @@ class Settings:
 
     out: str
     methods: list[str]
-    passes: list[str]
+    passes: list[str]  # of the jittered frames
     frames: list[int]
+    centre_passes: list[str] = field(default_factory=list)  # of the same instants at the pixel centres
     name: str = ""
     resolution: tuple[int, int] | None = None
     samples: int = 1
@@ -71,6 +72,7 @@ class Settings:
 
 _FLAGS = {
     "passes": "--for/--passes",
+    "centre_passes": "--for",
     "resolution": "--resolution",
     "samples": "--samples",
     "truth_samples": "--truth-samples",

@@ -69,7 +69,7 @@ class Store:
         """Makes the folder, or checks that what lies there was made with the same settings."""
         settings = os.path.join(self.private, "settings.json")
         if overwrite and os.path.isdir(self.private):
-            for name in ("frames", "truth", ".aa"):
+            for name in ("frames", "centre", "truth", ".aa"):
                 shutil.rmtree(os.path.join(self.folder, name), ignore_errors=True)
             with contextlib.suppress(FileNotFoundError):
                 os.unlink(os.path.join(self.folder, "shot.json"))
@@ -82,7 +82,7 @@ class Store:
                 f"--out: '{self.folder}' is not empty and holds no export; choose a new folder"
             )
         try:
-            for name in ("frames", "truth", ".aa/frames", ".aa/truth", ".aa/claims"):
+            for name in ("frames", "truth", ".aa/frames", ".aa/centre", ".aa/truth", ".aa/claims"):
                 os.makedirs(os.path.join(self.folder, name), exist_ok=True)
         except OSError as error:
             raise SceneError(f"--out: '{self.folder}' cannot be made: {error.strerror}") from error
@@ -140,6 +140,7 @@ class Store:
         with self.locked():
             if self.record(kind, frame) is not None:
                 return False
+            os.makedirs(os.path.join(self.folder, kind), exist_ok=True)
             path = self._claim_path(kind, frame)
             if os.path.exists(path) and not self._is_abandoned(path):
                 return False
@@ -184,6 +185,13 @@ class Store:
             entry = dict(record["entry"])
             objects.update(record["objects"])
             truth_frame = frames[0] if head["static"] else number
+            centre = self.record("centre", truth_frame)
+            if centre is not None:
+                entry["centre"] = self.picture("centre", truth_frame)
+                objects.update(centre["objects"])
+                if truth_frame == number:
+                    spent = sum(centre["render_seconds"].values())
+                    entry["render_seconds"] = {**entry["render_seconds"], "centre": round(spent, 4)}
             truth = self.record("truth", truth_frame)
             if truth is not None:
                 entry["truth"] = self.picture("truth", truth_frame)
