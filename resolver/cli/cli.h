@@ -31,5 +31,6 @@ void addPlan(CLI::App& app, Context& context);
 void addRun(CLI::App& app, Context& context);
 void addFilter(CLI::App& app, Context& context);
 void addLearnRsaa(CLI::App& app, Context& context);
+void addSynth(CLI::App& app, Context& context);
 
 }  // namespace aa

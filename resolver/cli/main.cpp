@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
         aa::addRun,
         aa::addFilter,
         aa::addLearnRsaa,
+        aa::addSynth,
     };
     for (const auto add : commands) add(app, context);
     try {

@@ -1,0 +1,77 @@
+#include "shot/synth.h"
+
+#include <cstdio>
+
+#include "cli/cli.h"
+#include "cli/progress.h"
+#include "image/error.h"
+#include "shot/patterns.h"
+
+namespace aa {
+namespace {
+struct Options {
+    SynthOptions synth;
+    std::string out, size = "480x270";
+    int threads = 0;
+    bool quiet = false, list = false;
+};
+
+void printScenes() {
+    for (const auto& s : synthScenes())
+        std::printf("%-12s %s\n", std::string(s.name).c_str(), std::string(s.meaning).c_str());
+    std::puts("\njitter sequences:");
+    for (const auto& s : jitterSequences())
+        std::printf("%-16s %s\n", std::string(s.name).c_str(), std::string(s.meaning).c_str());
+}
+
+void parseSize(const std::string& text, SynthOptions& o) {
+    int used = 0;
+    if (std::sscanf(text.c_str(), "%dx%d%n", &o.width, &o.height, &used) != 2 || size_t(used) != text.size())
+        throw UsageError("synth: --size: expected WIDTHxHEIGHT in pixels, found '" + text + "'");
+}
+
+int synth(Options& o) {
+    if (o.list) return printScenes(), 0;
+    if (o.synth.scene.empty() || o.out.empty())
+        throw UsageError("synth: expected NAME -o SHOT; `aaresolve synth --list` shows the names");
+    parseSize(o.size, o.synth);
+    Manifest m;
+    bool stopped = false;
+    withThreads(o.threads, [&] {
+        Progress progress("synth " + o.synth.scene, size_t(std::max(o.synth.frames, 1)), o.quiet);
+        m = writeSynth(o.synth, o.out, [&](const FrameEntry& f) {
+            progress.step("frame " + std::to_string(f.frame));
+            stopped = progress.interrupted();
+            return !stopped;
+        });
+    });
+    std::printf("%s: %zu frames of %s, %dx%d, jitter %s, %s -> %s\n", stopped ? "stopped" : "done", m.frames.size(),
+                m.name.c_str(), m.width, m.height, m.jitterSequence.c_str(), m.isStatic ? "static" : "moving",
+                o.out.c_str());
+    return stopped ? 1 : 0;
+}
+}  // namespace
+
+void addSynth(CLI::App& app, Context& context) {
+    auto o = std::make_shared<Options>();
+    o->synth.scene.clear();
+    auto* c = app.add_subcommand("synth", "Analytic shots with exact truth, without Blender");
+    c->add_option("NAME", o->synth.scene, "scene; --list shows them");
+    c->add_option("-o,--out", o->out, "folder of the shot");
+    c->add_option("--size", o->size, "WIDTHxHEIGHT, px");
+    c->add_option("--frames", o->synth.frames, "number of frames");
+    c->add_option("--jitter", o->synth.jitter, "sequence; `none` samples pixel centres");
+    c->add_option("--start", o->synth.jitterStart, "index of the first point of halton23; -1 = its own");
+    c->add_option("--period", o->synth.period, "frames after which the jitter repeats")->check(CLI::Range(1, 1 << 20));
+    c->add_flag("--centre", o->synth.centred, "subtract the mean of one period from the jitter");
+    c->add_option("--subsamples", o->synth.subsamples,
+                  "pattern: d3d1, d3d2, d3d4, d3d8, d3d16, grid1..grid8; empty = none");
+    c->add_flag("--subsample-color", o->synth.subsampleColor, "colour at the sub-samples, too");
+    c->add_option("--seed", o->synth.seed, "of the colours");
+    c->add_option("-j,--threads", o->threads, "threads; 0 = all processors")->check(CLI::Range(0, 1024));
+    c->add_flag("--quiet", o->quiet, "no progress");
+    c->add_flag("--list", o->list, "names of the scenes and jitter sequences");
+    c->callback([o, &context] { context.exitCode = synth(*o); });
+}
+
+}  // namespace aa

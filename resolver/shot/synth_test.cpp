@@ -1,0 +1,264 @@
+#include "shot/synth.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <set>
+
+#include "image/error.h"
+#include "shot/reader.h"
+
+namespace aa {
+namespace {
+using glm::dvec2;
+using glm::dvec3;
+
+SynthOptions small(const char* scene, int frames = 4) {
+    SynthOptions o;
+    o.scene = scene;
+    o.width = 121;
+    o.height = 77;
+    o.frames = frames;
+    return o;
+}
+
+// Mean colour over an n x n grid of the pixel: what the exact truth must agree with.
+dvec3 countedColor(const std::function<dvec3(dvec2)>& picture, int x, int y, int n) {
+    dvec3 sum(0);
+    for (int j = 0; j < n; j++)
+        for (int i = 0; i < n; i++) sum += picture({x + (i + .5) / n, y + (j + .5) / n});
+    return sum / double(n * n);
+}
+
+class SynthScenes : public testing::TestWithParam<std::string_view> {};
+INSTANTIATE_TEST_SUITE_P(All, SynthScenes, testing::ValuesIn([] {
+                             std::vector<std::string_view> names;
+                             for (const auto& s : synthScenes()) names.push_back(s.name);
+                             return names;
+                         }()),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST_P(SynthScenes, TruthIsTheBoxMean) {
+    const SynthShot shot(small(GetParam().data()));
+    const Frame f = shot.frame(2);
+    const Truth t = shot.truth(2);
+    const auto picture = shot.picture(2);
+    int edges = 0;
+    double worst = 0;
+    for (int y = 0; y < 77; y++)
+        for (int x = (y * 7) % 5; x < 121; x += 5) {
+            const dvec3 expected = countedColor(picture, x, y, 24);
+            for (int c = 0; c < 3; c++) {
+                const double difference = std::abs(t.a.c[size_t(c)].at(x, y) - expected[c]);
+                worst = std::max(worst, difference);
+                edges += std::abs(f.colorLinear.c[size_t(c)].at(x, y) - expected[c]) > 0.01;
+            }
+        }
+    EXPECT_LT(worst, 0.03);  // 24 x 24 samples resolve an area to about 1/24 of the edge's contrast
+    EXPECT_GT(edges, 40);    // there was something to resolve
+}
+
+TEST_P(SynthScenes, MeanOfManySamplesConvergesToTheTruth) {
+    const SynthShot shot(small(GetParam().data()));
+    const Truth t = shot.truth(1);
+    const auto picture = shot.picture(1);
+    double coarse = 0, fine = 0;
+    for (int y = 3; y < 77; y += 11)
+        for (int x = 2; x < 121; x += 3) {
+            const double a = t.a.c[1].at(x, y);
+            coarse += std::pow(countedColor(picture, x, y, 4).y - a, 2);
+            fine += std::pow(countedColor(picture, x, y, 64).y - a, 2);
+        }
+    EXPECT_LT(fine, coarse / 25);  // the error of a regular grid falls with its spacing
+}
+
+TEST_P(SynthScenes, PassesAreSound) {
+    SynthOptions o = small(GetParam().data());
+    o.subsamples = "d3d4";
+    o.subsampleColor = true;
+    const SynthShot shot(o);
+    const Frame f = shot.frame(3);
+    const glm::dmat3 view(f.camera->view);
+    const auto picture = shot.picture(3);
+    std::set<uint32_t> ids;
+    for (int y = 0; y < f.height; y++)
+        for (int x = 0; x < f.width; x++) {
+            const uint32_t id = f.objectId.at(x, y);
+            ids.insert(id);
+            const dvec3 n(f.normalWorld.c[0].at(x, y), f.normalWorld.c[1].at(x, y), f.normalWorld.c[2].at(x, y));
+            if (id == 0) {
+                EXPECT_EQ(f.depthView.at(x, y), kBackgroundDepth);
+                EXPECT_EQ(n, dvec3(0));
+                continue;
+            }
+            EXPECT_TRUE(shot.manifest().objects.contains(id));
+            EXPECT_GT(f.depthView.at(x, y), f.camera->nearClip);
+            EXPECT_LT(f.depthView.at(x, y), f.camera->farClip);
+            EXPECT_NEAR(glm::length(n), 1, 1e-6);
+            EXPECT_GT((view * n).z, 0) << "faces the camera";
+            for (size_t k = 0; k < 4; k++) {
+                const bool same = f.subSamples[k].objectId.at(x, y) == id;
+                EXPECT_EQ((f.subSampleMask.at(x, y) >> k & 1) == 1, same);
+                const dvec2 q = dvec2(x + .5, y + .5) + f.subSamplePositionsPx[k];
+                EXPECT_EQ(f.subSamples[k].colorLinear.c[0].at(x, y), float(picture(q).x));
+            }
+        }
+    EXPECT_GT(ids.size(), GetParam() == "zone_plate" ? 0u : 2u);
+    EXPECT_EQ(shot.frame(0).reset, true);
+    EXPECT_EQ(f.reset, false);
+}
+
+// Where p was: the surface's point of the previous frame has the same object and colour there, unless it was hidden.
+TEST(Synth, MotionLeadsToTheSameSurface) {
+    for (const char* scene : {"moving", "thin_motion"}) {
+        const SynthShot shot(small(scene));
+        const Frame f = shot.frame(3);
+        const auto picture = shot.picture(3), previous = shot.picture(2);
+        int moved = 0, same = 0, sameIfFlipped = 0;
+        for (int y = 0; y < f.height; y++)
+            for (int x = 0; x < f.width; x++) {
+                const dvec2 mv(f.motionXPx.at(x, y), f.motionYPx.at(x, y));
+                if (mv == dvec2(0)) continue;
+                const dvec2 p = dvec2(x + .5, y + .5) + f.jitterPx;
+                const dvec3 now = picture(p);
+                moved++;
+                same += now == previous(p - mv);
+                sameIfFlipped += now == previous(p + mv);
+            }
+        EXPECT_GT(moved, 150) << scene;
+        EXPECT_GT(same, 0.97 * moved) << scene;
+        EXPECT_LT(sameIfFlipped, 0.9 * moved) << scene;
+    }
+}
+
+TEST(Synth, TheBarMovesByWholePixels) {
+    const SynthShot shot(small("moving"));
+    const Frame a = shot.frame(1), b = shot.frame(2);
+    SynthOptions still = small("moving");
+    still.jitter = "none";
+    const Frame c = SynthShot(still).frame(1), d = SynthShot(still).frame(2);
+    int pixels = 0;
+    for (int y = 1; y < 77; y++)
+        for (int x = 0; x < 121; x++)
+            if (d.objectId.at(x, y) == 5) {
+                pixels++;
+                EXPECT_EQ(d.motionYPx.at(x, y), 1.0f);
+                EXPECT_EQ(d.motionXPx.at(x, y), 0.0f);
+                EXPECT_EQ(c.objectId.at(x, y - 1), 5u);
+            }
+    EXPECT_GT(pixels, 30);
+}
+
+TEST(Synth, DepthUnprojectsOntoThePlanes) {
+    for (const char* scene : {"two_planes", "half_planes"}) {
+        const SynthShot shot(small(scene));
+        const Frame f = shot.frame(1);
+        const glm::dmat4 toWorld = glm::inverse(f.camera->projection * f.camera->view);
+        std::map<uint32_t, dvec3> first;
+        for (int y = 0; y < f.height; y++)
+            for (int x = 0; x < f.width; x++) {
+                if (f.objectId.at(x, y) == 0) continue;
+                const dvec2 p = dvec2(x + .5, y + .5) + f.jitterPx;
+                const glm::dvec4 clip = f.camera->projection * glm::dvec4(0, 0, -double(f.depthView.at(x, y)), 1);
+                const glm::dvec4 world =
+                    toWorld * (glm::dvec4(2 * p.x / f.width - 1, 1 - 2 * p.y / f.height, clip.z / clip.w, 1) * clip.w);
+                const dvec3 point = dvec3(world) / world.w;
+                const auto [it, isNew] = first.emplace(f.objectId.at(x, y), point);
+                const dvec3 n(f.normalWorld.c[0].at(x, y), f.normalWorld.c[1].at(x, y), f.normalWorld.c[2].at(x, y));
+                EXPECT_NEAR(glm::dot(n, point - it->second), 0, 2e-5) << scene << " " << x << " " << y;
+            }
+    }
+}
+
+TEST(Synth, HalfPlanesShowAtLeast64Angles) {
+    const SynthShot shot(small("half_planes"));
+    EXPECT_GE(shot.shapes().size(), 128u - 6u);  // an edge may miss a tile's corner
+    const Frame f = shot.frame(0);
+    EXPECT_TRUE(f.passes.has(Pass::edges));
+    EXPECT_FALSE(SynthShot(small("circles")).passes().has(Pass::edges));
+}
+
+// methods/05 s.5.1: an edge 0.2 px to the right makes (0.2, 0.5); the sign follows the side.
+TEST(Synth, EdgeDistancesAreSignedAndPointAtTheEdge) {
+    SynthOptions o = small("half_planes", 1);
+    o.jitter = "none";
+    const SynthShot shot(o);
+    const Frame f = shot.frame(0);
+    const auto picture = shot.picture(0);
+    int cut = 0;
+    for (int y = 0; y < f.height; y++)
+        for (int x = 0; x < f.width; x++) {
+            const dvec2 e(f.edgeXPx.at(x, y), f.edgeYPx.at(x, y)), p(x + .5, y + .5);
+            if (std::min(std::abs(e.x), std::abs(e.y)) >= 0.499) continue;
+            cut++;
+            const dvec2 step = std::abs(e.x) < std::abs(e.y) ? dvec2(e.x, 0) : dvec2(0, e.y);
+            const double beyond = 1e-4 / std::max(glm::length(step), 1e-6);
+            EXPECT_NE(picture(p + step * (1 + beyond)), picture(p + step * (1 - beyond))) << x << " " << y;
+        }
+    EXPECT_GT(cut, 400);
+}
+
+TEST(Synth, SameBitsAtEveryCall) {
+    const SynthShot shot(small("moving"));
+    EXPECT_TRUE(shot.frame(2).colorLinear.samePixels(SynthShot(small("moving")).frame(2).colorLinear));
+    EXPECT_TRUE(shot.truth(2).a.samePixels(shot.truth(2).b));
+    const Truth zone = SynthShot(small("zone_plate")).truth(0);
+    EXPECT_FALSE(zone.a.samePixels(zone.b));
+}
+
+TEST(Synth, OddSizes) {
+    for (const auto& scene : synthScenes())
+        for (const auto& [w, h] : {std::pair{1, 1}, {1, 9}, {9, 1}, {17, 3}}) {
+            SynthOptions o = small(scene.name.data(), 2);
+            o.width = w;
+            o.height = h;
+            const SynthShot shot(o);
+            EXPECT_EQ(shot.frame(1).colorLinear.width(), w);
+            for (const auto& p : shot.truth(1).a.c) EXPECT_TRUE(std::isfinite(p.at(w - 1, h - 1)));
+        }
+}
+
+TEST(Synth, WrittenShotReadsBackBitForBit) {
+    const auto folder = std::filesystem::path(testing::TempDir()) / "aa_synth_test";
+    for (const char* scene : {"moving", "two_planes"}) {
+        SynthOptions o = small(scene, 3);
+        o.subsamples = "d3d8";
+        int calls = 0;
+        writeSynth(o, folder, [&](const FrameEntry&) { return ++calls < 2; });
+        const ShotReader reader(folder, InputPolicy::strict);
+        const SynthShot shot(o);
+        ASSERT_EQ(reader.manifest().frames.size(), 2u);  // stopped after two
+        EXPECT_EQ(reader.offered(), shot.passes());
+        const Frame f = reader.read(1, shot.passes()), e = shot.frame(1);
+        EXPECT_TRUE(f.colorLinear.samePixels(e.colorLinear));
+        EXPECT_TRUE(f.motionXPx.samePixels(e.motionXPx));
+        EXPECT_TRUE(f.subSamples[7].normalWorld.samePixels(e.subSamples[7].normalWorld));
+        EXPECT_EQ(f.jitterPx, e.jitterPx);
+        EXPECT_EQ(f.camera->view, e.camera->view);
+        EXPECT_TRUE(reader.readTruth(1)->a.samePixels(shot.truth(1).a));
+        std::filesystem::remove_all(folder);
+    }
+}
+
+TEST(Synth, WrongOptionsAreUsageErrors) {
+    const auto with = [](auto change) {
+        SynthOptions o = small("moving");
+        change(o);
+        return [o] { SynthShot shot(o); };
+    };
+    EXPECT_THROW(with([](auto& o) { o.scene = "movin"; })(), UsageError);
+    EXPECT_THROW(with([](auto& o) { o.jitter = "x"; })(), UsageError);
+    EXPECT_THROW(with([](auto& o) { o.subsamples = "d3d3"; })(), UsageError);
+    EXPECT_THROW(with([](auto& o) { o.subsampleColor = true; })(), UsageError);
+    EXPECT_THROW(with([](auto& o) { o.width = 0; })(), UsageError);
+    EXPECT_THROW(with([](auto& o) { o.frames = 0; })(), UsageError);
+    EXPECT_THROW(with([](auto& o) {
+                     o.jitter = "r2";
+                     o.jitterStart = 3;
+                 })(),
+                 UsageError);
+}
+}  // namespace
+}  // namespace aa
