@@ -30,6 +30,8 @@ void addList(CLI::App& app, Context& context);
 void addPlan(CLI::App& app, Context& context);
 void addRun(CLI::App& app, Context& context);
 void addFilter(CLI::App& app, Context& context);
+void addSheet(CLI::App& app, Context& context);
+void addCompare(CLI::App& app, Context& context);
 void addLearnRsaa(CLI::App& app, Context& context);
 void addSynth(CLI::App& app, Context& context);
 

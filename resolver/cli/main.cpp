@@ -19,6 +19,8 @@ int main(int argc, char** argv) {
         aa::addPlan,
         aa::addRun,
         aa::addFilter,
+        aa::addSheet,
+        aa::addCompare,
         aa::addLearnRsaa,
         aa::addSynth,
     };

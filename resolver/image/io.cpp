@@ -65,6 +65,7 @@ LoadedImage readImage(const fs::path& file) {
     }
     LoadedImage image{Rgb(spec.width, spec.height),
                       spec.format.is_floating_point() ? FileSpace::linear : FileSpace::encoded};
+    image.displayReferred = spec.get_int_attribute("aaresolve:displayReferred", 0) != 0;
     for (int c = 0; c < 3; c++) {
         const int from = channels == 3 ? c : 0;
         for (int y = 0; y < spec.height; y++)

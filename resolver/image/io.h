@@ -16,6 +16,7 @@ enum class FileSpace {
 struct LoadedImage {
     Rgb rgb;  // encoded in [0,1] or linear, by `space`
     FileSpace space = FileSpace::linear;
+    bool displayReferred = false;  // written by writeExr(..., true): linear light that must not be tone mapped again
 };
 
 // Reads the first three channels (one channel is repeated). Integer files are taken as sRGB codes, float files as

@@ -1,0 +1,278 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "cli/cli.h"
+#include "image/colour.h"
+#include "image/error.h"
+#include "image/io.h"
+#include "methods/params.h"
+#include "metrics/flip.h"
+#include "metrics/fourier.h"
+#include "metrics/metrics.h"
+#include "report/colour_map.h"
+#include "report/format.h"
+#include "report/gallery.h"
+
+namespace aa {
+namespace {
+namespace fs = std::filesystem;
+
+// What `--metrics` names. Pooled over frames: means, but PSNR, SNR and RMSE from the mean MSE.
+struct MetricName {
+    std::string_view name, help;
+    bool higherIsBetter;
+};
+constexpr MetricName kMetrics[] = {
+    {"mse", "mean squared error", false},
+    {"rmse", "its root", false},
+    {"psnr", "peak signal to noise, dB", true},
+    {"snr", "signal to noise, dB", true},
+    {"ssimLuma", "SSIM of luma 601", true},
+    {"ssimRgb", "SSIM, mean over channels", true},
+    {"ssimMatlab3D", "SSIM as MATLAB filters an RGB array", true},
+    {"flip", "LDR-FLIP, mean", false},
+    {"relMse", "relative MSE of linear light (EXR only)", false},
+    {"fmagMse", "Fourier magnitudes, blind to phase", false},
+    {"fband0", "MSE at 0 to 1/8 cycles/px", false},
+    {"fband1", "MSE at 1/8 to 1/4", false},
+    {"fband2", "MSE at 1/4 to 1/2", false},
+    {"fband3", "MSE at 1/2 and above", false},
+};
+const MetricName& metricByName(const std::string& given) {
+    const std::string name = given == "ssim" ? "ssimLuma" : given;
+    for (const auto& m : kMetrics)
+        if (m.name == name) return m;
+    std::vector<std::string_view> names;
+    for (const auto& m : kMetrics) names.push_back(m.name);
+    const std::string near = suggestion(name, names);
+    throw UsageError("unknown metric '" + given + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
+                     " (see aaresolve compare --help)");
+}
+std::string metricList() {
+    std::string all;
+    for (const auto& m : kMetrics)
+        all += "\n  " + std::string(m.name) + std::string(14 - m.name.size(), ' ') + std::string(m.help);
+    return all;
+}
+
+struct Options {
+    std::string a, b, map;
+    std::vector<std::string> metrics = {"mse", "psnr", "ssimLuma"}, thresholds;
+    double exposure = 0;
+    bool json = false, q8 = false;
+    WorkOptions work;
+};
+
+struct Pair {
+    std::string name;
+    fs::path a, b;
+};
+bool isImage(const fs::path& p) {
+    const std::string e = p.extension().string();
+    return (e == ".png" || e == ".exr" || e == ".PNG" || e == ".EXR") && !p.filename().string().starts_with('.') &&
+           p.stem().extension() != ".layers";
+}
+// Two images, or the images of two folders by equal names (000001.exr matches 000001.png).
+std::vector<Pair> pairsOf(const Options& o) {
+    for (const auto& p : {o.a, o.b})
+        if (!fs::exists(p)) throw InputError(p + ": no such file or folder");
+    if (fs::is_directory(o.a) != fs::is_directory(o.b))
+        throw UsageError("compare: '" + o.a + "' and '" + o.b + "' must both be images or both be folders of frames");
+    if (!fs::is_directory(o.a)) return {{fs::path(o.a).filename().string(), o.a, o.b}};
+    const auto list = [](const fs::path& folder) {
+        std::map<std::string, fs::path> files;
+        for (const auto& e : fs::directory_iterator(folder))
+            if (e.is_regular_file() && isImage(e.path()) && !files.emplace(e.path().stem().string(), e.path()).second)
+                throw InputError(folder.string() + ": frame " + e.path().stem().string() +
+                                 " is there as PNG and as EXR; keep one kind");
+        return files;
+    };
+    const auto a = list(o.a), b = list(o.b);
+    if (a.empty()) throw InputError(o.a + ": no PNG or EXR frames in this folder");
+    std::vector<Pair> pairs;
+    for (const auto& [name, file] : a) {
+        const auto other = b.find(name);
+        if (other == b.end()) throw InputError(o.b + ": no frame '" + name + "', which " + o.a + " has");
+        pairs.push_back({name, file, other->second});
+    }
+    for (const auto& [name, file] : b)
+        if (!a.count(name)) throw InputError(o.a + ": no frame '" + name + "', which " + o.b + " has");
+    return pairs;
+}
+
+struct Threshold {
+    const MetricName* metric;
+    double limit;
+};
+std::vector<Threshold> thresholdsOf(const Options& o) {
+    std::vector<Threshold> all;
+    for (const auto& text : o.thresholds) {
+        const size_t equals = text.find('=');
+        char* end = nullptr;
+        const double limit = equals == std::string::npos ? 0 : std::strtod(text.c_str() + equals + 1, &end);
+        if (equals == std::string::npos || end == text.c_str() + equals + 1 || *end)
+            throw UsageError("--fail-below: expected metric=number such as psnr=40, found '" + text + "'");
+        const MetricName& m = metricByName(text.substr(0, equals));
+        if (!m.higherIsBetter)
+            throw UsageError("--fail-below " + text + ": of " + std::string(m.name) +
+                             " smaller is better; use psnr, snr or an SSIM");
+        all.push_back({&m, limit});
+    }
+    return all;
+}
+
+using Figures = std::map<std::string_view, double>;
+
+struct Both {
+    Rgb encodedA, encodedB, linearA, linearB;  // linear: empty for 8-bit images
+};
+Both loadBoth(const Pair& pair, const Options& o, const Exec& exec) {
+    LoadedImage a = readImage(pair.a), b = readImage(pair.b);
+    if (a.rgb.width() != b.rgb.width() || a.rgb.height() != b.rgb.height())
+        throw InputError(pair.b.string() + ": expected " + std::to_string(a.rgb.width()) + "x" +
+                         std::to_string(a.rgb.height()) + " like " + pair.a.string() + ", found " +
+                         std::to_string(b.rgb.width()) + "x" + std::to_string(b.rgb.height()));
+    Both both;
+    const auto prepare = [&](LoadedImage& image, Rgb& encoded, Rgb& linear) {
+        if (image.space == FileSpace::encoded) {
+            encoded = std::move(image.rgb);
+        } else {
+            encode(image.rgb, image.displayReferred ? DisplayChain{} : DisplayChain{float(o.exposure)}, exec, encoded);
+            linear = std::move(image.rgb);
+        }
+        if (o.q8) encoded = quantised8(encoded);
+    };
+    prepare(a, both.encodedA, both.linearA);
+    prepare(b, both.encodedB, both.linearB);
+    return both;
+}
+// `b` is the reference.
+Figures figuresOf(const Both& p, const std::set<std::string_view>& wanted, const Exec& exec) {
+    Figures f;
+    const auto any = [&](std::initializer_list<std::string_view> names) {
+        return std::any_of(names.begin(), names.end(), [&](auto n) { return wanted.count(n) > 0; });
+    };
+    const SquaredError e = squaredError(p.encodedA, p.encodedB, exec);
+    f["mse"] = e.mse;
+    f["referencePower"] = e.reference;
+    if (any({"ssimLuma"})) f["ssimLuma"] = ssimLuma(p.encodedA, p.encodedB, exec);
+    if (any({"ssimRgb"})) f["ssimRgb"] = ssimRgb(p.encodedA, p.encodedB, exec);
+    if (any({"ssimMatlab3D"})) f["ssimMatlab3D"] = ssimMatlab3D(p.encodedA, p.encodedB, exec);
+    if (any({"flip"})) f["flip"] = flip(p.encodedA, p.encodedB, exec);
+    if (any({"relMse"})) {
+        if (p.linearA.empty() || p.linearB.empty()) throw UsageError("relMse needs linear images: two EXR files");
+        f["relMse"] = relMse(p.linearA, p.linearB, exec);
+    }
+    if (any({"fmagMse", "fband0", "fband1", "fband2", "fband3"})) {
+        const FourierError fourier = fourierError(p.encodedA, p.encodedB, exec);
+        f["fmagMse"] = fourier.fmagMse;
+        f["fband0"] = fourier.fband[0], f["fband1"] = fourier.fband[1];
+        f["fband2"] = fourier.fband[2], f["fband3"] = fourier.fband[3];
+    }
+    return f;
+}
+void addDerived(Figures& f) {
+    f["rmse"] = rmse(f["mse"]);
+    f["psnr"] = psnr(f["mse"]);
+    f["snr"] = snr({f["mse"], f["referencePower"]});
+}
+std::string shown(std::string_view metric, double v) {
+    return metric == "psnr" || metric == "snr" ? decibels(v)
+           : metric.starts_with("ssim")        ? similarity(v)
+                                               : significant(v);
+}
+nlohmann::ordered_json numbers(const Figures& f, const std::vector<std::string>& wanted) {
+    nlohmann::ordered_json j;
+    for (const auto& name : wanted) {
+        const double v = f.at(metricByName(name).name);
+        if (std::isfinite(v))
+            j[std::string(metricByName(name).name)] = v;
+        else
+            j[std::string(metricByName(name).name)] = significant(v);  // "Inf", "-Inf", "NaN"
+    }
+    return j;
+}
+void writeErrorMap(const Both& p, const fs::path& file) {
+    const PlaneF error = errorMap(p.encodedA, p.encodedB);
+    Rgb image(error.width(), error.height());
+    for (int y = 0; y < error.height(); y++)
+        for (int x = 0; x < error.width(); x++) {
+            const Colour c = errorColour(double(error.at(x, y)) / kErrorScale);
+            for (size_t k = 0; k < 3; k++) image.c[k].at(x, y) = c[k];
+        }
+    writePng(file, image);
+}
+
+void compare(const Options& o, Context& context) {
+    const Exec exec = o.work.exec();
+    const auto thresholds = thresholdsOf(o);
+    std::set<std::string_view> wanted;
+    for (const auto& m : o.metrics) wanted.insert(metricByName(m).name);
+    for (const auto& t : thresholds) wanted.insert(t.metric->name);
+    const auto pairs = pairsOf(o);
+    if (!o.map.empty() && pairs.size() > 1) makeWritableFolder(o.map);
+
+    Figures pooled;
+    std::vector<Figures> frames;
+    withThreads(o.work.threads, [&] {
+        for (const auto& pair : pairs) {
+            const Both both = loadBoth(pair, o, exec);
+            frames.push_back(figuresOf(both, wanted, exec));
+            for (const auto& [name, value] : frames.back()) pooled[name] += value / double(pairs.size());
+            addDerived(frames.back());
+            if (!o.map.empty())
+                writeErrorMap(both, pairs.size() > 1 ? fs::path(o.map) / (pair.name + ".png") : fs::path(o.map));
+        }
+    });
+    addDerived(pooled);
+
+    std::vector<std::string> failures;
+    for (const auto& t : thresholds)
+        if (const double v = pooled.at(t.metric->name); !(v >= t.limit))
+            failures.push_back(std::string(t.metric->name) + " " + shown(t.metric->name, v) + " is below " +
+                               shown(t.metric->name, t.limit));
+    if (o.json) {
+        nlohmann::ordered_json j = {
+            {"a", o.a}, {"b", o.b}, {"frames", pairs.size()}, {"pooled", numbers(pooled, o.metrics)}};
+        for (size_t i = 0; i < pairs.size() && pairs.size() > 1; i++)
+            j["perFrame"][pairs[i].name] = numbers(frames[i], o.metrics);
+        j["failures"] = failures;
+        std::cout << j.dump(1) << "\n";
+    } else {
+        const auto line = [&](const std::string& name, const Figures& f) {
+            std::printf("%-16s", name.c_str());
+            for (const auto& m : o.metrics)
+                std::printf("  %s %s", std::string(metricByName(m).name).c_str(),
+                            shown(metricByName(m).name, f.at(metricByName(m).name)).c_str());
+            std::printf("\n");
+        };
+        if (pairs.size() > 1)
+            for (size_t i = 0; i < pairs.size(); i++) line(pairs[i].name, frames[i]);
+        line(pairs.size() > 1 ? "pooled" : pairs[0].name, pooled);
+    }
+    for (const auto& f : failures) std::fprintf(stderr, "aaresolve: compare: %s\n", f.c_str());
+    if (!failures.empty()) context.exitCode = 1;
+}
+}  // namespace
+
+void addCompare(CLI::App& app, Context& context) {
+    auto o = std::make_shared<Options>();
+    auto* c = app.add_subcommand("compare", "Metrics of two images or of two folders of frames; B is the reference");
+    c->add_option("A", o->a, "PNG (sRGB codes), EXR (linear), or a folder of frames")->required();
+    c->add_option("B", o->b, "the reference, of the same size or with the same frames")->required();
+    c->add_option("--metrics", o->metrics, "comma-separated; `ssim` is ssimLuma:" + metricList())->delimiter(',');
+    c->add_option("--map", o->map, "error map on the fixed scale: a PNG, of folders a folder");
+    c->add_option("--fail-below", o->thresholds, "exit 1 when a pooled figure is below, for example psnr=40")
+        ->delimiter(',');
+    c->add_option("--exposure", o->exposure, "display exposure for linear images, EV")->check(CLI::Range(-20.0, 20.0));
+    c->add_flag("--q8", o->q8, "round both to 8-bit codes first");
+    c->add_flag("--json", o->json, "as JSON");
+    addWorkOptions(*c, o->work);
+    c->callback([o, &context] { compare(*o, context); });
+}
+
+}  // namespace aa

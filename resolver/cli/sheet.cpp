@@ -1,0 +1,41 @@
+#include "report/sheet.h"
+
+#include <cstdio>
+
+#include "cli/cli.h"
+#include "image/error.h"
+
+namespace aa {
+namespace {
+struct Options {
+    std::string run, out;
+    int frame = 0;
+    WorkOptions work;
+};
+
+void drawSheet(const Options& o) {
+    const Exec exec = o.work.exec();
+    const RunResults run = readResults(o.run);
+    const auto frames = framesWithPictures(run);
+    if (frames.empty())
+        throw InputError(o.run + ": no frame of which every method has an image; run again with --write exr");
+    const int frame = o.frame == 0 ? frames.back() : o.frame;
+    const std::filesystem::path out =
+        o.out.empty() ? std::filesystem::path(o.run) / "sheet.png" : std::filesystem::path(o.out);
+    withThreads(o.work.threads, [&] { writeSheet(run, loadPictures(run, o.run, frame, exec), out, exec); });
+    std::printf("%s\n", out.c_str());
+}
+}  // namespace
+
+void addSheet(CLI::App& app, Context&) {
+    auto o = std::make_shared<Options>();
+    auto* c = app.add_subcommand("sheet", "A contact sheet of a run: methods, magnified details, error maps, figures");
+    c->add_option("RUN", o->run, "output folder of `aaresolve run`")->required();
+    c->add_option("-o,--out", o->out, "the PNG; default RUN/sheet.png");
+    c->add_option("--frame", o->frame, "frame to show; 0 = the last that every method wrote")
+        ->check(CLI::NonNegativeNumber);
+    addWorkOptions(*c, o->work);
+    c->callback([o] { drawSheet(*o); });
+}
+
+}  // namespace aa

@@ -1,0 +1,53 @@
+#include "report/format.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace aa {
+namespace {
+std::string printed(const char* format, double v) {
+    if (std::isnan(v)) return "NaN";
+    if (std::isinf(v)) return v > 0 ? "Inf" : "-Inf";
+    char text[64];
+    std::snprintf(text, sizeof text, format, v);
+    return text;
+}
+}  // namespace
+
+std::string significant(double v, int digits) {
+    char format[8];
+    std::snprintf(format, sizeof format, "%%.%dg", digits);
+    return printed(format, v);
+}
+std::string shortNumber(double v) {
+    const double a = std::abs(v);
+    return a >= 1000 && a < 1e7 ? printed("%.0f", v) : printed("%.3g", v);
+}
+std::string decibelNumber(double v) { return printed("%.2f", v); }
+std::string signedDecibelNumber(double v) { return printed("%+.2f", v); }
+std::string decibels(double v) { return decibelNumber(v) + " dB"; }
+std::string similarity(double v) { return printed("%.6f", v); }
+
+std::string runLine(const RunResults& run) {
+    std::string line =
+        std::to_string(run.width) + " x " + std::to_string(run.height) + (run.isStatic ? ", static" : ", moving");
+    if (run.jitterSequence == "none" || run.jitterPeriod <= 1)
+        line += "; no jitter";
+    else
+        line += "; jitter " + run.jitterSequence + ", period " + std::to_string(run.jitterPeriod) +
+                (run.jitterCentred() ? ", centred"
+                                     : ", block mean (" + printed("%.4f", run.jitterMeanPx[0]) + ", " +
+                                           printed("%.4f", run.jitterMeanPx[1]) + ") px");
+    line += "; " + run.machine + ", " + run.isa + ", " + std::to_string(run.threads) +
+            (run.threads == 1 ? " thread" : " threads");
+    if (run.precision != "fast") line += ", precision " + run.precision;
+    return line;
+}
+
+const Comparison* comparisonOf(const RunResults& run, size_t a, size_t b) {
+    for (const auto& p : run.pairs)
+        if ((p.first == a && p.second == b) || (p.first == b && p.second == a)) return &p.comparison;
+    return nullptr;
+}
+
+}  // namespace aa

@@ -1,0 +1,21 @@
+// Figures as text, the same in sheet, report and terminal.
+#pragma once
+#include <string>
+
+#include "report/results.h"
+
+namespace aa {
+
+std::string significant(double v, int digits = 4);  // 4 significant digits; Inf and NaN by name
+std::string shortNumber(double v);                  // 3 significant digits, no exponent for everyday sizes
+std::string decibelNumber(double v);                // 38.78
+std::string signedDecibelNumber(double v);          // +3.21
+std::string decibels(double v);                     // 38.78 dB
+std::string similarity(double v);                   // 6 decimals: three saturate (methods/07 s.2)
+
+// What was run, in one line: size, jitter and whether its block is centred, machine.
+std::string runLine(const RunResults& run);
+// The comparison of two methods in either order (its signs are those of the stored pair); null without truth.
+const Comparison* comparisonOf(const RunResults& run, size_t a, size_t b);
+
+}  // namespace aa

@@ -1,0 +1,161 @@
+#include "report/gallery.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "image/error.h"
+#include "image/io.h"
+
+namespace aa {
+namespace fs = std::filesystem;
+namespace {
+
+const FrameResult* find(const MethodResult& m, int frame) {
+    for (const auto& f : m.frames)
+        if (f.frame == frame && !f.image.empty()) return &f;
+    return nullptr;
+}
+
+Rgb loadEncoded(const fs::path& file, const RunResults& run, const Exec& exec) {
+    LoadedImage image = readImage(file);
+    if (image.rgb.width() != run.width || image.rgb.height() != run.height)
+        throw InputError(file.string() + ": expected " + std::to_string(run.width) + "x" + std::to_string(run.height) +
+                         " as results.json says, found " + std::to_string(image.rgb.width()) + "x" +
+                         std::to_string(image.rgb.height()) + "; run the shot again");
+    if (image.space == FileSpace::encoded) return std::move(image.rgb);
+    Rgb encoded;
+    encode(image.rgb, image.displayReferred ? DisplayChain{} : run.display, exec, encoded);
+    return encoded;
+}
+
+// Sums over any window in constant time.
+class SummedArea {
+  public:
+    template <class Value>
+    SummedArea(int width, int height, Value value) : stride_(size_t(width) + 1), sum_(stride_ * (size_t(height) + 1)) {
+        for (int y = 0; y < height; y++) {
+            double row = 0;
+            for (int x = 0; x < width; x++) {
+                row += value(x, y);
+                sum_[(size_t(y) + 1) * stride_ + size_t(x) + 1] = sum_[size_t(y) * stride_ + size_t(x) + 1] + row;
+            }
+        }
+    }
+    double mean(const Window& w) const {
+        const auto at = [&](int x, int y) { return sum_[size_t(y) * stride_ + size_t(x)]; };
+        const double sum =
+            at(w.x + w.width, w.y + w.height) - at(w.x, w.y + w.height) - at(w.x + w.width, w.y) + at(w.x, w.y);
+        return std::max(0.0, sum) / (double(w.width) * w.height);
+    }
+
+  private:
+    size_t stride_;
+    std::vector<double> sum_;
+};
+
+double squaredDistance(const Rgb& a, const Rgb& b, int x, int y) {
+    double sum = 0;
+    for (size_t c = 0; c < 3; c++) sum += std::pow(double(a.c[c].at(x, y)) - double(b.c[c].at(x, y)), 2);
+    return sum / 3;
+}
+double variance(const std::vector<double>& v) {
+    double mean = 0, sum = 0;
+    for (const double x : v) mean += x / double(v.size());
+    for (const double x : v) sum += (x - mean) * (x - mean);
+    return sum / double(v.size());
+}
+
+// How much a window tells; see the header.
+class Interest {
+  public:
+    explicit Interest(const Pictures& p) {
+        const int w = p.methods[0].width(), h = p.methods[0].height();
+        errors_ = !p.truth.empty();
+        if (errors_) {
+            for (const Rgb& m : p.methods)
+                sums_.emplace_back(w, h, [&](int x, int y) { return squaredDistance(m, p.truth, x, y); });
+        } else {
+            sums_.emplace_back(w, h, [&](int x, int y) {
+                double sum = 0;
+                for (size_t i = 0; i < p.methods.size(); i++)
+                    for (size_t k = 0; k < i; k++) sum += squaredDistance(p.methods[i], p.methods[k], x, y);
+                return sum;
+            });
+        }
+    }
+    double of(const Window& window) const {
+        if (sums_.size() == 1) return sums_[0].mean(window);
+        std::vector<double> rms;
+        for (const auto& s : sums_) rms.push_back(std::sqrt(s.mean(window)));
+        return variance(rms);
+    }
+
+  private:
+    bool errors_ = false;
+    std::vector<SummedArea> sums_;
+};
+}  // namespace
+
+std::vector<int> framesWithPictures(const RunResults& run) {
+    std::vector<int> frames;
+    if (run.methods.empty()) return frames;
+    for (const auto& f : run.methods[0].frames)
+        if (std::all_of(run.methods.begin(), run.methods.end(), [&](const auto& m) { return find(m, f.frame); }))
+            frames.push_back(f.frame);
+    std::sort(frames.begin(), frames.end());
+    return frames;
+}
+
+Pictures loadPictures(const RunResults& run, const fs::path& folder, int frame, const Exec& exec) {
+    Pictures p;
+    p.frame = frame;
+    for (const auto& m : run.methods) {
+        const FrameResult* f = find(m, frame);
+        if (!f)
+            throw InputError(folder.string() + ": no image of frame " + std::to_string(frame) + " by '" + m.text +
+                             "'; run with --write exr and choose a frame that was written");
+        p.methods.push_back(loadEncoded(folder / f->image, run, exec));
+    }
+    if (const auto truth = run.truthImages.find(frame); truth != run.truthImages.end())
+        p.truth = loadEncoded(folder / truth->second, run, exec);
+    return p;
+}
+
+std::vector<Window> mostTellingWindows(const Pictures& pictures, int width, int height, int count) {
+    const int w = pictures.methods[0].width(), h = pictures.methods[0].height();
+    width = std::min(width, w), height = std::min(height, h);
+    const Interest interest(pictures);
+    struct Candidate {
+        double interest;
+        Window window;
+    };
+    std::vector<Candidate> candidates;
+    // A quarter of the window is a fine enough step: the window around a feature still holds all of it.
+    const int stepX = std::max(1, width / 4), stepY = std::max(1, height / 4);
+    for (int y = 0; y + height <= h; y += stepY)
+        for (int x = 0; x + width <= w; x += stepX) {
+            const Window window{x, y, width, height};
+            if (const double i = interest.of(window); i > 1e-12) candidates.push_back({i, window});
+        }
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.interest > b.interest; });
+    std::vector<Window> chosen;
+    for (const auto& c : candidates) {
+        if (int(chosen.size()) == count) break;
+        if (std::none_of(chosen.begin(), chosen.end(), [&](const Window& o) { return o.overlaps(c.window); }))
+            chosen.push_back(c.window);
+    }
+    std::sort(chosen.begin(), chosen.end(),
+              [](const Window& a, const Window& b) { return std::pair(a.x, a.y) < std::pair(b.x, b.y); });
+    return chosen;
+}
+
+PlaneF errorMap(const Rgb& test, const Rgb& reference) {
+    PlaneF map(test.width(), test.height());
+    for (int y = 0; y < map.height(); y++)
+        for (int x = 0; x < map.width(); x++) map.at(x, y) = float(std::sqrt(squaredDistance(test, reference, x, y)));
+    map.fillBorder();
+    return map;
+}
+
+}  // namespace aa
