@@ -111,7 +111,7 @@ struct Line {
 };
 inline std::vector<Line> randomLines(int count, int w, int h) {
     std::vector<Line> lines;
-    for (int i = 0; i < count; i++) {
+    for (int i = 1; i <= count; i++) {  // 0 would pass exactly through pixel centres
         const double angle = 6.283185307179586 * std::fmod(0.5 + i * 0.7548776662466927, 1.0);  // R2 sequence
         const double shift = std::fmod(0.5 + i * 0.5698402909980532, 1.0) * 4 - 2;
         const double nx = std::cos(angle), ny = std::sin(angle);
@@ -146,11 +146,13 @@ inline const PlaneF& layer(const std::vector<DebugLayer>& layers, std::string_vi
 // PSNR gain over no anti-aliasing on pictures of one line each, over the pixels that the line cuts (methods/05
 // s.5.5.5). `change` may alter the rendered frame.
 inline double halfPlaneGainDb(const std::string& method, const std::vector<glm::dvec2>& positionsPx,
-                              const std::function<void(Frame&, const Line&)>& change = {}) {
+                              const std::function<void(Frame&, const Line&)>& change = {},
+                              const std::function<bool(const Line&)>& wanted = {}) {
     double plain = 0, smooth = 0;
     const int size = 33;
     std::unique_ptr<Method> running;
     for (const Line& line : randomLines(150, size, size)) {
+        if (wanted && !wanted(line)) continue;
         Frame f = renderPlanes(parallelPlanes(line), size, size, positionsPx);
         if (change) change(f, line);
         if (!running) running = parseMethod(method).create(infoOf(f));

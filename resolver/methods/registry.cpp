@@ -1,7 +1,10 @@
 // One line per method; it then appears in `list`, every property test, sweeps and reports.
 #include "methods/accum.h"
+#include "methods/dmsaa.h"
 #include "methods/fxaa.h"
+#include "methods/gbaa.h"
 #include "methods/method.h"
+#include "methods/msaa.h"
 #include "methods/noaa.h"
 #include "methods/rsaa.h"
 #include "methods/ssaa.h"
@@ -13,10 +16,17 @@ namespace aa {
 const std::vector<MethodDescriptor>& registry() {
     static const std::vector<MethodDescriptor> methods = {
         // reference
-        noaaDescriptor(), accumDescriptor(), ssaaDescriptor(),
+        noaaDescriptor(),
+        accumDescriptor(),
+        ssaaDescriptor(),
         // spatial
         fxaa311Descriptor(),
         // geometry
+        msaaDescriptor(),
+        csaaDescriptor(),
+        dmsaaDescriptor(),
+        gbaaDescriptor(),
+        d2eDescriptor(),
         rsaaDescriptor(),
         // temporal
         taaSimplestDescriptor(),

@@ -1,6 +1,7 @@
 #include "methods/rsaa.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "image/error.h"
 #include "methods/rsaa_kernels.h"
@@ -28,6 +29,9 @@ struct Options {
           ids(p.flag("ids")),
           training(RsaaTraining(p.choiceIndex("training"))) {}
     bool readsGeometry() const { return !maskPass || tuning; }
+    GeometryNeeds needs() const {
+        return {.normals = measure != Dissimilarity::depth, .ids = ids, .camera = measure == Dissimilarity::sadp};
+    }
 };
 
 std::vector<float> offsetTable(const std::vector<glm::dvec2>& positionsPx, RsaaTraining training) {
@@ -38,17 +42,22 @@ std::vector<float> offsetTable(const std::vector<glm::dvec2>& positionsPx, RsaaT
     return rsaaTable(samples, learnRsaa(positionsPx, training));
 }
 
-// The pixels that are asked for the surface of a sub-sample at `offsetPx` from this pixel's centre sample. quadrant:
+// The pixels that are asked for the surface of a sub-sample. quadrant:
 // all three on its side, which are those that a fetch toward it blends. Otherwise the nearest of the eight; on a tie
 // one across an edge rather than one across a corner.
-std::vector<glm::ivec2> neighboursOf(glm::dvec2 offsetPx, bool quadrant) {
-    const int sx = offsetPx.x < 0 ? -1 : 1, sy = offsetPx.y < 0 ? -1 : 1;
-    if (quadrant) return {{sx, 0}, {0, sy}, {sx, sy}};
+RsaaNeighbours neighboursOf(const SubSampleArgs& sample, bool quadrant) {
+    const float ox = sample.offsetPx[0], oy = sample.offsetPx[1];
+    const int sx = ox < 0 ? -1 : 1, sy = oy < 0 ? -1 : 1;
+    if (quadrant) return {{{sx, 0}, {0, sy}, {sx, sy}}, 3};
     static const glm::ivec2 axisFirst[] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
-    return {*std::min_element(std::begin(axisFirst), std::end(axisFirst), [&](glm::ivec2 a, glm::ivec2 b) {
-        const glm::dvec2 da = offsetPx - glm::dvec2(a), db = offsetPx - glm::dvec2(b);
-        return da.x * da.x + da.y * da.y < db.x * db.x + db.y * db.y;
-    })};
+    const auto distance2 = [&](glm::ivec2 n) {
+        const float dx = ox - float(n.x), dy = oy - float(n.y);
+        return dx * dx + dy * dy;
+    };
+    const glm::ivec2 nearest =
+        *std::min_element(std::begin(axisFirst), std::end(axisFirst),
+                          [&](glm::ivec2 a, glm::ivec2 b) { return distance2(a) < distance2(b); });
+    return {{{nearest.x, nearest.y}}, 1};
 }
 
 class RsaaMethod : public Method {
@@ -64,10 +73,15 @@ class RsaaMethod : public Method {
         a.measure = options_.measure, a.floor = options_.floor, a.adaptive = options_.adaptive;
         a.tuning = options_.tuning, a.tuneAdaptive = options_.tuneAdaptive;
         if (options_.maskPass) a.maskPass = frame.subSampleMask.row(0);
-        std::vector<RsaaSample> samples;
+        const GeometryArgs notRead{};
+        a.geometry = &notRead;
+        std::optional<GeometryViews> geometry;
+        std::vector<RsaaNeighbours> neighbours;
         if (options_.readsGeometry()) {
-            samples = geometry(frame, a);
-            a.sample = samples.data();
+            geometry.emplace(frame, options_.needs(), "rsaa:measure=sadp");
+            for (int k = 0; k < a.samples; k++)
+                neighbours.push_back(neighboursOf(geometry->args().sample[k], options_.quadrant));
+            a.geometry = &geometry->args(), a.neighbours = neighbours.data();
         }
         if (keepDebugLayers) keepLayers(frame, a);
         runKernel(rsaaKernelsFor(exec.isa).resolve, exec, a, frame.height);
@@ -76,38 +90,6 @@ class RsaaMethod : public Method {
     std::vector<DebugLayer> debugLayers() const override { return layers_; }
 
   private:
-    std::vector<RsaaSample> geometry(const Frame& frame, RsaaArgs& a) const {
-        a.depthView = frame.depthView.row(0);
-        const bool normals = options_.measure != Dissimilarity::depth;
-        if (normals) a.normalWorld = view(frame.normalWorld);
-        if (options_.ids) a.objectId = frame.objectId.row(0);
-        if (options_.measure == Dissimilarity::sadp) {
-            const CameraRays rays = cameraRays(frame, "rsaa:measure=sadp");
-            const glm::dvec2 first = frame.jitterPx + 0.5;  // centre sample of pixel (0, 0)
-            for (size_t i = 0; i < 3; i++) {
-                a.ray[i] = float(rays.ray[i] + first.x * rays.rayX[i] + first.y * rays.rayY[i]);
-                a.rayX[i] = float(rays.rayX[i]), a.rayY[i] = float(rays.rayY[i]);
-                a.originX[i] = float(rays.originX[i]), a.originY[i] = float(rays.originY[i]);
-            }
-        }
-        std::vector<RsaaSample> samples;
-        for (size_t k = 0; k < frame.subSamples.size(); k++) {
-            const SubSample& s = frame.subSamples[k];
-            const glm::dvec2 offsetPx = frame.subSamplePositionsPx[k] - frame.jitterPx;
-            RsaaSample sample{s.depthView.row(0),
-                              normals ? view(s.normalWorld) : RgbIn{},
-                              options_.ids ? s.objectId.row(0) : nullptr,
-                              {float(offsetPx.x), float(offsetPx.y)},
-                              {},
-                              0};
-            for (const glm::ivec2 n : neighboursOf(offsetPx, options_.quadrant)) {
-                sample.neighbours[sample.neighbourCount][0] = n.x;
-                sample.neighbours[sample.neighbourCount++][1] = n.y;
-            }
-            samples.push_back(sample);
-        }
-        return samples;
-    }
     void keepLayers(const Frame& frame, RsaaArgs& a) {
         layers_.clear();
         for (const char* layer : {"mask", "tunedMask", "dissimilarity", "offsetXPx", "offsetYPx"})
@@ -169,8 +151,8 @@ MethodDescriptor rsaaDescriptor() {
                 PassSet passes;
                 if (!o.readsGeometry()) return passes;
                 passes |= Pass::depth;
-                if (o.measure != Dissimilarity::depth) passes |= Pass::normal;
-                if (o.ids) passes |= Pass::object;
+                if (o.needs().normals) passes |= Pass::normal;
+                if (o.needs().ids) passes |= Pass::object;
                 return passes;
             },
         .reachPx = 2};

@@ -1,62 +1,38 @@
 #include "kernels/lanes.h"
 #include "kernels/resample.h"
-#include "kernels/sadp.h"
+#include "kernels/subsamples.h"
 #include "methods/rsaa_kernels.h"
 
 namespace AA_ARCH {
 using namespace aa;
 
-template <class R>
-AA_INLINE vec3<R> load3(const RgbIn& image, long o) {
-    return {load<R>(image.c[0] + o), load<R>(image.c[1] + o), load<R>(image.c[2] + o)};
-}
-template <class R>
-AA_INLINE vec3<R> vec(const float* v) {
-    using T = Elem<R>;
-    return {R(T(v[0])), R(T(v[1])), R(T(v[2]))};
-}
-
 template <Dissimilarity measure, class R>
 struct Rsaa {
     using T = Elem<R>;
     const RsaaArgs& a;
+    const GeometryArgs& g = *a.geometry;
     const uint32_t full = (1u << a.samples) - 1u;
 
-    // --- Geometry
-    // -----------------------------------------------------------------------------------------------------
-    template <class S>
-    AA_INLINE SurfacePoint<S> point(const float* depthView, const RgbIn& normalWorld, long o) const {
+    template <class S>  // R, or one lane of it
+    static AA_INLINE SurfacePoint<S> point(const float* depthView, const RgbIn& normalWorld, long o) {
         if constexpr (measure == Dissimilarity::depth)
             return {load<S>(depthView + o), vec3<S>(S(Elem<S>(0)))};
         else
-            return {load<S>(depthView + o), load3<S>(normalWorld, o)};
+            return surface_point<S>(depthView, normalWorld, o);
     }
-    // From the centre sample of pixel (x, y) to a point (dx, dy) px beside it. S: R or one lane of it.
-    template <class S>
-    AA_INLINE Separation<S> separation(S x, int y, float dx, float dy) const {
-        using E = Elem<S>;
-        if constexpr (measure != Dissimilarity::sadp) return {};
-        const S sx{E(dx)}, sy{E(dy)};
-        return {vec<S>(a.ray) + vec<S>(a.rayX) * x + vec<S>(a.rayY) * S(E(y)),
-                vec<S>(a.rayX) * sx + vec<S>(a.rayY) * sy, vec<S>(a.originX) * sx + vec<S>(a.originY) * sy};
-    }
-    AA_INLINE R columns(int x) const { return R(T(x)) + iota<R>(); }
-    AA_INLINE Mask<R> sameObject(const RsaaSample& s, long o) const {
-        return negate(ids_differ<R>(a.objectId + o, s.objectId + o));
+    AA_INLINE SurfacePoint<R> centre(long o) const { return point<R>(g.depthView, g.normalWorld, o); }
+    AA_INLINE SurfacePoint<R> sample(int k, long o) const {
+        return point<R>(g.sample[k].depthView, g.sample[k].normalWorld, o);
     }
 
-    // --- Clustering: one k-means iteration against the centre
-    // ----------------------------------------------------------- Lanes in which some sub-sample may be another
-    // surface.
+    // Lanes in which some sub-sample may be another surface.
     AA_INLINE unsigned suspects(int x, int y, long o) const {
-        const auto centre = point<R>(a.depthView, a.normalWorld, o);
+        const auto own = centre(o);
         const R limit{T(a.floor)};
         Mask<R> any = limit < R(T(0));
         for (int k = 0; k < a.samples; k++) {
-            const RsaaSample& s = a.sample[k];
-            any = either(any, may_differ<measure>(centre, point<R>(s.depthView, s.normalWorld, o),
-                                                  separation(columns(x), y, s.offsetPx[0], s.offsetPx[1]), limit));
-            if (a.objectId) any = either(any, ids_differ<R>(a.objectId + o, s.objectId + o));
+            any = either(any, may_differ<measure>(own, sample(k, o), to_sample(g, columns<R>(x), y, k), limit));
+            if (g.objectId) any = either(any, ids_differ<R>(g.objectId + o, g.sample[k].objectId + o));
         }
         return mask_bits<R>(any);
     }
@@ -64,13 +40,12 @@ struct Rsaa {
     // dissimilarity.
     AA_INLINE void cluster(int x, int y, long o, int* mask, float* farthestOut) const {
         const R zero(T(0)), one(T(1)), limit{T(a.floor)};
-        const auto centre = point<R>(a.depthView, a.normalWorld, o);
+        const auto own = centre(o);
         R d[16], farthest = zero;
         for (int k = 0; k < a.samples; k++) {
-            const RsaaSample& s = a.sample[k];
-            d[k] = dissimilarity<measure>(centre, point<R>(s.depthView, s.normalWorld, o),
-                                          separation(columns(x), y, s.offsetPx[0], s.offsetPx[1]));
-            if (a.objectId) d[k] = select(sameObject(s, o), d[k], R(T(kFarthest)));
+            d[k] = dissimilarity<measure>(own, sample(k, o), to_sample(g, columns<R>(x), y, k));
+            if (g.objectId)
+                d[k] = select(ids_differ<R>(g.objectId + o, g.sample[k].objectId + o), R(T(kFarthest)), d[k]);
             farthest = max(farthest, d[k]);
         }
         R bits = zero, bit = one;
@@ -94,35 +69,33 @@ struct Rsaa {
         store(farthest, farthestOut);
     }
 
-    // --- Tuning by the local neighbourhood
-    // ------------------------------------------------------------------------------
-    AA_INLINE T scalarDissimilarity(const RsaaSample& s, int x, int y, int qx, int qy) const {
+    // Of sub-sample k of pixel (x, y) to the centre sample of pixel (qx, qy).
+    AA_INLINE T outside(int k, int x, int y, int qx, int qy) const {
+        const SubSampleArgs& s = g.sample[k];
         const long o = long(y) * a.stride + x, q = long(qy) * a.stride + qx;
-        if (a.objectId && a.objectId[q] != s.objectId[o]) return T(kFarthest);
+        if (g.objectId && g.objectId[q] != s.objectId[o]) return T(kFarthest);
         return dissimilarity<measure>(
-            point<T>(a.depthView, a.normalWorld, q), point<T>(s.depthView, s.normalWorld, o),
-            separation(T(qx), qy, s.offsetPx[0] - float(qx - x), s.offsetPx[1] - float(qy - y)));
+            point<T>(g.depthView, g.normalWorld, q), point<T>(s.depthView, s.normalWorld, o),
+            separation(g, T(qx), qy, 0.0f, 0.0f, s.offsetPx[0] - float(qx - x), s.offsetPx[1] - float(qy - y)));
     }
     // Keeps a different sub-sample only when a neighbouring pixel shows its surface: else resampling toward it would
     // fetch a third surface.
-    AA_INLINE bool shownByNeighbour(const RsaaSample& s, int x, int y) const {
-        const T own = a.tuneAdaptive ? scalarDissimilarity(s, x, y, x, y) * T(0.5) : T(0), limit = max(T(a.floor), own);
-        for (int i = 0; i < s.neighbourCount; i++) {
-            const int qx = clampIndex(x + s.neighbours[i][0], a.width),
-                      qy = clampIndex(y + s.neighbours[i][1], a.height);
-            if (scalarDissimilarity(s, x, y, qx, qy) < limit) return true;
+    AA_INLINE bool shownByNeighbour(int k, int x, int y) const {
+        const T half = a.tuneAdaptive ? outside(k, x, y, x, y) * T(0.5) : T(0), limit = max(T(a.floor), half);
+        const RsaaNeighbours& n = a.neighbours[k];
+        for (int i = 0; i < n.count; i++) {
+            const int qx = clampIndex(x + n.at[i][0], a.width), qy = clampIndex(y + n.at[i][1], a.height);
+            if (outside(k, x, y, qx, qy) < limit) return true;
         }
         return false;
     }
     AA_INLINE uint32_t tuned(uint32_t mask, int x, int y) const {
         for (int k = 0; k < a.samples; k++)
-            if (!(mask >> k & 1u) && !shownByNeighbour(a.sample[k], x, y)) mask |= 1u << k;
+            if (!(mask >> k & 1u) && !shownByNeighbour(k, x, y)) mask |= 1u << k;
         return mask;
     }
     static AA_INLINE int clampIndex(int i, int size) { return i < 0 ? 0 : i >= size ? size - 1 : i; }
 
-    // --- Rows
-    // -----------------------------------------------------------------------------------------------------------
     AA_INLINE void edgePixel(uint32_t mask, int x, int y) const {
         const long o = long(y) * a.stride + x;
         const uint32_t last = a.tuning ? tuned(mask, x, y) : mask;

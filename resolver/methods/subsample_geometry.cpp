@@ -39,6 +39,32 @@ CameraRays cameraRays(const Frame& frame, std::string_view reader) {
     return r;
 }
 
+GeometryViews::GeometryViews(const Frame& frame, GeometryNeeds needs, std::string_view reader) {
+    args_.stride = frame.depthView.stride(), args_.width = frame.width, args_.height = frame.height;
+    args_.depthView = frame.depthView.row(0);
+    if (needs.normals) args_.normalWorld = view(frame.normalWorld);
+    if (needs.ids) args_.objectId = frame.objectId.row(0);
+    if (needs.camera) {
+        const CameraRays rays = cameraRays(frame, reader);
+        const glm::dvec2 first = frame.jitterPx + 0.5;  // centre sample of pixel (0, 0)
+        for (size_t i = 0; i < 3; i++) {
+            args_.ray[i] = float(rays.ray[i] + first.x * rays.rayX[i] + first.y * rays.rayY[i]);
+            args_.rayX[i] = float(rays.rayX[i]), args_.rayY[i] = float(rays.rayY[i]);
+            args_.originX[i] = float(rays.originX[i]), args_.originY[i] = float(rays.originY[i]);
+        }
+    }
+    for (size_t k = 0; k < frame.subSamples.size(); k++) {
+        const SubSample& s = frame.subSamples[k];
+        const glm::dvec2 offsetPx = frame.subSamplePositionsPx[k] - frame.jitterPx;
+        samples_.push_back({s.depthView.row(0),
+                            needs.normals ? view(s.normalWorld) : RgbIn{},
+                            needs.ids ? s.objectId.row(0) : nullptr,
+                            needs.colors ? view(s.colorLinear) : RgbIn{},
+                            {float(offsetPx.x), float(offsetPx.y)}});
+    }
+    args_.sample = samples_.data(), args_.samples = int(samples_.size());
+}
+
 void requireSubSamples(const std::vector<glm::dvec2>& positionsPx, std::string_view method, size_t most) {
     const std::string name(method);
     if (positionsPx.empty())

@@ -8,6 +8,7 @@
 #pragma once
 #include <array>
 
+#include "kernels/subsample_args.h"
 #include "shot/frame.h"
 
 namespace aa {
@@ -22,6 +23,23 @@ struct CameraRays {
 // From the un-jittered matrices. Throws InputError when the frame has no camera or one without a projection matrix;
 // `reader` names the method and its option for the message.
 CameraRays cameraRays(const Frame& frame, std::string_view reader);
+
+// What a method reads of the geometry, beside depth.
+struct GeometryNeeds {
+    bool normals = false, ids = false, camera = false, colors = false;
+};
+// Kernel arguments and the sub-sample views that they point to; valid as long as the frame.
+class GeometryViews {
+  public:
+    // Throws InputError as cameraRays.
+    GeometryViews(const Frame& frame, GeometryNeeds needs, std::string_view reader);
+    GeometryViews(const GeometryViews&) = delete;
+    const GeometryArgs& args() const { return args_; }
+
+  private:
+    GeometryArgs args_{};
+    std::vector<SubSampleArgs> samples_;
+};
 
 // Throws InputError when the shot has no sub-samples or more than `most`.
 void requireSubSamples(const std::vector<glm::dvec2>& positionsPx, std::string_view method, size_t most);

@@ -1,0 +1,143 @@
+#include "methods/msaa.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "image/error.h"
+#include "methods/msaa_kernels.h"
+#include "methods/subsample_geometry.h"
+
+namespace aa {
+namespace {
+
+double distance2(glm::dvec2 a, glm::dvec2 b) { return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y); }
+
+// Which sub-samples hold a colour, then the rest. spread: the one farthest from the centre, then always the one
+// farthest from those chosen.
+std::vector<int> slotsFirst(const std::vector<glm::dvec2>& positionsPx, int slots, bool spread) {
+    std::vector<int> order(positionsPx.size());
+    std::iota(order.begin(), order.end(), 0);
+    if (!spread) return order;
+    const auto position = [&](int k) { return positionsPx[size_t(k)]; };
+    for (auto chosen = order.begin(); chosen != order.begin() + slots; ++chosen) {
+        const auto separation2 = [&](int k) {
+            double nearest = chosen == order.begin() ? distance2(position(k), {}) : 4.0;
+            for (auto c = order.begin(); c != chosen; ++c)
+                nearest = std::min(nearest, distance2(position(k), position(*c)));
+            return nearest;
+        };
+        std::iter_swap(chosen, std::max_element(chosen, order.end(),
+                                                [&](int a, int b) { return separation2(a) < separation2(b); }));
+    }
+    return order;
+}
+
+class MsaaMethod : public Method {
+  public:
+    MsaaMethod(std::string_view id, const Params& p, std::vector<int> slotsFirst, int slots,
+               const std::vector<glm::dvec2>& positionsPx)
+        : id_(id),
+          slotsFirst_(std::move(slotsFirst)),
+          slots_(slots),
+          byGeometry_(p.choice("key") == "surface"),
+          centroid_(p.choice("shadingPosition") == "centroid"),
+          inverseLuminance_(p.choice("resolve") == "inverseLuminance"),
+          order_(positionsPx.size()) {
+        const auto position = [&](int k) { return positionsPx[size_t(slotsFirst_[size_t(k)])]; };
+        std::iota(order_.begin(), order_.end(), 0);
+        nearestSlot_ = order_;
+        for (int& nearest : nearestSlot_) {
+            const glm::dvec2 own = position(nearest);
+            nearest = *std::min_element(order_.begin(), order_.begin() + slots, [&](int a, int b) {
+                return distance2(position(a), own) < distance2(position(b), own);
+            });
+        }
+        std::stable_sort(order_.begin(), order_.end(),
+                         [&](int a, int b) { return distance2(position(a), {}) < distance2(position(b), {}); });
+    }
+
+    void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
+        const GeometryViews geometry(
+            frame, {.normals = byGeometry_, .ids = true, .camera = byGeometry_, .colors = true}, id_ + ":key=surface");
+        GeometryArgs permuted = geometry.args();
+        std::vector<SubSampleArgs> samples;
+        for (const int k : slotsFirst_) samples.push_back(geometry.args().sample[k]);
+        permuted.sample = samples.data();
+        MsaaArgs a{view(frame.colorLinear), view(out),   &permuted, kSameSurface,      slots_,  order_.data(),
+                   nearestSlot_.data(),     byGeometry_, centroid_, inverseLuminance_, nullptr, nullptr};
+        layers_.clear();
+        if (keepDebugLayers) {
+            for (const char* layer : {"surfaces", "centreCoverage"})
+                layers_.push_back({layer, {PlaneF(frame.width, frame.height)}});
+            a.surfacesLayer = layers_[0].planes[0].row(0), a.coverageLayer = layers_[1].planes[0].row(0);
+        }
+        runKernel(msaaKernelsFor(exec.isa).resolve, exec, a, frame.height);
+    }
+    std::vector<DebugLayer> debugLayers() const override { return layers_; }
+
+  private:
+    std::string id_;
+    std::vector<int> slotsFirst_;
+    int slots_;
+    bool byGeometry_, centroid_, inverseLuminance_;
+    std::vector<int> order_, nearestSlot_;
+    std::vector<DebugLayer> layers_;
+};
+
+std::vector<ParamSpec> surfaceParams() {
+    return {choiceParam("key", "surface", {"surface", "object"}, "what is shaded once: a surface, or a whole object",
+                        "methods/01 s.1.4"),
+            choiceParam("shadingPosition", "centre", {"centre", "centroid"},
+                        "where a partly covered surface is shaded when it covers the centre", "methods/01 s.1.4"),
+            choiceParam("resolve", "linear", {"linear", "inverseLuminance"},
+                        "weights of the colours: 1, or 1 / (1 + luminance)", "methods/01 s.1.4")};
+}
+PassSet surfacePasses(const Params& p) { return p.choice("key") == "surface" ? Pass::depth | Pass::normal : PassSet{}; }
+
+}  // namespace
+
+MethodDescriptor msaaDescriptor() {
+    return {.id = "msaa",
+            .title = "Multisampling",
+            .family = "geometry",
+            .summary = "Every surface in a pixel is shaded once and weighted by the sub-samples that it covers.",
+            .source = "Akeley 1993; methods/01 s.1.4",
+            .passes = Pass::color | Pass::object | Pass::subsamples | Pass::subsampleColor,
+            .params = surfaceParams(),
+            .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
+                requireSubSamples(shot.subSamplePositionsPx, "msaa", size_t(kMsaaMaxSamples));
+                const auto& positionsPx = shot.subSamplePositionsPx;
+                const int samples = int(positionsPx.size());
+                return std::make_unique<MsaaMethod>("msaa", p, slotsFirst(positionsPx, samples, false), samples,
+                                                    positionsPx);
+            },
+            .morePasses = surfacePasses,
+            .reachPx = 1};
+}
+
+MethodDescriptor csaaDescriptor() {
+    MethodDescriptor d = msaaDescriptor();
+    d.id = "csaa";
+    d.title = "Coverage sampling";
+    d.summary = "Multisampling with fewer stored colours than coverage samples.";
+    d.source = "Young 2006; methods/01 s.1.5";
+    const std::vector<ParamSpec> slotParams = {
+        intParam("slots", "4", 1, kMsaaMaxSamples, "sub-samples that hold a colour: 8x and 16x have 4, the Q modes 8",
+                 "methods/01 s.1.5"),
+        choiceParam("slotPositions", "first", {"first", "spread"},
+                    "the first sub-samples of the pattern, or those farthest apart",
+                    "methods/01 s.1.5; spread is ours")};
+    d.params.insert(d.params.begin(), slotParams.begin(), slotParams.end());
+    d.create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
+        requireSubSamples(shot.subSamplePositionsPx, "csaa", size_t(kMsaaMaxSamples));
+        const int slots = p.integer("slots"), samples = int(shot.subSamplePositionsPx.size());
+        if (slots > samples)
+            throw UsageError("csaa: slots=" + std::to_string(slots) + ", and the shot has only " +
+                             std::to_string(samples) + " sub-samples per pixel; choose at most that many");
+        return std::make_unique<MsaaMethod>(
+            "csaa", p, slotsFirst(shot.subSamplePositionsPx, slots, p.choice("slotPositions") == "spread"), slots,
+            shot.subSamplePositionsPx);
+    };
+    return d;
+}
+}  // namespace aa

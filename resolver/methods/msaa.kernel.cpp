@@ -1,0 +1,116 @@
+#include "kernels/lanes.h"
+#include "kernels/surfaces.h"
+#include "methods/msaa_kernels.h"
+
+namespace AA_ARCH {
+using namespace aa;
+
+template <class R>
+struct Msaa {
+    using T = Elem<R>;
+    const MsaaArgs& a;
+    const GeometryArgs& g = *a.geometry;
+
+    // Lanes in which some sub-sample lies on another surface than the centre sample.
+    AA_INLINE unsigned edges(int x, int y, long o) const {
+        Mask<R> any = R(T(1)) < R(T(0));
+        for (int k = 0; k < g.samples; k++) {
+            any = either(any, ids_differ<R>(g.objectId + o, g.sample[k].objectId + o));
+            if (a.byGeometry)
+                any = either(any, negate(same_surface(a.rule, centre_point<R>(g, o), sample_point<R>(g, k, o),
+                                                      to_sample(g, columns<R>(x), y, k))));
+        }
+        return mask_bits<R>(any);
+    }
+
+    struct Surface {
+        int seed;  // the sample that stands for it: -1 the centre, else its sub-sample nearest to the pixel centre
+        int count;
+        vec3<T> color;
+    };
+    struct Pixel {
+        const Msaa& m;
+        PixelSurfaces<T> pixel;
+        Surface surfaces[kMsaaMaxSamples + 1];
+        int surfaceOf[kMsaaMaxSamples];
+        int count = 0;
+
+        AA_INLINE bool same(int a, int b) const {
+            return pixel.sameObject(a, b) && (!m.a.byGeometry || pixel.sameGeometry(a, b));
+        }
+        // A surface and the slots that lie on it; nothing when there are none.
+        AA_INLINE void add(int seed) {
+            int covered = 0, nearest = -1;
+            for (int i = 0; i < m.g.samples; i++) {
+                const int k = m.a.order[i];
+                if (k >= m.a.slots || surfaceOf[k] >= 0 || !(k == seed || same(seed, k))) continue;
+                surfaceOf[k] = count;
+                covered++;
+                if (nearest < 0) nearest = k;
+            }
+            if (!covered) return;
+            const bool atCentre = seed < 0 && !(m.a.centroid && covered < m.a.slots);
+            surfaces[count++] = {seed, covered, load3<T>(atCentre ? m.a.color : m.g.sample[nearest].color, pixel.at())};
+        }
+        // A coverage-only sample counts for a stored surface that it lies on, else for that of the nearest slot.
+        AA_INLINE void cover(int k) {
+            for (int i = 0; i < count; i++)
+                if (same(surfaces[i].seed, k)) return void(surfaces[i].count++);
+            surfaces[surfaceOf[m.a.nearestSlot[k]]].count++;
+        }
+        AA_INLINE void group() {
+            for (int& s : surfaceOf) s = -1;
+            add(-1);
+            for (int i = 0; i < m.g.samples; i++) {
+                const int k = m.a.order[i];
+                if (k < m.a.slots && surfaceOf[k] < 0) add(k);
+            }
+            for (int k = m.a.slots; k < m.g.samples; k++) cover(k);
+        }
+        // Coverage-weighted mean about the first surface's colour, which keeps constants exact; colours that are not
+        // finite are left out.
+        AA_INLINE vec3<T> resolve() const {
+            vec3<T> sum(T(0)), origin(T(0));
+            T weights = 0;
+            for (int i = 0; i < count; i++) {
+                const vec3<T> c = surfaces[i].color;
+                if (!is_finite(c)) continue;
+                T w = T(surfaces[i].count);
+                if (m.a.inverseLuminance) w = w / (T(1) + max(T(0), luma709(c)));
+                if (!(weights > T(0))) origin = c;
+                weights = weights + w;
+                sum = sum + (c - origin) * w;
+            }
+            return weights > T(0) ? origin + sum / weights : vec3<T>(T(0));
+        }
+    };
+    AA_INLINE void edgePixel(int x, int y) const {
+        Pixel p{*this, {g, a.rule, x, y}, {}, {}};
+        p.group();
+        const vec3<T> c = p.resolve();
+        const long o = p.pixel.at();
+        a.out.c[0][o] = float(c.x), a.out.c[1][o] = float(c.y), a.out.c[2][o] = float(c.z);
+        if (!a.surfacesLayer) return;
+        a.surfacesLayer[o] = float(p.count);
+        a.coverageLayer[o] = p.surfaces[0].seed < 0 ? float(p.surfaces[0].count) / float(g.samples) : 0.0f;
+    }
+    AA_INLINE void rows(int y0, int y1) const {
+        for (int y = y0; y < y1; y++)
+            for (int x = 0; x < g.width; x += N<R>) {
+                const long o = long(y) * g.stride + x;
+                for (int c = 0; c < 3; c++) store(load<R>(a.color.c[c] + o), a.out.c[c] + o);
+                if (a.surfacesLayer) store(R(T(1)), a.surfacesLayer + o), store(R(T(1)), a.coverageLayer + o);
+                const unsigned marked = edges(x, y, o);
+                for (int i = 0; marked >> i && x + i < g.width; i++)
+                    if (marked >> i & 1u) edgePixel(x + i, y);
+            }
+    }
+};
+
+template <class R>
+__attribute__((flatten)) void msaaRows(const MsaaArgs& a, int y0, int y1) {
+    Msaa<R>{a}.rows(y0, y1);
+}
+}  // namespace AA_ARCH
+
+AA_DEFINE_TABLE(aa::MsaaKernels, msaaKernels) = {AA_ROWS(msaaRows)};

@@ -1,0 +1,26 @@
+#pragma once
+#include "kernels/subsample_args.h"
+#include "kernels/surface_rule.h"
+
+namespace aa {
+
+inline constexpr int kMsaaMaxSamples = 32;
+struct MsaaArgs {
+    RgbIn color;
+    RgbOut out;
+    const GeometryArgs* geometry;
+    SurfaceRule rule;
+    int slots;               // sub-samples 0..slots-1 hold a colour; msaa: all of them
+    const int* order;        // sub-samples by distance from the pixel centre
+    const int* nearestSlot;  // of each sub-sample
+    bool byGeometry;         // surfaces are objects split by geometry, or whole objects
+    bool centroid;           // shade a partly covered surface at a covered sub-sample even if it covers the centre
+    bool inverseLuminance;   // weight 1 / (1 + luminance)
+    float *surfacesLayer, *coverageLayer;  // debug layers; null when not kept
+};
+struct MsaaKernels {
+    RowKernel<MsaaArgs> resolve;
+};
+
+}  // namespace aa
+AA_KERNEL_TABLE(aa::MsaaKernels, msaaKernels)

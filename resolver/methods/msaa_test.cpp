@@ -1,0 +1,116 @@
+#include "methods/msaa.h"
+
+#include <gtest/gtest.h>
+
+#include "image/error.h"
+#include "methods/geometry_test_frames.h"
+
+namespace aa {
+namespace {
+using namespace testing;
+
+const Line kLine{std::cos(0.4), std::sin(0.4), 22.3};
+
+// methods/05 s.5.5.5: coverage of ideal samples gains 8.6 / 12.7 / 15.0 dB on half-planes.
+TEST(Msaa, GainOnHalfPlanesIsThatOfCoverage) {
+    EXPECT_NEAR(halfPlaneGainDb("msaa", d3dPattern(4)), 8.6, 0.5);
+    EXPECT_NEAR(halfPlaneGainDb("msaa", d3dPattern(8)), 12.7, 0.5);
+    EXPECT_NEAR(halfPlaneGainDb("msaa", d3dPattern(16)), 15.0, 0.5);
+    EXPECT_GT(halfPlaneGainDb("msaa:key=object", d3dPattern(2)), 4.0);
+}
+// Shaded once per surface of one colour, so it is the mean of the sub-samples: supersampling.
+TEST(Msaa, EqualsSsaaWhereSurfacesHaveOneColour) {
+    for (const char* method : {"msaa", "msaa:key=object", "msaa:shadingPosition=centroid", "csaa:slots=8"}) {
+        const Frame f = renderPlanes(parallelPlanes(kLine), 48, 31, d3dPattern(8));
+        const Rgb a = resolved(method, f), b = resolved("ssaa", f);
+        for (int y = 0; y < 31; y++)
+            for (int x = 0; x < 48; x++) ASSERT_NEAR(a.c[0].at(x, y), b.c[0].at(x, y), 1e-6) << method;
+    }
+}
+// Two faces of one object: a triangle id would split them, and so does their geometry; the object id does not.
+TEST(Msaa, SurfacesOfOneObjectAreSplitByGeometry) {
+    TestScene scene = parallelPlanes(kLine);
+    for (auto& s : scene.surfaces) s.objectId = 7;
+    const Frame f = renderPlanes(scene, 48, 31, d3dPattern(8));
+    EXPECT_FALSE(resolved("msaa", f).samePixels(f.colorLinear));
+    EXPECT_TRUE(resolved("msaa:key=object", f).samePixels(f.colorLinear));
+}
+// A texture aliases as without anti-aliasing: the sub-samples' own colours are not looked at.
+TEST(Msaa, ShadingAliasingIsNotTouched) {
+    const TestScene wall{{{{0, 0, 1}, -4, glm::vec3(1.0f), 1}}, [](double, double) { return 0; }};
+    Frame f = renderPlanes(wall, 20, 9, d3dPattern(8));
+    for (int x = 0; x < 20; x++) f.colorLinear.c[1].at(x, 4) = float(x % 2);
+    EXPECT_TRUE(resolved("msaa", f).samePixels(f.colorLinear));
+    EXPECT_TRUE(resolved("csaa", f).samePixels(f.colorLinear));
+}
+TEST(Msaa, OneSampleAtTheCentreIsNoaa) {
+    const Frame f = renderPlanes(parallelPlanes(kLine), 48, 31, {{0, 0}});
+    EXPECT_TRUE(resolved("msaa", f).samePixels(f.colorLinear));
+}
+// One pixel: the left half is surface 0, the right half surface 1, with colours that differ at every sub-sample.
+Frame halves() {
+    Frame f = renderPlanes({{{{0, 0, 1}, -4, glm::vec3(0.0f), 1}, {{0, 0, 1}, -9, glm::vec3(0.0f), 2}},
+                            [](double x, double) { return x < 0.6 ? 0 : 1; }},
+                           1, 1, d3dPattern(8));
+    f.colorLinear.c[0].at(0, 0) = 100;
+    for (size_t k = 0; k < 8; k++) f.subSamples[k].colorLinear.c[0].at(0, 0) = float(k + 1);
+    return f;
+}
+TEST(Msaa, ShadesAtTheCentreOrAtTheNearestCoveredSample) {
+    const Frame f = halves();
+    // Samples 2, 6 and 7 (x = 5, 3, 7 sixteenths) lie right of 0.6; the nearest to the centre is 2, of colour 3.
+    EXPECT_FLOAT_EQ(resolved("msaa", f).c[0].at(0, 0), (5 * 100 + 3 * 3) / 8.0f);
+    // Of the five on the left, samples 0 and 1 are nearest; the first wins the tie.
+    EXPECT_FLOAT_EQ(resolved("msaa:shadingPosition=centroid", f).c[0].at(0, 0), (5 * 1 + 3 * 3) / 8.0f);
+    const double w0 = 5 / (1 + 0.2126 * 100), w1 = 3 / (1 + 0.2126 * 3);
+    EXPECT_NEAR(resolved("msaa:resolve=inverseLuminance", f).c[0].at(0, 0), (w0 * 100 + w1 * 3) / (w0 + w1), 1e-4);
+}
+TEST(Csaa, CoverageSamplesCountForStoredSurfacesOnly) {
+    const Frame f = halves();
+    // Slots 0..3: 0, 1, 3 left and 2 right; coverage samples 4, 5 left and 6, 7 right find their surface.
+    EXPECT_TRUE(resolved("csaa:slots=4", f).samePixels(resolved("msaa", f)));
+    EXPECT_TRUE(resolved("csaa:slots=8", f).samePixels(resolved("msaa", f)));
+    // Slots 0 and 1 know the left surface only: everything counts for it.
+    EXPECT_FLOAT_EQ(resolved("csaa:slots=2", f).c[0].at(0, 0), 100);
+    EXPECT_THROW(resolved("csaa:slots=9", f), UsageError);
+    // The first four positions of the D3D patterns are near the centre: an edge that passes them all falls back.
+    EXPECT_NEAR(halfPlaneGainDb("csaa", d3dPattern(8)), 7.6, 0.5);
+    EXPECT_NEAR(halfPlaneGainDb("csaa", d3dPattern(16)), 5.8, 0.5);
+    EXPECT_NEAR(halfPlaneGainDb("csaa:slotPositions=spread", d3dPattern(8)), 11.0, 0.5);
+    EXPECT_NEAR(halfPlaneGainDb("csaa:slotPositions=spread", d3dPattern(16)), 14.8, 0.5);
+}
+// An unresolved sample counts for the slot nearest in position, not for the first one.
+TEST(Csaa, UnresolvedSamplesCountForTheNearestSlot) {
+    // Slots 0..3 see three vertical bands; sample 6 at (3, 7)/16 sees a fourth surface, and the slot nearest to it
+    // is 1.
+    const TestScene scene{{{{0, 0, 1}, -4, glm::vec3(1.0f), 1},
+                           {{0, 0, 1}, -5, glm::vec3(2.0f), 2},
+                           {{0, 0, 1}, -6, glm::vec3(4.0f), 3},
+                           {{0, 0, 1}, -7, glm::vec3(64.0f), 4}},
+                          [](double x, double y) {
+                              return y > 0.9 ? 3 : x < 0.45 ? 0 : x < 0.6 ? 1 : 2;
+                          }};
+    const Frame f = renderPlanes(scene, 1, 1, d3dPattern(8));
+    EXPECT_FLOAT_EQ(resolved("csaa:slots=4", f).c[0].at(0, 0), (5 * 1 + 2 + 2 * 4) / 8.0f);
+    EXPECT_FLOAT_EQ(resolved("msaa", f).c[0].at(0, 0), (4 * 1 + 2 + 2 * 4 + 64) / 8.0f);
+}
+TEST(Msaa, ExtremeColoursAndEmptyPixels) {
+    Frame f = halves();
+    f.subSamples[2].colorLinear.c[0].at(0, 0) = NAN;  // the right surface's colour
+    EXPECT_FLOAT_EQ(resolved("msaa", f).c[0].at(0, 0), 100);
+    f.colorLinear.c[0].at(0, 0) = INFINITY;
+    EXPECT_EQ(resolved("msaa", f).c[0].at(0, 0), 0.0f);
+    const TestScene empty{{}, [](double, double) { return -1; }, glm::vec3(0.3f)};
+    const Frame sky = renderPlanes(empty, 9, 5, d3dPattern(8));
+    EXPECT_TRUE(resolved("msaa", sky).samePixels(sky.colorLinear));
+}
+TEST(Msaa, LayersShowSurfacesAndCoverage) {
+    std::vector<DebugLayer> layers;
+    const Frame f = halves();
+    resolved("msaa", f, {}, &layers);
+    EXPECT_EQ(layer(layers, "surfaces").at(0, 0), 2.0f);
+    EXPECT_EQ(layer(layers, "centreCoverage").at(0, 0), 0.625f);
+}
+
+}  // namespace
+}  // namespace aa
