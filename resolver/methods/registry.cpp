@@ -4,6 +4,7 @@
 #include "methods/method.h"
 #include "methods/noaa.h"
 #include "methods/rsaa.h"
+#include "methods/smaa.h"
 #include "methods/ssaa.h"
 #include "methods/taa_simplest.h"
 #include "methods/uncharted.h"
@@ -16,6 +17,7 @@ const std::vector<MethodDescriptor>& registry() {
         noaaDescriptor(), accumDescriptor(), ssaaDescriptor(),
         // spatial
         fxaa311Descriptor(),
+        smaa1xDescriptor(),
         // geometry
         rsaaDescriptor(),
         // temporal
