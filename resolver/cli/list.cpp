@@ -4,6 +4,7 @@
 #include "cli/cli.h"
 #include "cli/describe.h"
 #include "image/error.h"
+#include "methods/stage.h"
 
 namespace aa {
 namespace {
@@ -67,6 +68,22 @@ void printMarkdown() {
         }
         std::puts("");
     }
+    std::puts("## Stages\n\nOn any method's output, in the order written: `METHOD+stage=value`.\n");
+    std::puts("| stage | values | meaning | source |\n|---|---|---|---|");
+    for (const auto& s : stages()) {
+        std::string allowed = s.valueIsMethod ? "a method" : range(s.value);
+        for (size_t i = 0; (i = allowed.find('|', i)) != std::string::npos; i += 2) allowed.replace(i, 1, ", ");
+        std::printf("| `%s` | %s | %s | %s |\n", std::string(s.value.name).c_str(), allowed.c_str(),
+                    std::string(s.value.help).c_str(), std::string(s.value.source).c_str());
+    }
+}
+void printStages() {
+    std::puts("\nStages, on any method's output, in the order written: METHOD+stage=value");
+    for (const auto& s : stages())
+        std::printf("  %-18s %-28s %s [%s]%s%s\n", std::string(s.value.name).c_str(),
+                    s.valueIsMethod ? "METHOD" : range(s.value).c_str(), std::string(s.value.help).c_str(),
+                    std::string(s.value.source).c_str(), s.passes.empty() ? "" : "; needs ",
+                    passList(s.passes).c_str());
 }
 void printMethod(const MethodDescriptor& m, bool detail) {
     std::printf("%-18s %-10s %-44s %s\n", std::string(m.id).c_str(), std::string(m.family).c_str(),
@@ -82,6 +99,15 @@ void printMethod(const MethodDescriptor& m, bool detail) {
                     std::string(p.onlyWhen).c_str());
 }
 }  // namespace
+
+nlohmann::ordered_json describe(const StageDescriptor& s) {
+    nlohmann::ordered_json j = {{"name", s.value.name}, {"type", s.valueIsMethod ? "method" : name(s.value.type)}};
+    if (!s.valueIsMethod) j["values"] = range(s.value);
+    j["help"] = s.value.help;
+    j["source"] = s.value.source;
+    j["passes"] = names(s.passes);
+    return j;
+}
 
 nlohmann::ordered_json describe(const MethodDescriptor& m) {
     nlohmann::ordered_json j = {{"id", m.id},
@@ -124,6 +150,7 @@ nlohmann::ordered_json describe(const MethodDescriptor& m) {
 nlohmann::ordered_json describeRegistry() {
     nlohmann::ordered_json all = {{"version", AA_VERSION}, {"methods", nlohmann::ordered_json::array()}};
     for (const auto& m : registry()) all["methods"].push_back(describe(m));
+    for (const auto& s : stages()) all["stages"].push_back(describe(s));
     return all;
 }
 
@@ -152,8 +179,10 @@ void addList(CLI::App& app, Context&) {
             for (const auto& m : registry()) printMethod(m, false);
         else
             for (const auto& id : o->ids) printMethod(findMethod(id), true);
-        if (o->ids.empty())
+        if (o->ids.empty()) {
+            printStages();
             std::puts("\n`aaresolve list METHOD` shows its parameters; write them as METHOD:name=value,name=value");
+        }
     });
 }
 

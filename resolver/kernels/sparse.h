@@ -18,4 +18,30 @@ AA_INLINE int append_marked(unsigned bits, int x, int width, int* list, int coun
     return count;
 }
 
+// Calls visit(i) for every non-zero byte i of eight.
+template <class Visit>
+AA_INLINE void for_each_byte(uint64_t bytes, const Visit& visit) {
+    while (bytes) {
+        const int i = __builtin_ctzll(bytes) >> 3;
+        visit(i);
+        bytes &= ~(uint64_t(0xff) << (8 * i));
+    }
+}
+AA_INLINE uint64_t load_bytes(const uint8_t* p) {
+    uint64_t v;
+    __builtin_memcpy(&v, p, 8);
+    return v;
+}
+// Lane mask pair -> one byte per pixel: bit 0 from a, bit 1 from b.
+template <class R>
+AA_INLINE void store_mask_bytes(Mask<R> a, Mask<R> b, uint8_t* p) {
+    if constexpr (N<R> == 1)
+        *p = uint8_t((a ? 1 : 0) | (b ? 2 : 0));
+    else {
+        typedef uint8_t Bytes __attribute__((vector_size(N<R>)));
+        const Bytes bytes = __builtin_convertvector((a & 1) | (b & 2), Bytes);
+        __builtin_memcpy(p, &bytes, N<R>);
+    }
+}
+
 }  // namespace AA_ARCH

@@ -31,7 +31,7 @@ ShotInfo shotInfo(const Manifest& m) {
 void prepareFrame(Frame& frame, const std::vector<RunningMethod>& methods, const DisplayChain& chain,
                   const Exec& exec) {
     for (const auto& m : methods)
-        if (m.spec.method->input == Space::encoded) return encode(frame.colorLinear, chain, exec, frame.colorEncoded);
+        if (m.spec.readsEncoded()) return encode(frame.colorLinear, chain, exec, frame.colorEncoded);
 }
 
 }  // namespace aa

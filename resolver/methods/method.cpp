@@ -3,6 +3,7 @@
 #include <cctype>
 
 #include "image/error.h"
+#include "methods/stage.h"
 
 namespace aa {
 
@@ -17,9 +18,25 @@ const MethodDescriptor& findMethod(std::string_view id) {
                      (near.empty() ? "; `aaresolve list` shows all" : "; did you mean '" + near + "'?"));
 }
 
+namespace {
+// The next '+' that a letter follows ("1e+3" is a number), or the length of the text.
+size_t startOfStage(std::string_view text, size_t from = 0) {
+    for (size_t i = from; i + 1 < text.size(); i++)
+        if (text[i] == '+' && std::isalpha(static_cast<unsigned char>(text[i + 1]))) return i;
+    return text.size();
+}
+}  // namespace
+
 MethodSpec parseMethod(std::string_view text) {
     MethodSpec spec;
     spec.text = std::string(text);
+    const size_t plus = startOfStage(text);
+    for (size_t from = plus; from < text.size();) {
+        const size_t next = startOfStage(text, from + 1);
+        spec.stages.push_back(parseStage(text.substr(from + 1, next - from - 1)));
+        from = next;
+    }
+    text = text.substr(0, plus);
     const size_t colon = text.find(':');
     spec.method = &findMethod(text.substr(0, colon));
     if (colon != std::string_view::npos) {
@@ -39,7 +56,15 @@ MethodSpec parseMethod(std::string_view text) {
 }
 
 PassSet MethodSpec::passes() const {
-    return method->morePasses ? method->passes | method->morePasses(params()) : method->passes;
+    PassSet all = method->morePasses ? method->passes | method->morePasses(params()) : method->passes;
+    for (const auto& stage : stages) all |= passesOf(stage);
+    return all;
+}
+
+bool MethodSpec::readsEncoded() const {
+    for (const auto& stage : stages)
+        if (aa::readsEncoded(stage)) return true;
+    return method->input == Space::encoded;
 }
 
 Space MethodSpec::outputSpace() const { return method->outputSpace ? method->outputSpace(params()) : method->output; }
@@ -53,7 +78,9 @@ std::string MethodSpec::folderName() const {
     return s;
 }
 
-std::unique_ptr<Method> MethodSpec::create(const ShotInfo& shot) const { return method->create(params(), shot); }
+std::unique_ptr<Method> MethodSpec::create(const ShotInfo& shot) const {
+    return withStages(method->create(params(), shot), *this, shot);
+}
 
 PassSet passesOf(const std::vector<MethodSpec>& methods, Sampling sampling) {
     PassSet all;

@@ -7,6 +7,7 @@
 #include "methods/msaa.h"
 #include "methods/noaa.h"
 #include "methods/rsaa.h"
+#include "methods/smaa.h"
 #include "methods/ssaa.h"
 #include "methods/taa_simplest.h"
 #include "methods/uncharted.h"
@@ -21,6 +22,7 @@ const std::vector<MethodDescriptor>& registry() {
         ssaaDescriptor(),
         // spatial
         fxaa311Descriptor(),
+        smaa1xDescriptor(),
         // geometry
         msaaDescriptor(),
         csaaDescriptor(),

@@ -25,7 +25,7 @@ TEST_P(EveryMethod, ConstantStaysConstant) {
                 s, renderFrame(constantScene({v, v * 0.5f, v * 0.25f}), 40, 24, n, halton(n), {0.3, -0.6}, s.samples));
             Rgb expected(40, 24);
             for (size_t c = 0; c < 3; c++) expected.c[c] = PlaneF(40, 24, v * (c == 0 ? 1.0f : c == 1 ? 0.5f : 0.25f));
-            if (method(GetParam()).output == Space::encoded) {
+            if (parseMethod(GetParam()).outputSpace() == Space::encoded) {
                 const Rgb linear = expected;
                 encode(linear, {}, {}, expected);
             }

@@ -1,0 +1,11 @@
+#include "methods/sharpen.h"
+
+namespace aa {
+
+void sharpen(const Rgb& image, Sharpen filter, Space space, const Exec& exec, Rgb& out) {
+    if (out.width() != image.width() || out.height() != image.height()) out = Rgb(image.width(), image.height());
+    const SharpenArgs args{view(image), view(out), image.stride(), image.width(), filter, space == Space::encoded};
+    runKernel(sharpenKernelsFor(exec.isa).sharpen, exec, args, image.height());
+}
+
+}  // namespace aa

@@ -1,0 +1,55 @@
+#include "kernels/lanes.h"
+#include "methods/sharpen_kernels.h"
+
+namespace AA_ARCH {
+using namespace aa;
+
+template <class R>
+AA_INLINE vec3<R> colour_at(const SharpenArgs& a, long o) {
+    return {load<R>(a.in.c[0] + o), load<R>(a.in.c[1] + o), load<R>(a.in.c[2] + o)};
+}
+template <class R>
+AA_INLINE vec3<R> cross_sharpened(const SharpenArgs& a, long o, vec3<R> c, R gain) {
+    const vec3<R> excess = (c - colour_at<R>(a, o - a.stride)) + (c - colour_at<R>(a, o + a.stride)) +
+                           (c - colour_at<R>(a, o - 1)) + (c - colour_at<R>(a, o + 1));
+    return c + excess * gain;
+}
+template <class R>
+AA_INLINE vec3<R> luma_sharpened(const SharpenArgs& a, long o, vec3<R> c) {
+    using T = Elem<R>;
+    const R luma = luma709(c);
+    R excess(T(0));  // 9 (L - mean)
+    for (int j = -1; j <= 1; j++)
+        for (int i = -1; i <= 1; i++) excess = excess + (luma - luma709(colour_at<R>(a, o + long(j) * a.stride + i)));
+    const R target = max(R(T(0)), luma + excess * R(T(1.0 / 9)));
+    return select(luma >= R(T(1e-6)), c * (target / max(R(T(1e-6)), luma)), c);
+}
+template <class R>
+AA_INLINE vec3<R> within_neighbourhood(const SharpenArgs& a, long o, vec3<R> sharp) {
+    vec3<R> lowest = colour_at<R>(a, o), highest = lowest;
+    for (int j = -1; j <= 1; j++)
+        for (int i = -1; i <= 1; i++) {
+            const vec3<R> c = colour_at<R>(a, o + long(j) * a.stride + i);
+            lowest = min(lowest, c);
+            highest = max(highest, c);
+        }
+    return max(vec3<R>(R(Elem<R>(0))), min(highest, max(lowest, sharp)));
+}
+template <class R>
+__attribute__((flatten)) void sharpenRows(const SharpenArgs& a, int y0, int y1) {
+    const R gain(Elem<R>(a.filter == Sharpen::norm ? 0.25 : 1.0));
+    for (int y = y0; y < y1; y++)
+        for (int x = 0; x < a.width; x += N<R>) {
+            const long o = long(y) * a.stride + x;
+            const vec3<R> c = colour_at<R>(a, o);
+            vec3<R> sharp = a.filter == Sharpen::lumaPost ? luma_sharpened(a, o, c) : cross_sharpened(a, o, c, gain);
+            sharp = a.displayRange ? min(vec3<R>(R(Elem<R>(1))), max(vec3<R>(R(Elem<R>(0))), sharp))
+                                   : within_neighbourhood(a, o, sharp);
+            store(sharp.x, a.out.c[0] + o);
+            store(sharp.y, a.out.c[1] + o);
+            store(sharp.z, a.out.c[2] + o);
+        }
+}
+}  // namespace AA_ARCH
+
+AA_DEFINE_TABLE(aa::SharpenKernels, sharpenKernels) = {AA_ROWS(sharpenRows)};

@@ -1,0 +1,260 @@
+#include "methods/smaa.h"
+
+#include <cstring>
+
+#include "methods/luma.h"
+#include "methods/smaa_areas.h"
+
+namespace aa {
+
+void EdgePlane::resize(int width, int height, int border) {
+    if (width == width_ && height == height_ && border == border_) return;
+    width_ = width;
+    height_ = height;
+    border_ = border;
+    stride_ = width + 2 * border + 16;  // lanes may write past the width
+    bytes_.assign(size_t(stride_) * size_t(height + 2 * border) + 16, 0);
+}
+void EdgePlane::clear() { std::memset(bytes_.data(), 0, bytes_.size()); }
+void EdgePlane::fillBorder() {
+    for (int y = 0; y < height_; y++) {
+        uint8_t* const r = row(y);
+        std::memset(r - border_, r[0], size_t(border_));
+        std::memset(r + width_, r[width_ - 1], size_t(border_));
+    }
+    const size_t length = size_t(width_ + 2 * border_);
+    for (int y = 1; y <= border_; y++) {
+        std::memcpy(row(-y) - border_, row(0) - border_, length);
+        std::memcpy(row(height_ - 1 + y) - border_, row(height_ - 1) - border_, length);
+    }
+}
+
+namespace {
+struct Preset {
+    std::string_view name;
+    float threshold;
+    int searchSteps, diagonalSteps;
+    float cornerRounding;  // percent; negative: off
+};
+const Preset kPresets[] = {{"LOW", 0.15f, 4, 0, -1},  // SMAA v2.8, methods/03 s.3.2
+                           {"MEDIUM", 0.10f, 8, 0, -1},
+                           {"HIGH", 0.10f, 16, 8, 25},
+                           {"ULTRA", 0.05f, 32, 16, 25}};
+Preset chosen(const Params& p) {
+    for (const auto& preset : kPresets)
+        if (p.choice("preset") == preset.name) return preset;
+    return {"custom", p.realf("threshold"), p.integer("searchSteps"), p.integer("diagonalSteps"),
+            p.realf("cornerRounding")};
+}
+}  // namespace
+
+Smaa::Smaa(const Params& p, const SmaaSubSample& subSample)
+    : topOffset_(subSample.topEdgeOffset), leftOffset_(subSample.leftEdgeOffset) {
+    const Preset preset = chosen(p);
+    edge_.kind = SmaaEdges(p.choiceIndex("edges"));
+    edge_.predication = SmaaPredication(p.choiceIndex("predication"));
+    edge_.consistent = p.choice("colourContrast") == "consistent";
+    edge_.threshold = edge_.kind == SmaaEdges::depth ? p.realf("depthThreshold") : preset.threshold;
+    edge_.localContrast = p.realf("localContrast");
+    edge_.predicationThreshold = p.realf("predicationThreshold");
+    edge_.predicationScale = p.realf("predicationScale");
+    edge_.predicationStrength = p.realf("predicationStrength");
+    weight_.searchSteps = preset.searchSteps;
+    weight_.diagonalSteps = preset.diagonalSteps;
+    weight_.cornerRounding = preset.cornerRounding < 0 ? -1 : preset.cornerRounding / 100;
+    weight_.unorm8 = p.choice("weights") == "unorm8";
+    border_ = std::max(2 * preset.searchSteps, preset.diagonalSteps) + 4;
+    const bool published = p.choice("areas") == "table";
+    if (published) {
+        orthoTables_[0] = orthogonalTable(double(topOffset_));
+        orthoTables_[1] = orthogonalTable(double(leftOffset_));
+    }
+    if (preset.diagonalSteps > 0)
+        for (size_t k = 0; k < 2; k++) diagonalTables_[k] = diagonalTable(subSample.diagonalOffsets[k], published);
+}
+
+void Smaa::findEdges(const Frame& frame, const Rgb& colorEncoded, const Exec& exec) {
+    width_ = colorEncoded.width();
+    height_ = colorEncoded.height();
+    edges_.resize(width_, height_, border_);
+    transposed_.resize(height_, width_, border_);
+    SmaaEdgeArgs args = edge_;
+    if (args.kind == SmaaEdges::luma) {
+        lumaPlane(colorEncoded, LumaKind::rec709, exec, luma_);
+        args.scalar = luma_.row(0);
+    } else if (args.kind == SmaaEdges::depth) {
+        args.scalar = frame.depthView.row(0);
+    }
+    args.color = view(colorEncoded);
+    if (args.predication == SmaaPredication::depth) args.depthView = frame.depthView.row(0);
+    if (args.predication == SmaaPredication::object) args.objectId = frame.objectId.row(0);
+    args.edges = edges_.row(0);
+    args.stride = colorEncoded.stride();
+    args.edgeStride = edges_.stride();
+    args.width = width_;
+    runKernel(smaaKernelsFor(exec.isa).edges, exec, args, height_);
+    edges_.fillBorder();
+}
+
+void Smaa::findWeights(const Frame& frame, const Rgb& colorEncoded, const Exec& exec) {
+    findEdges(frame, colorEncoded, exec);
+    const size_t pairs = 2 * size_t(width_) * size_t(height_);
+    topWeights_.resize(pairs);
+    leftWeights_.resize(pairs);
+    if (keepDebugLayers) topLengths_.assign(pairs, 0), leftLengths_.assign(pairs, 0);
+    transposed_.clear();
+
+    SmaaWeightArgs args = weight_;
+    for (size_t k = 0; k < 2; k++) args.diagonalTable[k] = diagonalTables_[k].data();
+    args.edges = edges_.row(0);
+    args.edgeStride = edges_.stride();
+    args.width = width_;
+    args.transposed = transposed_.row(0);
+    args.transposedStride = transposed_.stride();
+    args.weights = topWeights_.data();
+    args.lengths = keepDebugLayers ? topLengths_.data() : nullptr;
+    args.weightAlong = 1;
+    args.weightAcross = width_;
+    args.offset = topOffset_;
+    args.orthoTable = orthoTables_[0].empty() ? nullptr : orthoTables_[0].data();
+    const auto& kernel = smaaWeightKernelsFor(exec.isa).weights;
+    runKernel(kernel, exec, args, height_);
+
+    transposed_.fillBorder();
+    args.edges = transposed_.row(0);
+    args.edgeStride = transposed_.stride();
+    args.width = height_;
+    args.transposed = nullptr;
+    args.weights = leftWeights_.data();
+    args.lengths = keepDebugLayers ? leftLengths_.data() : nullptr;
+    args.weightAlong = width_;
+    args.weightAcross = 1;
+    args.offset = leftOffset_;
+    args.orthoTable = orthoTables_[1].empty() ? nullptr : orthoTables_[1].data();
+    runKernel(kernel, exec, args, width_);
+}
+
+void Smaa::blend(const float* const in[3], float* const out[3], int channels, int stride, const Exec& exec) const {
+    SmaaBlendArgs args{};
+    args.edges = edges_.row(0);
+    args.topWeights = topWeights_.data();
+    args.leftWeights = leftWeights_.data();
+    for (int c = 0; c < channels; c++) args.in[c] = in[c], args.out[c] = out[c];
+    args.channels = channels;
+    args.stride = stride;
+    args.edgeStride = edges_.stride();
+    args.width = width_;
+    args.height = height_;
+    args.weightStride = width_;
+    runKernel(smaaKernelsFor(exec.isa).blend, exec, args, height_);
+}
+void Smaa::blend(const Rgb& in, Rgb& out, const Exec& exec) const {
+    blend(view(in).c, view(out).c, 3, in.stride(), exec);
+}
+
+size_t Smaa::bytes() const {
+    return luma_.bytes() + edges_.bytes() + transposed_.bytes() +
+           (topWeights_.size() + leftWeights_.size()) * sizeof(float);
+}
+
+std::vector<DebugLayer> Smaa::debugLayers() const {
+    if (!keepDebugLayers) return {};
+    DebugLayer edges{"edges", std::vector<PlaneF>(3, PlaneF(width_, height_))};  // left, top, diagonal
+    DebugLayer top = {"weights.top", edges.planes}, left = {"weights.left", edges.planes};
+    DebugLayer topSearch = {"search.top", edges.planes}, leftSearch = {"search.left", edges.planes};
+    for (int y = 0; y < height_; y++)
+        for (int x = 0; x < width_; x++) {
+            const uint8_t e = edges_.row(y)[x];
+            const bool isLeft = e & kEdgeLeft, isTop = e & kEdgeTop, isDiagonal = transposed_.row(x)[y] & kDiagonalDone;
+            edges.planes[0].at(x, y) = isLeft;
+            edges.planes[1].at(x, y) = isTop;
+            edges.planes[2].at(x, y) = isDiagonal;
+            const size_t k = 2 * (size_t(y) * size_t(width_) + size_t(x));
+            for (size_t i = 0; i < 2; i++) {  // own, opposite; distance to either end, px
+                if (isTop)
+                    top.planes[i].at(x, y) = topWeights_[k + i], topSearch.planes[i].at(x, y) = topLengths_[k + i];
+                if (isLeft)
+                    left.planes[i].at(x, y) = leftWeights_[k + i], leftSearch.planes[i].at(x, y) = leftLengths_[k + i];
+            }
+        }
+    return {edges, top, left, topSearch, leftSearch};
+}
+
+std::vector<ParamSpec> smaaParams() {
+    return {
+        choiceParam("preset", "HIGH", {"LOW", "MEDIUM", "HIGH", "ULTRA", "custom"},
+                    "threshold, search lengths, diagonals and corners", "SMAA v2.8"),
+        realParam("threshold", "0.1", 0.0009765625, 0.5, "luma or colour difference that makes an edge", "SMAA v2.8",
+                  "preset=custom"),
+        intParam("searchSteps", "16", 1, 112, "search length to either side, in steps of 2 px", "SMAA v2.8",
+                 "preset=custom"),
+        intParam("diagonalSteps", "8", 0, kMaxDiagonal, "diagonal search length in px, 0 off", "SMAA v2.8",
+                 "preset=custom"),
+        realParam("cornerRounding", "25", -1, 100, "how much sharp corners are rounded, percent; -1 off", "SMAA v2.8",
+                  "preset=custom"),
+        choiceParam("edges", "luma", {"luma", "colour", "depth"}, "what makes an edge", "SMAA v2.8"),
+        realParam("depthThreshold", "0.01", 0.0009765625, 1, "relative depth difference that makes an edge",
+                  "methods/03 s.3.2.1", "edges=depth"),
+        realParam("localContrast", "2", 1, 1000, "an edge goes where a neighbouring edge is this many times as strong",
+                  "SMAA v2.8", "edges=luma|colour"),
+        choiceParam("colourContrast", "reference", {"reference", "consistent"},
+                    "second neighbour of colour edges: against the centre as in the shader, or against the first",
+                    "methods/11 #39", "edges=colour"),
+        choiceParam("predication", "off", {"off", "depth", "object"}, "raise the threshold where this pass has no edge",
+                    "SMAA v2.8", "edges=luma|colour"),
+        realParam("predicationThreshold", "0.01", 0, 1, "relative depth difference that is an edge of that pass",
+                  "SMAA v2.8", "predication=depth"),
+        realParam("predicationScale", "2", 1, 5, "factor on the threshold", "SMAA v2.8", "predication=depth|object"),
+        realParam("predicationStrength", "0.4", 0, 1, "share taken off again at edges of that pass", "SMAA v2.8",
+                  "predication=depth|object"),
+        choiceParam("blendSpace", "linear", {"linear", "encoded"}, "space in which pixels are blended",
+                    "SMAA v2.8 (sRGB reads)"),
+        choiceParam("areas", "analytic", {"analytic", "table"},
+                    "weights exact, or looked up in the 8-bit area table as the shader does", "methods/03 s.3.2.3"),
+        choiceParam("weights", "float", {"float", "unorm8"}, "storage of the blending weights", "methods/03"),
+    };
+}
+
+PassSet smaaPasses(const Params& p) {
+    PassSet passes;
+    if (p.choice("edges") == "depth" || p.choice("predication") == "depth") passes |= Pass::depth;
+    if (p.choice("predication") == "object") passes |= Pass::object;
+    return passes;
+}
+
+namespace {
+class Smaa1x : public Method {
+  public:
+    explicit Smaa1x(const Params& p) : smaa_(p, {}), linear_(p.choice("blendSpace") == "linear") {}
+    void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
+        smaa_.keepDebugLayers = keepDebugLayers;
+        smaa_.findWeights(frame, frame.colorEncoded, exec);
+        smaa_.blend(linear_ ? frame.colorLinear : frame.colorEncoded, out, exec);
+    }
+    size_t stateBytes() const override { return smaa_.bytes(); }
+    std::vector<DebugLayer> debugLayers() const override { return smaa_.debugLayers(); }
+
+  private:
+    Smaa smaa_;
+    bool linear_;
+};
+}  // namespace
+
+MethodDescriptor smaa1xDescriptor() {
+    return {.id = "smaa1x",
+            .title = "SMAA 1x",
+            .family = "spatial",
+            .summary = "Revectorises edges from their length and crossing edges, with diagonals and corners.",
+            .source = "Jimenez et al. 2012, SMAA v2.8; methods/03 s.3.2",
+            .passes = Pass::color,
+            .input = Space::encoded,
+            .output = Space::linear,
+            .params = smaaParams(),
+            .create = [](const Params& p, const ShotInfo&) { return std::make_unique<Smaa1x>(p); },
+            .morePasses = smaaPasses,
+            .outputSpace =
+                [](const Params& p) { return p.choice("blendSpace") == "linear" ? Space::linear : Space::encoded; },
+            .reachPx = 66};  // methods/08 s.8.4; preset=custom reaches 2 * searchSteps + 2
+}
+
+}  // namespace aa

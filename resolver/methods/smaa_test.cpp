@@ -1,0 +1,396 @@
+#include "methods/smaa.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "image/error.h"
+#include "methods/smaa_areas.h"
+#include "methods/spatial_testing.h"
+
+namespace aa {
+namespace {
+using namespace aa::testing;
+
+TEST(SmaaAreas, ValuesOfTheSpecification) {
+    struct Case {
+        int left, right, leftPx, rightPx;
+        double own, opposite;
+    };
+    for (const auto& c : {Case{3, 0, 0, 3, .375, 0},
+                          {3, 3, 0, 0, .492188, 0},
+                          {3, 3, 1, 3, .298067, 0},
+                          {1, 3, 0, 4, 0, .4},
+                          {1, 3, 2, 2, .025, .025},
+                          {4, 3, 1, 5, 0, .285714},
+                          {1, 0, 0, 9, 0, .45}}) {
+        const SmaaAreas a = orthogonalArea(c.left, c.right, c.leftPx, c.rightPx);
+        EXPECT_NEAR(a.own, c.own, 1e-6) << c.left << c.right;
+        EXPECT_NEAR(a.opposite, c.opposite, 1e-6) << c.left << c.right;
+    }
+}
+// Revectorised height of the line at t, by the rules of methods/03 s.3.2.3 for shapes without smoothing.
+double height(int e1, int e2, double l, double r, double offset, double t) {
+    const double d = l + r + 1, above = 0.5 + offset, below = -0.5 + offset;
+    const double h1 = e1 == 1 ? above : e1 == 3 ? below : e2 == 1 ? below : above;
+    const double h2 = e2 == 1 ? above : e2 == 3 ? below : e1 == 1 ? below : above;
+    if (e2 == 0) return l <= r && t < d / 2 ? h1 * (1 - 2 * t / d) : 0;
+    if (e1 == 0) return l >= r && t > d / 2 ? h2 * (2 * t / d - 1) : 0;
+    return h1 + (h2 - h1) * t / d;
+}
+TEST(SmaaAreas, EqualTheIntegralOfTheDefinition) {
+    for (const auto& [e1, e2] :
+         {std::pair{1, 0}, {3, 0}, {0, 1}, {0, 3}, {1, 3}, {3, 1}, {4, 1}, {4, 3}, {1, 4}, {3, 4}})
+        for (const double offset : {0.0, 0.25, -0.375}) {
+            if (offset != 0 && (e1 == 1 || e1 == 3) && (e2 == 1 || e2 == 3)) continue;
+            for (int l = 0; l < 7; l++)
+                for (int r = 0; r < 7; r++) {
+                    double own = 0, opposite = 0;
+                    const int n = 4000;
+                    for (int i = 0; i < n; i++) {
+                        const double h = height(e1, e2, l, r, offset, l + (i + 0.5) / n);
+                        (h < 0 ? own : opposite) += std::abs(h) / n;
+                    }
+                    const SmaaAreas a = orthogonalArea(e1, e2, l, r, offset);
+                    EXPECT_NEAR(a.own, own, 1e-4) << e1 << e2 << " " << l << " " << r << " " << offset;
+                    EXPECT_NEAR(a.opposite, opposite, 1e-4) << e1 << e2 << " " << l << " " << r << " " << offset;
+                }
+        }
+}
+TEST(SmaaAreas, TablesEqualTheirDefinitionToOneCode) {
+    for (const double offset : {0.0, -0.25, 0.25, -0.125, 0.125, -0.375, 0.375}) {
+        const auto table = orthogonalTable(offset);
+        ASSERT_EQ(table.size(), 25u * 16 * 16 * 2);
+        size_t k = 0;
+        for (int e1 = 0; e1 < 5; e1++)
+            for (int e2 = 0; e2 < 5; e2++)
+                for (int u = 0; u < 16; u++)
+                    for (int v = 0; v < 16; v++) {
+                        const SmaaAreas a = orthogonalArea(e1, e2, u * u, v * v, offset);
+                        EXPECT_NEAR(double(table[k++]), a.own, 1.0 / 255 + 1e-7);
+                        EXPECT_NEAR(double(table[k++]), a.opposite, 1.0 / 255 + 1e-7);
+                    }
+    }
+    const auto published = diagonalTable({0, 0}, true), exact = diagonalTable({0, 0}, false);
+    ASSERT_EQ(published.size(), 16u * kDiagonals * kDiagonals * 2);
+    for (size_t k = 0; k < published.size(); k++)  // the 30 x 30 rule is within 8 codes of the exact area
+        EXPECT_LE(std::abs(std::floor(255 * exact[k]) - 255 * published[k]), 8.001) << k;
+}
+TEST(SmaaAreas, MirroredLinesGiveMirroredAreas) {
+    for (int e1 : {0, 1, 3, 4})
+        for (int e2 : {0, 1, 3, 4})
+            for (int l = 0; l < 9; l++)
+                for (int r = 0; r < 9; r++) {
+                    const SmaaAreas a = orthogonalArea(e1, e2, l, r), b = orthogonalArea(e2, e1, r, l);
+                    EXPECT_NEAR(a.own, b.own, 1e-12);
+                    EXPECT_NEAR(a.opposite, b.opposite, 1e-12);
+                }
+}
+
+// SMAA 1x written a second time, per pixel and in double: searches in pairs of pixels as the shader steps, clamped
+// reads, a bilinear blend. Only the areas come from the generator.
+class ReferenceSmaa {
+  public:
+    ReferenceSmaa(const Rgb& image, double threshold, int steps, int diagonalSteps, double rounding,
+                  bool colour = false)
+        : image_(image),
+          threshold_(threshold),
+          steps_(steps),
+          diag_(diagonalSteps),
+          rounding_(rounding),
+          colour_(colour) {
+        w_ = image.width();
+        h_ = image.height();
+        for (int y = 0; y < h_; y++)
+            for (int x = 0; x < w_; x++) edges_.push_back(edgeBits(x, y));
+        for (int y = 0; y < h_; y++)
+            for (int x = 0; x < w_; x++) weights_.push_back(weights(x, y));
+    }
+    int edgePixels() const {
+        int n = 0;
+        for (int e : edges_) n += e != 0;
+        return n;
+    }
+    int nearTies = 0;
+    std::array<double, 3> pixel(int x, int y) const {
+        const double right = at(x + 1, y)[3], bottom = at(x, y + 1)[1], left = at(x, y)[2], top = at(x, y)[0];
+        std::array<double, 3> out;
+        for (size_t c = 0; c < 3; c++) {
+            const double own = value(c, x, y);
+            out[c] = own;
+            if (right + bottom + left + top < 1e-5) continue;
+            const bool horizontal = std::max(right, left) > std::max(bottom, top) * (1 + 1e-5);
+            const double a1 = horizontal ? right : bottom, a2 = horizontal ? left : top;
+            const double n1 = horizontal ? value(c, x + 1, y) : value(c, x, y + 1);
+            const double n2 = horizontal ? value(c, x - 1, y) : value(c, x, y - 1);
+            out[c] = (a1 * (own * (1 - a1) + n1 * a1) + a2 * (own * (1 - a2) + n2 * a2)) / (a1 + a2);
+        }
+        return out;
+    }
+
+  private:
+    double value(size_t c, int x, int y) const { return image_.c[c].clamped(x, y); }
+    double luma(int x, int y) const {
+        return 0.2126 * value(0, x, y) + 0.7152 * value(1, x, y) + 0.0722 * value(2, x, y);
+    }
+    double difference(int x, int y, int u, int v) const {
+        if (!colour_) return std::abs(luma(x, y) - luma(u, v));
+        double m = 0;
+        for (size_t c = 0; c < 3; c++) m = std::max(m, std::abs(value(c, x, y) - value(c, u, v)));
+        return m;
+    }
+    int edgeBits(int x, int y) {
+        const double dl = difference(x, y, x - 1, y), dt = difference(x, y, x, y - 1);
+        for (double d : {dl, dt}) nearTies += std::abs(d - threshold_) < 1e-6;
+        if (dl < threshold_ && dt < threshold_) return 0;
+        const int from = colour_ ? 0 : 1;
+        const double m = std::max({dl, dt, difference(x, y, x + 1, y), difference(x, y, x, y + 1),
+                                   difference(x - from, y, x - 2, y), difference(x, y - from, x, y - 2)});
+        for (double d : {dl, dt}) nearTies += std::abs(2 * d - m) < 1e-6;
+        return (dl >= threshold_ && 2 * dl >= m ? 1 : 0) | (dt >= threshold_ && 2 * dt >= m ? 2 : 0);
+    }
+    int bits(int x, int y) const {
+        return edges_[size_t(std::clamp(y, 0, h_ - 1)) * size_t(w_) + size_t(std::clamp(x, 0, w_ - 1))];
+    }
+    // Edge reads in a frame that may be transposed: N is the edge that lines follow, W the one that crosses them.
+    bool follow(bool t, int x, int y) const { return t ? bits(y, x) & 1 : bits(x, y) & 2; }
+    bool cross(bool t, int x, int y) const { return t ? bits(y, x) & 2 : bits(x, y) & 1; }
+    const std::array<double, 4>& at(int x, int y) const {
+        return weights_[size_t(std::clamp(y, 0, h_ - 1)) * size_t(w_) + size_t(std::clamp(x, 0, w_ - 1))];
+    }
+
+    std::array<double, 2> ortho(bool t, int x, int y) const {
+        auto clear = [&](int s) { return !cross(t, s, y) && !cross(t, s, y - 1); };
+        int xl = x, xr = x;
+        for (int i = 0, s = x; i < steps_; i++, s -= 2) {
+            int ext = 0;
+            if (follow(t, s, y)) ext = 1;
+            if (ext == 1 && follow(t, s - 1, y) && clear(s)) ext = 2;
+            xl = s + 1 - ext;
+            if (!(follow(t, s, y) && follow(t, s - 1, y) && clear(s) && clear(s - 1))) break;
+        }
+        for (int i = 0, s = x + 1; i < steps_; i++, s += 2) {
+            int ext = 0;
+            if (follow(t, s, y) && clear(s)) ext = 1;
+            if (ext == 1 && follow(t, s + 1, y) && clear(s + 1)) ext = 2;
+            xr = s - 1 + ext;
+            if (ext != 2) break;
+        }
+        const int dl = x - xl, dr = xr - x;
+        auto code = [&](int s) { return (cross(t, s, y - 1) ? 1 : 0) + (cross(t, s, y) ? 3 : 0); };
+        const SmaaAreas a = orthogonalArea(code(xl), code(xr + 1), dl, dr);
+        double own = a.own, opposite = a.opposite;
+        if (rounding_ >= 0) {
+            const double lr = dl <= dr, rr = dr <= dl, r = (1 - rounding_) / (lr + rr);
+            auto factor = [&](int row) {
+                return std::clamp(1 - r * lr * cross(t, xl, row) - r * rr * cross(t, xr + 1, row), 0.0, 1.0);
+            };
+            own *= factor(y + 1);
+            opposite *= factor(y - 2);
+        }
+        return {own, opposite};
+    }
+    std::array<double, 2> diagonal(int x, int y) const {
+        auto left = [&](int u, int v) { return bits(u, v) & 1; };
+        auto top = [&](int u, int v) { return (bits(u, v) & 2) != 0; };
+        auto walk = [&](int sx, int sy, int shift, bool& found, bool& lastTop) {
+            int n = 0;
+            found = false;
+            for (int i = 1; i <= diag_; i++) {
+                lastTop = top(x + i * sx, y + i * sy);
+                if (!(lastTop && left(x + i * sx + shift, y + i * sy))) {
+                    found = true;
+                    break;
+                }
+                n++;
+            }
+            return std::min(n, diag_ - 1);
+        };
+        double own = 0, opposite = 0;
+        for (const bool second : {false, true}) {
+            bool f1 = true, f2 = true, last = false;
+            int d1 = 0, d2 = 0, c1h, c1v, c2h, c2v;
+            if (!second) {
+                if (left(x, y)) d1 = walk(-1, 1, 0, f1, last), d1 += last;
+                d2 = walk(1, -1, 0, f2, last);
+                c1h = top(x - d1 - 1, y + d1), c1v = left(x - d1, y + d1);
+                c2h = top(x + d2 + 1, y - d2), c2v = left(x + d2 + 1, y - d2 - 1);
+            } else {
+                d1 = walk(-1, -1, 1, f1, last);
+                if (left(x + 1, y)) d2 = walk(1, 1, 1, f2, last), d2 += last;
+                c1h = top(x - d1 - 1, y - d1), c1v = left(x - d1, y - d1 - 1);
+                c2h = top(x + d2 + 1, y + d2), c2v = left(x + d2 + 1, y + d2);
+            }
+            if (d1 + d2 <= 2) continue;
+            const auto a =
+                diagonalArea(f1 ? 2 * c1h + c1v : 0, f2 ? 2 * c2h + c2v : 0, d1, d2, {0, 0}, DiagonalIntegral::exact);
+            own += second ? a.opposite : a.own;
+            opposite += second ? a.own : a.opposite;
+        }
+        return {own, opposite};
+    }
+    std::array<double, 4> weights(int x, int y) const {
+        std::array<double, 4> w{};
+        if (bits(x, y) & 2) {
+            std::array<double, 2> n{};
+            if (diag_ > 0) n = diagonal(x, y);
+            if (n[0] + n[1] > 0) return {n[0], n[1], 0, 0};
+            n = ortho(false, x, y);
+            w[0] = n[0], w[1] = n[1];
+        }
+        if (bits(x, y) & 1) {
+            const auto v = ortho(true, y, x);
+            w[2] = v[0], w[3] = v[1];
+        }
+        return w;
+    }
+    const Rgb& image_;
+    double threshold_;
+    int steps_, diag_;
+    double rounding_;
+    bool colour_;
+    int w_, h_;
+    std::vector<int> edges_;
+    std::vector<std::array<double, 4>> weights_;
+};
+
+TEST(Smaa1x, StepVectorOfTheSpecification) {
+    const int x[] = {12, 20, 24, 28, 30, 31, 32, 33, 35, 39, 44};
+    const std::pair<std::string, std::array<double, 11>> rows[] = {
+        {"LOW", {0, 0, .00833, .18182, .33333, .43750, .55556, .65000, .79167, .96875, 1}},
+        {"MEDIUM", {0, .07407, .17391, .31579, .41176, .46875, .52941, .58333, .67500, .81250, .93103}},
+        {"HIGH", {.11765, .23256, .30769, .40000, .45455, .48438, .51515, .54412, .59722, .68750, .77778}},
+        {"ULTRA", {.26506, .34667, .39437, .44776, .47692, .49219, .50769, .52273, .55147, .60417, .66234}}};
+    for (const auto& [preset, row] : rows) {
+        const Rgb out = resolveOnce("smaa1x:blendSpace=encoded,preset=" + preset, stepImage());
+        for (size_t i = 0; i < 11; i++) EXPECT_NEAR(out.c[1].at(x[i], 4), row[i], 6e-6) << preset << " x " << x[i];
+        for (int u = 0; u < 64; u++) {
+            EXPECT_EQ(out.c[0].at(u, 3), 1.0f) << preset << u;
+            EXPECT_EQ(out.c[0].at(u, 5), 0.0f) << preset << u;
+        }
+    }
+}
+
+TEST(Smaa1x, ConformsToTheDefinitionPerPixel) {
+    struct Case {
+        std::string spec;
+        double threshold;
+        int steps, diagonal;
+        double rounding;
+        bool colour = false;
+    };
+    const Case cases[] = {{"preset=LOW", .15, 4, 0, -1},
+                          {"preset=MEDIUM", .1, 8, 0, -1},
+                          {"preset=HIGH", .1, 16, 8, .25},
+                          {"preset=ULTRA", .05, 32, 16, .25},
+                          {"preset=ULTRA,edges=colour", .05, 32, 16, .25, true}};
+    const Rgb images[] = {randomShapes(97, 61, 7), randomCodes(40, 33, 11), randomShapes(61, 97, 21)};
+    for (const auto& test : cases)
+        for (const Rgb& image : images) {
+            ReferenceSmaa reference(image, test.threshold, test.steps, test.diagonal, test.rounding, test.colour);
+            EXPECT_GT(reference.edgePixels(), 300);
+            if (reference.nearTies > 0) continue;  // a decision that rounding makes; counted below
+            for (const auto precision : {Precision::fast, Precision::scalar, Precision::oracle}) {
+                const Rgb out = resolveOnce("smaa1x:blendSpace=encoded," + test.spec, image, execOf(precision));
+                double worst = 0;
+                for (int y = 0; y < image.height(); y++)
+                    for (int x = 0; x < image.width(); x++) {
+                        const auto expected = reference.pixel(x, y);
+                        for (size_t c = 0; c < 3; c++)
+                            worst = std::max(worst, std::abs(out.c[c].at(x, y) - expected[c]));
+                    }
+                EXPECT_LT(worst, 3e-6) << test.spec << " " << image.width();
+            }
+        }
+    int usable = 0;
+    for (const Rgb& image : images) usable += ReferenceSmaa(image, .1, 4, 0, -1).nearTies == 0;
+    EXPECT_GE(usable, 2);
+}
+
+TEST(Smaa1x, PrecisionsAndInstructionSetsAgree) {
+    const Frame frame = frameOf(randomShapes(133, 77, 3));
+    for (const std::string spec : {"smaa1x:preset=ULTRA", "smaa1x:preset=ULTRA,edges=colour,areas=table"}) {
+        const Rgb fast = resolveOnce(spec, frame);
+        for (const Isa isa : {Isa::v2, Isa::v3, Isa::v4}) {
+            if (!isaSupported(isa)) continue;
+            EXPECT_TRUE(fast.samePixels(resolveOnce(spec, frame, execOf(Precision::fast, isa))));
+            EXPECT_TRUE(fast.samePixels(resolveOnce(spec, frame, execOf(Precision::scalar, isa))));
+        }
+        EXPECT_LT(largestDifference(fast, resolveOnce(spec, frame, execOf(Precision::oracle))), 3e-5);
+    }
+}
+
+TEST(Smaa1x, TableAndRoundedWeightsStayWithinTheirQuantum) {
+    const Frame frame = frameOf(randomShapes(120, 90, 5));
+    const Rgb exact = resolveOnce("smaa1x:blendSpace=encoded,preset=ULTRA", frame);
+    const Rgb rounded = resolveOnce("smaa1x:blendSpace=encoded,preset=ULTRA,weights=unorm8", frame);
+    const Rgb table = resolveOnce("smaa1x:blendSpace=encoded,preset=ULTRA,areas=table", frame);
+    EXPECT_LT(largestDifference(exact, rounded), 1.5 / 255);
+    EXPECT_GT(largestDifference(exact, rounded), 0);
+    EXPECT_LT(largestDifference(exact, table), 0.06);  // square distances between table entries are interpolated
+    EXPECT_GT(largestDifference(exact, table), 0);
+}
+
+// Encoded steps of 0.06 between two surfaces: below HIGH's threshold in luma.
+Frame twoSurfaces() {
+    Rgb image(64, 20);
+    PlaneF depth(64, 20);
+    PlaneU object(64, 20);
+    for (int y = 0; y < 20; y++)
+        for (int x = 0; x < 64; x++) {
+            const bool far = y > 9 + x / 16;
+            for (auto& p : image.c) p.at(x, y) = far ? 0.5f : 0.56f;
+            depth.at(x, y) = far ? 1e10f : 5.0f;
+            object.at(x, y) = far ? 0 : 3;
+        }
+    Frame f = frameOf(image);
+    depth.fillBorder();
+    object.fillBorder();
+    f.depthView = depth;
+    f.objectId = object;
+    f.passes = f.passes | Pass::depth | Pass::object;
+    return f;
+}
+TEST(Smaa1x, DepthEdgesAndPredicationReadTheirPass) {
+    const Frame f = twoSurfaces();
+    auto changed = [&](const std::string& spec) {
+        return !resolveOnce("smaa1x:blendSpace=encoded," + spec, f).samePixels(f.colorEncoded);
+    };
+    EXPECT_FALSE(changed("preset=HIGH"));
+    EXPECT_TRUE(changed("edges=depth"));
+    EXPECT_EQ(parseMethod("smaa1x:edges=depth").passes(), Pass::color | Pass::depth);
+    EXPECT_EQ(parseMethod("smaa1x:predication=object").passes(), Pass::color | Pass::object);
+    EXPECT_TRUE(changed("preset=custom,threshold=0.049"));
+    // Doubled to 0.098, less 40 % at an edge of the pass: 0.0588.
+    EXPECT_TRUE(changed("preset=custom,threshold=0.049,predication=depth"));
+    EXPECT_TRUE(changed("preset=custom,threshold=0.049,predication=object"));
+    EXPECT_FALSE(changed("preset=custom,threshold=0.049,predication=depth,predicationStrength=0"));
+    EXPECT_FALSE(changed("preset=custom,threshold=0.052,predication=object"));
+}
+
+TEST(Smaa1x, RejectsParametersThatCannotAct) {
+    EXPECT_THROW(parseMethod("smaa1x:threshold=0.2"), UsageError);  // belongs to preset=custom
+    EXPECT_THROW(parseMethod("smaa1x:preset=custom,threshold=0"), UsageError);
+    EXPECT_THROW(parseMethod("smaa1x:predicationScale=3"), UsageError);
+    EXPECT_THROW(parseMethod("smaa1x:preset=high"), UsageError);
+    EXPECT_NO_THROW(parseMethod("smaa1x:preset=custom,threshold=0.2"));
+}
+
+TEST(Smaa1x, DebugLayersShowEdgesWeightsAndSearches) {
+    const Frame f = frameOf(stepImage());
+    const auto method = parseMethod("smaa1x:preset=HIGH").create({.width = 64, .height = 9});
+    Rgb out(64, 9);
+    method->keepDebugLayers = true;
+    method->resolve(f, {}, out);
+    const auto layers = method->debugLayers();
+    ASSERT_EQ(layers.size(), 5u);
+    EXPECT_EQ(layers[0].planes[0].at(32, 4), 1.0f);  // the step's left edge
+    EXPECT_EQ(layers[0].planes[1].at(20, 4), 1.0f);
+    EXPECT_EQ(layers[0].planes[1].at(40, 4), 0.0f);
+    EXPECT_FLOAT_EQ(layers[2].planes[0].at(32, 4), .078125f);  // Z of length 1, corner factor .625
+    EXPECT_FLOAT_EQ(layers[2].planes[1].at(32, 4), .078125f);
+    EXPECT_EQ(layers[3].planes[1].at(24, 4), 7.0f);  // px to the step
+}
+
+}  // namespace
+}  // namespace aa
