@@ -79,13 +79,12 @@ PassSet dilationPasses(const Params& p) {
     return d == Dilation::closest3x3 || d == Dilation::closestX ? PassSet(Pass::depth) : PassSet{};
 }
 
-TemporalIn frameView(const Frame& frame, const Rgb& color, Rgb& out) {
+TemporalIn frameView(const Frame& frame, const Rgb& color) {
     TemporalIn in;
     in.color = view(color);
     in.depthView = frame.depthView.empty() ? nullptr : frame.depthView.row(0);
     in.motionXPx = frame.motionXPx.row(0);
     in.motionYPx = frame.motionYPx.row(0);
-    in.out = view(out);
     in.stride = color.stride();
     in.width = frame.width;
     in.height = frame.height;
@@ -100,9 +99,10 @@ float feedbackCeiling(const Params& p, int framesSinceReset) {
 
 }  // namespace temporal
 
-void sharpenEncoded(const Rgb& in, SharpenKernel kernel, const Exec& exec, Rgb& out) {
-    const SharpenArgs args{view(in), view(out), in.stride(), in.width(), kernel == SharpenKernel::xu ? 1.0f : 0.25f};
-    runKernel(temporalKernelsFor(exec.isa).sharpen, exec, args, in.height());
+void sharpenEncoded(const RgbaPlane& blend, SharpenKernel kernel, const Exec& exec, Rgb& out) {
+    const SharpenArgs args{blend.row(0), view(out), blend.stride(), blend.width(),
+                           kernel == SharpenKernel::xu ? 1.0f : 0.25f};
+    runKernel(temporalKernelsFor(exec.isa).sharpen, exec, args, blend.height());
 }
 
 TemporalDebug TemporalDebugLayers::begin(int width, int height) {

@@ -432,7 +432,7 @@ template <class R>
 AA_INLINE void store_blend(const TemporalIn& in, int x, int y, vec3<R> result, R alpha) {
     const long o = long(y) * in.stride + x;
     store_rgba(result, alpha, in.next + 4 * o);
-    store3(result, in.out.c, o);
+    if (in.out.c[0]) store3(result, in.out.c, o);
 }
 // The first frame after a reset: the current colour.
 template <class R>

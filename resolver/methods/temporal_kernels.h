@@ -30,7 +30,7 @@ struct TemporalIn {
     const float *motionXPx = nullptr, *motionYPx = nullptr;  // current - previous, y down
     const float* history = nullptr;  // RGBA, the previous blend; null on the first frame after a reset
     float* next = nullptr;           // RGBA, this frame's blend
-    RgbOut out;                      // this frame's blend again, planar
+    RgbOut out = {};                 // this frame's blend again, planar; null: not wanted
     int stride = 0, width = 0, height = 0;
     float jitterXPx = 0, jitterYPx = 0;
     float feedbackCeiling = 1;  // largest history weight of this frame (warmup=ramp: 1 - 1/(t+1))
@@ -41,7 +41,7 @@ struct TemporalIn {
 };
 
 struct SharpenArgs {
-    RgbIn in;
+    const float* rgba;  // interleaved, border filled
     RgbOut out;
     int stride, width;
     float gain;  // weight of each of the four neighbours: 1 (Xu), 1/4 (normalised)
