@@ -1,6 +1,7 @@
 // One line per method; it then appears in `list`, every property test, sweeps and reports.
 #include "methods/accum.h"
 #include "methods/fxaa.h"
+#include "methods/master.h"
 #include "methods/method.h"
 #include "methods/noaa.h"
 #include "methods/rsaa.h"
@@ -23,6 +24,7 @@ const std::vector<MethodDescriptor>& registry() {
         unchartedDescriptor(),
         unchartedNormDescriptor(),
         unchartedNoSharpenDescriptor(),
+        masterDescriptor(),
     };
     return methods;
 }

@@ -53,6 +53,9 @@ TemporalIn frameView(const Frame& frame, const Rgb& color);
 float feedbackCeiling(const Params& p, int framesSinceReset);
 }  // namespace temporal
 
+// From frame.camera and frame.previousCamera; unknown without both, after a reset, and for other projections.
+ExpectedDepth expectedDepth(const Frame& frame);
+
 // Sharpened copy of a display-encoded blend (methods/06 s.6.10); never fed back. `kernel` is not none.
 void sharpenEncoded(const RgbaPlane& blend, SharpenKernel kernel, const Exec& exec, Rgb& out);
 

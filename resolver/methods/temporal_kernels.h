@@ -13,6 +13,13 @@ enum class SharpenKernel { none, xu, norm };                     // methods/06 s
 // Why a pixel's history was not used; 0 = it was. The numbers are those of the debug layer "validity".
 enum class Rejection { none = 0, outside = 1, disoccluded = 2, magnified = 3, otherObject = 4, firstFrame = 5 };
 
+// Previous view depth of a static surface point seen at pixel position p with depth z: z * (perDepth . (p, 1)) +
+// constant . (p, 1), from the two cameras. Not known: the depth is taken as unchanged.
+struct ExpectedDepth {
+    bool known = false;
+    float perDepth[3] = {0, 0, 1}, constant[3] = {0, 0, 0};
+};
+
 // Intermediates for --debug-layers; null pointers are not written.
 struct TemporalDebug {
     float *motionXPx = nullptr, *motionYPx = nullptr;  // after dilation
