@@ -1,24 +1,9 @@
 #include "image/colour_kernels.h"
-#include "kernels/lanes.h"
+#include "kernels/srgb.h"
 
 namespace AA_ARCH {
 using namespace aa;
 
-// IEC 61966-2-1. c^(1/2.4) = c^(5/12) = sqrt(sqrt(c)) * cbrt(sqrt(c)).
-template <class R>
-AA_INLINE R srgb_encode(R c) {
-    using T = Elem<R>;
-    const R s = sqrt(max(c, R(T(1e-12))));
-    const R curved = R(T(1.055)) * (sqrt(s) * cbrt_positive(s)) - R(T(0.055));
-    return min(select(c <= R(T(0.0031308)), c * R(T(12.92)), curved), R(T(1)));
-}
-// c^2.4 = c^2 * (c^(1/5))^2.
-template <class R>
-AA_INLINE R srgb_decode(R e) {
-    using T = Elem<R>;
-    const R b = max((e + R(T(0.055))) / R(T(1.055)), R(T(1e-12))), f = fifth_root_positive(b);
-    return select(e <= R(T(0.04045)), e / R(T(12.92)), b * b * (f * f));
-}
 template <class R>
 AA_INLINE R tone_map(R x, int kind) {
     using T = Elem<R>;

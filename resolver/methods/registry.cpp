@@ -3,6 +3,7 @@
 #include "methods/dmsaa.h"
 #include "methods/fxaa.h"
 #include "methods/gbaa.h"
+#include "methods/master.h"
 #include "methods/method.h"
 #include "methods/msaa.h"
 #include "methods/noaa.h"
@@ -35,6 +36,7 @@ const std::vector<MethodDescriptor>& registry() {
         unchartedDescriptor(),
         unchartedNormDescriptor(),
         unchartedNoSharpenDescriptor(),
+        masterDescriptor(),
     };
     return methods;
 }

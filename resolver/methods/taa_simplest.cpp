@@ -11,7 +11,8 @@ class TaaSimplest : public Method {
     explicit TaaSimplest(const Params& params) : params_(params) {}
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
-        TaaSimplestArgs args{temporal::frameView(frame, frame.colorLinear, out), params_.realf("k")};
+        TaaSimplestArgs args{temporal::frameView(frame, frame.colorLinear), params_.realf("k")};
+        args.in.out = view(out);
         history_.begin(frame, "taaSimplest", args.in);
         args.in.feedbackCeiling = temporal::feedbackCeiling(params_, history_.framesSinceReset());
         args.in.filter = temporal::historyFilter(params_);

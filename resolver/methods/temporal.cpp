@@ -79,13 +79,12 @@ PassSet dilationPasses(const Params& p) {
     return d == Dilation::closest3x3 || d == Dilation::closestX ? PassSet(Pass::depth) : PassSet{};
 }
 
-TemporalIn frameView(const Frame& frame, const Rgb& color, Rgb& out) {
+TemporalIn frameView(const Frame& frame, const Rgb& color) {
     TemporalIn in;
     in.color = view(color);
     in.depthView = frame.depthView.empty() ? nullptr : frame.depthView.row(0);
     in.motionXPx = frame.motionXPx.row(0);
     in.motionYPx = frame.motionYPx.row(0);
-    in.out = view(out);
     in.stride = color.stride();
     in.width = frame.width;
     in.height = frame.height;
@@ -100,9 +99,40 @@ float feedbackCeiling(const Params& p, int framesSinceReset) {
 
 }  // namespace temporal
 
-void sharpenEncoded(const Rgb& in, SharpenKernel kernel, const Exec& exec, Rgb& out) {
-    const SharpenArgs args{view(in), view(out), in.stride(), in.width(), kernel == SharpenKernel::xu ? 1.0f : 0.25f};
-    runKernel(temporalKernelsFor(exec.isa).sharpen, exec, args, in.height());
+ExpectedDepth expectedDepth(const Frame& frame) {
+    ExpectedDepth e;
+    if (!frame.camera || !frame.previousCamera || frame.reset) return e;
+    const Camera &now = *frame.camera, &before = *frame.previousCamera;
+    const bool perspective = now.kind == "perspective";
+    if (now.kind != before.kind || (!perspective && now.kind != "orthographic")) return e;
+    // View position of the sample at pixel position p: clip x = P00 X + P20 Z + P30, and w = -Z or 1. The sample lies
+    // at p + jitter. Z = -depth.
+    const glm::dmat4& P = now.projection;
+    const glm::dmat4 toPrevious = before.view * glm::inverse(now.view);
+    const double ndc[2][3] = {{2.0 / frame.width, 0, 2.0 * frame.jitterPx.x / frame.width - 1},
+                              {0, -2.0 / frame.height, 1 - 2.0 * frame.jitterPx.y / frame.height}};
+    // Row vectors over (p.x, p.y, 1): X = depth * perDepth + constant.
+    glm::dvec3 perDepth[2], constant[2];
+    for (int i = 0; i < 2; i++) {
+        const double scale = P[i][i];
+        if (scale == 0) return e;
+        const glm::dvec3 n(ndc[i][0], ndc[i][1], ndc[i][2]), unit(0, 0, 1);
+        perDepth[i] = (perspective ? n + unit * P[2][i] : unit * P[2][i]) / scale;
+        constant[i] = (perspective ? unit * -P[3][i] : n - unit * P[3][i]) / scale;
+    }
+    // Previous depth = -(row 2 of toPrevious) . (X, Y, -depth, 1).
+    const double rx = toPrevious[0][2], ry = toPrevious[1][2], rz = toPrevious[2][2], rw = toPrevious[3][2];
+    const glm::dvec3 d = -(rx * perDepth[0] + ry * perDepth[1]) + glm::dvec3(0, 0, rz);
+    const glm::dvec3 c = -(rx * constant[0] + ry * constant[1]) - glm::dvec3(0, 0, rw);
+    e.known = true;
+    for (int i = 0; i < 3; i++) e.perDepth[i] = float(d[i]), e.constant[i] = float(c[i]);
+    return e;
+}
+
+void sharpenEncoded(const RgbaPlane& blend, SharpenKernel kernel, const Exec& exec, Rgb& out) {
+    const SharpenArgs args{blend.row(0), view(out), blend.stride(), blend.width(),
+                           kernel == SharpenKernel::xu ? 1.0f : 0.25f};
+    runKernel(temporalKernelsFor(exec.isa).sharpen, exec, args, blend.height());
 }
 
 TemporalDebug TemporalDebugLayers::begin(int width, int height) {

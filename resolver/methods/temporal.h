@@ -47,14 +47,17 @@ ClipTarget clipTarget(const Params& p);
 PassSet dilationPasses(const Params& p);
 
 // The members of TemporalIn that come from the frame alone; `color` in the method's working space.
-TemporalIn frameView(const Frame& frame, const Rgb& color, Rgb& out);
+TemporalIn frameView(const Frame& frame, const Rgb& color);
 // Largest weight that history may have in the frame t after a reset: warmup=ramp gives each of the first frames the
 // weight 1/(t+1), as a running mean.
 float feedbackCeiling(const Params& p, int framesSinceReset);
 }  // namespace temporal
 
-// Sharpening of a display-encoded image (methods/06 s.6.10); never fed back.
-void sharpenEncoded(const Rgb& in, SharpenKernel kernel, const Exec& exec, Rgb& out);
+// From frame.camera and frame.previousCamera; unknown without both, after a reset, and for other projections.
+ExpectedDepth expectedDepth(const Frame& frame);
+
+// Sharpened copy of a display-encoded blend (methods/06 s.6.10); never fed back. `kernel` is not none.
+void sharpenEncoded(const RgbaPlane& blend, SharpenKernel kernel, const Exec& exec, Rgb& out);
 
 // Planes behind TemporalDebug and their names.
 class TemporalDebugLayers {

@@ -117,6 +117,23 @@ AA_INLINE vec3<R> clamp3(vec3<R> c, vec3<R> lo, vec3<R> hi) {
     return min(max(c, lo), hi);
 }
 
+// Y, Co, Cg (methods/00 s.4). The inverse does not clamp.
+template <class R>
+AA_INLINE vec3<R> to_ycocg(vec3<R> c) {
+    using T = Elem<R>;
+    const R half(T(0.5)), quarter(T(0.25)), rb = (c.x + c.z) * quarter;
+    return {rb + c.y * half, (c.x - c.z) * half, c.y * half - rb};
+}
+template <class R>
+AA_INLINE vec3<R> from_ycocg(vec3<R> c) {
+    const R t = c.x - c.z;
+    return {t + c.y, c.x + c.z, t - c.y};
+}
+template <class R>
+AA_INLINE R luminance(vec3<R> c, bool bt601) {
+    return bt601 ? luma601(c) : luma709(c);
+}
+
 // ---- B1 reprojection ------------------------------------------------------------------------------------------------
 // q = p - motion, as displacement from p: whole texels and fraction in [0,1).
 template <class R>
@@ -249,6 +266,35 @@ struct UniformFetch {
         return fy == 0 ? top : top + (row(t + stride) - top) * R(fy);
     }
 };
+
+// The pixel that contains q, as offset from (x, y): for values that must not be interpolated (depth, ids, counts).
+template <class R>
+AA_INLINE void nearest_offsets(const Reprojection<R>& q, int stride, int* k) {
+    const R half(Elem<R>(0.5)), zero(Elem<R>(0)), one(Elem<R>(1));
+    const Reprojection<R> n{q.wholeX + select(q.fracX >= half, one, zero), q.wholeY + select(q.fracY >= half, one, zero),
+                            zero, zero, q.inside};
+    texel_offsets(n, stride, k);
+}
+template <class R>
+AA_INLINE R gather(const float* p, const int* k) {
+    if constexpr (N<R> == 1)
+        return R(p[k[0]]);
+    else {
+        R r;
+        for (int i = 0; i < N<R>; i++) r.v[i] = p[k[i]];
+        return r;
+    }
+}
+// Depth that the surface at (x, y) had in the previous camera, if it did not move by itself (TemporalIn::expectedDepth).
+template <class R>
+AA_INLINE R expected_previous_depth(const ExpectedDepth& e, R depthView, int x, int y) {
+    using T = Elem<R>;
+    if (!e.known) return depthView;
+    const R px = R(T(x) + T(0.5)) + iota<R>(), py(T(y) + T(0.5));
+    const R perDepth = px * R(T(e.perDepth[0])) + py * R(T(e.perDepth[1])) + R(T(e.perDepth[2]));
+    const R constant = px * R(T(e.constant[0])) + py * R(T(e.constant[1])) + R(T(e.constant[2]));
+    return select(depthView >= R(T(1e9)), depthView, depthView * perDepth + constant);
+}
 
 // ---- B2 dilation ----------------------------------------------------------------------------------------------------
 template <class R>
@@ -432,15 +478,15 @@ template <class R>
 AA_INLINE void store_blend(const TemporalIn& in, int x, int y, vec3<R> result, R alpha) {
     const long o = long(y) * in.stride + x;
     store_rgba(result, alpha, in.next + 4 * o);
-    store3(result, in.out.c, o);
+    if (in.out.c[0]) store3(result, in.out.c, o);
 }
 // The first frame after a reset: the current colour.
 template <class R>
-AA_INLINE void store_first(const TemporalIn& in, int x, int y) {
+AA_INLINE void store_first(const TemporalIn& in, int x, int y, R alpha = R(Elem<R>(1))) {
     const long o = long(y) * in.stride + x;
-    const R zero(Elem<R>(0)), one(Elem<R>(1));
+    const R zero(Elem<R>(0));
     const vec3<R> current = load3<R>(in.color.c, o);
-    store_blend(in, x, y, sanitised(current, current, vec3<R>(zero)), one);
+    store_blend(in, x, y, sanitised(current, current, vec3<R>(zero)), alpha);
     if (!in.debug.rejection) return;
     const Motion<R> motion = load_motion<R>(in, o);
     store(motion.x, in.debug.motionXPx + o), store(motion.y, in.debug.motionYPx + o);

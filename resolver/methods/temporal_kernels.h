@@ -13,6 +13,13 @@ enum class SharpenKernel { none, xu, norm };                     // methods/06 s
 // Why a pixel's history was not used; 0 = it was. The numbers are those of the debug layer "validity".
 enum class Rejection { none = 0, outside = 1, disoccluded = 2, magnified = 3, otherObject = 4, firstFrame = 5 };
 
+// Previous view depth of a static surface point seen at pixel position p with depth z: z * (perDepth . (p, 1)) +
+// constant . (p, 1), from the two cameras. Not known: the depth is taken as unchanged.
+struct ExpectedDepth {
+    bool known = false;
+    float perDepth[3] = {0, 0, 1}, constant[3] = {0, 0, 0};
+};
+
 // Intermediates for --debug-layers; null pointers are not written.
 struct TemporalDebug {
     float *motionXPx = nullptr, *motionYPx = nullptr;  // after dilation
@@ -30,7 +37,7 @@ struct TemporalIn {
     const float *motionXPx = nullptr, *motionYPx = nullptr;  // current - previous, y down
     const float* history = nullptr;  // RGBA, the previous blend; null on the first frame after a reset
     float* next = nullptr;           // RGBA, this frame's blend
-    RgbOut out;                      // this frame's blend again, planar
+    RgbOut out = {};                 // this frame's blend again, planar; null: not wanted
     int stride = 0, width = 0, height = 0;
     float jitterXPx = 0, jitterYPx = 0;
     float feedbackCeiling = 1;  // largest history weight of this frame (warmup=ramp: 1 - 1/(t+1))
@@ -41,7 +48,7 @@ struct TemporalIn {
 };
 
 struct SharpenArgs {
-    RgbIn in;
+    const float* rgba;  // interleaved, border filled
     RgbOut out;
     int stride, width;
     float gain;  // weight of each of the four neighbours: 1 (Xu), 1/4 (normalised)

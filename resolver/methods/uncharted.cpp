@@ -12,13 +12,9 @@ class Uncharted : public Method {
         : params_(params), sharpen_(SharpenKernel(params.choiceIndex("sharpen"))) {}
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
-        const bool sharpens = sharpen_ != SharpenKernel::none;
-        if (sharpens && (blend_.width() != frame.width || blend_.height() != frame.height))
-            blend_ = Rgb(frame.width, frame.height);
-        Rgb& blend = sharpens ? blend_ : out;
-
-        UnchartedArgs args{temporal::frameView(frame, frame.colorEncoded, blend), params_.realf("kmin"),
-                           params_.realf("kmax"), temporal::neighbourhood(params_), temporal::clipTarget(params_)};
+        UnchartedArgs args{temporal::frameView(frame, frame.colorEncoded), params_.realf("kmin"), params_.realf("kmax"),
+                           temporal::neighbourhood(params_), temporal::clipTarget(params_)};
+        if (sharpen_ == SharpenKernel::none) args.in.out = view(out);
         history_.begin(frame, "uncharted", args.in);
         args.in.feedbackCeiling = temporal::feedbackCeiling(params_, history_.framesSinceReset());
         args.in.dilation = temporal::dilation(params_);
@@ -26,19 +22,15 @@ class Uncharted : public Method {
         if (keepDebugLayers) args.in.debug = debug_.begin(frame.width, frame.height);
         runKernel(unchartedKernelsFor(exec.isa).resolve, exec, args, frame.height);
         history_.end();
-        if (sharpens) {
-            blend_.fillBorder();
-            sharpenEncoded(blend_, sharpen_, exec, out);
-        }
+        if (sharpen_ != SharpenKernel::none) sharpenEncoded(history_.latest(), sharpen_, exec, out);
     }
-    size_t stateBytes() const override { return history_.bytes() + blend_.bytes(); }
+    size_t stateBytes() const override { return history_.bytes(); }
     std::vector<DebugLayer> debugLayers() const override { return debug_.layers(); }
 
   private:
     Params params_;
     SharpenKernel sharpen_;
     ColourHistory history_;
-    Rgb blend_;  // before sharpening
     TemporalDebugLayers debug_;
 };
 

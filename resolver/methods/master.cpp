@@ -1,0 +1,174 @@
+#include "methods/master.h"
+
+#include "methods/master_kernels.h"
+#include "methods/temporal.h"
+
+namespace aa {
+namespace {
+
+class Master : public Method {
+  public:
+    explicit Master(const Params& params) : params_(params), sharpen_(SharpenKernel(params.choiceIndex("sharpen"))) {}
+
+    void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
+        const Params& p = params_;
+        const bool bt601 = p.choice("luminance") == "bt601";
+        TemporalIn in = temporal::frameView(frame, frame.colorEncoded);
+        if (sharpen_ == SharpenKernel::none) in.out = view(out);
+        history_.begin(frame, "master", in);
+        in.feedbackCeiling = temporal::feedbackCeiling(p, history_.framesSinceReset());
+        in.dilation = temporal::dilation(p);
+        in.filter = temporal::historyFilter(p);
+        if (keepDebugLayers) in.debug = debug_.begin(frame.width, frame.height);
+        fit(frame.width, frame.height);
+        const float farDepth = farDepthOf(frame);
+        const MasterKernels& kernels = masterKernelsFor(exec.isa);
+
+        // S: one Sobel value per pixel.
+        const bool sobel = p.flag("sobel");
+        PlaneF* filtered = &sobel_;
+        if (sobel) {
+            MasterLuminanceArgs l{view(frame.albedoLinear), view(frame.colorEncoded), past_.c[0].row(0),
+                                  past_.c[1].row(0),        in.stride,                in.width,
+                                  bt601};
+            runKernel(kernels.luminance, exec, l, in.height);
+            for (size_t c = 0; c < 2; c++) past_.c[c].fillBorder();
+            const float depthScale = p.choice("sobelDepth") == "zfar" ? 1.0f / farDepth : 1.0f;
+            MasterSobelArgs s{l.luminanceAlbedo, l.luminanceLit, in.depthView,  sobel_.row(0), in.stride,
+                              in.width,          p.realf("wU"),  p.realf("wL"), depthScale,    farDepth};
+            runKernel(kernels.sobel, exec, s, in.height);
+            sobel_.fillBorder();
+        }
+        // T: its past, and the past of colour and depth.
+        if (in.history) {
+            MasterPastArgs t{in,
+                             sobel_.row(0),
+                             previousDepth_.row(0),
+                             filtered_.row(0),
+                             {past_.c[0].row(0), past_.c[1].row(0), past_.c[2].row(0)},
+                             pastDepth_.row(0),
+                             p.realf("kmin"),
+                             p.realf("kmax"),
+                             p.flag("sobelTemporal"),
+                             p.choice("pastDepth") == "samePixel"};
+            runKernel(kernels.past, exec, t, in.height);
+            filtered_.fillBorder();
+            filtered = &filtered_;
+        }
+        MasterArgs m{};
+        m.in = in;
+        m.sobelFiltered = filtered->row(0);
+        m.objectId = frame.objectId.row(0);
+        for (size_t c = 0; c < 3; c++) m.pastColor[c] = past_.c[c].row(0);
+        m.pastDepth = pastDepth_.row(0);
+        m.expected = expectedDepth(frame);
+        m.kMin = p.realf("kmin"), m.kMax = p.realf("kmax");
+        m.farDepth = farDepth;
+        m.depthThreshold = p.realf("depthThreshold");
+        m.minAlias = p.realf("minAlias");
+        m.clipTarget = temporal::clipTarget(p);
+        m.relativeThreshold = p.flag("relativeThreshold");
+        m.compensate = p.flag("compensate");
+        m.useModel = p.flag("model"), m.useDepth = p.flag("depth"), m.useDepthTemporal = p.flag("depthTemporal");
+        m.useSobel = sobel;
+        if (keepDebugLayers) {
+            terms_.resize(5);
+            for (auto& plane : terms_)
+                if (plane.width() != frame.width || plane.height() != frame.height)
+                    plane = PlaneF(frame.width, frame.height);
+            m.debugAliased = terms_[0].row(0), m.debugSobel = terms_[1].row(0), m.debugModel = terms_[2].row(0);
+            m.debugDepth = terms_[3].row(0), m.debugDepthTemporal = terms_[4].row(0);
+        }
+        runKernel(kernels.resolve, exec, m, in.height);
+        history_.end();
+        previousDepth_ = frame.depthView;
+        if (sharpen_ != SharpenKernel::none) sharpenEncoded(history_.latest(), sharpen_, exec, out);
+    }
+    size_t stateBytes() const override {
+        return history_.bytes() + past_.bytes() + sobel_.bytes() + filtered_.bytes() + pastDepth_.bytes() +
+               previousDepth_.bytes();
+    }
+    std::vector<DebugLayer> debugLayers() const override {
+        std::vector<DebugLayer> layers = debug_.layers();
+        const char* const names[] = {"aliasedValue", "sobelAverage", "modelAverage", "depthPseudoVariance",
+                                     "depthTemporalPseudoVariance"};
+        for (size_t i = 0; i < terms_.size(); i++) layers.push_back({names[i], {terms_[i]}});
+        return layers;
+    }
+
+  private:
+    void fit(int width, int height) {
+        if (sobel_.width() == width && sobel_.height() == height) return;
+        past_ = Rgb(width, height);
+        for (PlaneF* p : {&sobel_, &filtered_, &pastDepth_}) *p = PlaneF(width, height);
+    }
+    // The camera's far plane, or the largest depth that is not background.
+    static float farDepthOf(const Frame& frame) {
+        if (frame.camera && frame.camera->farClip > 0) return float(frame.camera->farClip);
+        float farthest = 0;
+        for (int y = 0; y < frame.height; y++) {
+            const float* row = frame.depthView.row(y);
+            for (int x = 0; x < frame.width; x++)
+                if (row[x] < 1e9f) farthest = std::max(farthest, row[x]);
+        }
+        return farthest > 0 ? farthest : 1.0f;
+    }
+
+    Params params_;
+    SharpenKernel sharpen_;
+    ColourHistory history_;
+    PlaneF previousDepth_;
+    // Scratch of one frame. past_ holds the luminances of pass S, then the reprojected history.
+    Rgb past_;
+    PlaneF sobel_, filtered_, pastDepth_;
+    TemporalDebugLayers debug_;
+    std::vector<PlaneF> terms_;
+};
+}  // namespace
+
+MethodDescriptor masterDescriptor() {
+    return {
+        .id = "master",
+        .title = "Sobel-improved TAA",
+        .family = "temporal",
+        .summary = "Uncharted TAA whose colour box opens only where Sobel, depth and object ids say that a pixel is aliased.",
+        .source = "seed 000 s.4.3 (Oliveros 2018); methods/06 s.6.5",
+        .passes = Pass::color | Pass::albedo | Pass::depth | Pass::object | Pass::motion,
+        .input = Space::encoded,
+        .output = Space::encoded,
+        .temporal = true,
+        .params = {temporal::kMinParam("0.88", "methods/11 nr 5"), temporal::kMaxParam("0.97", "methods/11 nr 5"),
+                   temporal::sharpenParam("norm", "seed 000 eq 4.17"),
+                   flagParam("model", true, "use the share of neighbours with another object id", "seed 000 eq 4.1"),
+                   flagParam("depth", true, "use the depth pseudo-variance", "seed 000 eq 4.5"),
+                   flagParam("depthTemporal", true, "use the temporal depth pseudo-variance", "seed 000 eq 4.6"),
+                   flagParam("sobel", true, "use the Sobel value", "seed 000 eq 4.10"),
+                   flagParam("sobelTemporal", true, "filter the Sobel value over time", "seed 000 s.4.3.3", "sobel=on"),
+                   realParam("wU", "0.3", 0, 10, "weight of the albedo's Sobel magnitude", "seed 000 eq 4.9", "sobel=on"),
+                   realParam("wL", "0.7", 0, 10, "weight of the lit colour's Sobel magnitude", "seed 000 eq 4.9",
+                             "sobel=on"),
+                   choiceParam("sobelDepth", "zfar", {"zfar", "world"},
+                               "unit of the depth under Sobel: share of the far plane, or scene units", "methods/11 nr 9",
+                               "sobel=on"),
+                   choiceParam("luminance", "bt709", {"bt709", "bt601"}, "luminance under Sobel, of encoded colour",
+                               "methods/11 nr 9", "sobel=on"),
+                   realParam("depthThreshold", "0.002", 0, 1e6, "least depth difference that is an edge, scene units",
+                             "seed 000 s.4.3.2"),
+                   flagParam("relativeThreshold", false, "depthThreshold times the mean depth, if that exceeds 1",
+                             "methods/06 s.6.5 (ours)"),
+                   choiceParam("pastDepth", "reprojected", {"reprojected", "samePixel"},
+                               "where the depth of the last frame is read", "methods/11 nr 8", "depthTemporal=on"),
+                   flagParam("compensate", false, "subtract the depth change that the camera alone makes",
+                             "methods/11 nr 8 (recommended; off as printed)", "depthTemporal=on"),
+                   realParam("minAlias", "0", 0, 1, "floor of aliasedValue; 0 lets flat interiors keep the jitter",
+                             "methods/06 s.6.5 (ours)"),
+                   temporal::clipTargetParam("aabbCentre", "methods/11 nr 6"),
+                   temporal::dilationParam("closest3x3", "seed 000 s.3.6.2"),
+                   temporal::historyFilterParam("bilinear", "methods/06 B1"), temporal::warmupParam()},
+        .create =
+            [](const Params& p, const ShotInfo&) {
+                temporal::requireOrdered("master", p);
+                return std::make_unique<Master>(p);
+            }};
+}
+}  // namespace aa
