@@ -70,7 +70,8 @@ def _visible_sides(mesh: bpy.types.Mesh, indices: np.ndarray, polygon: np.ndarra
     first, second = order[shared], order[shared + 1]
     one, other = owners[first], owners[second]
     flat = (one == other) | (
-        ((normals[one] * normals[other]).sum(axis=1) > _COPLANAR) & (materials[one] == materials[other])
+        ((normals[one] * normals[other]).sum(axis=1) > _COPLANAR)
+        & (materials[one] == materials[other])
     )
     visible = np.ones(keys.shape, bool)
     visible[first[flat]] = False
@@ -114,7 +115,12 @@ class EdgeFinder:
         matrix = self._to_pixels
         points = corners @ matrix[:, :3].T + matrix[:, 3]  # T x 3 x 3: x w, y w, w
         boxes, kept = self._boxes(points, jitter)
-        points, corners, sides, identities = points[kept], corners[kept], sides[kept], identities[kept]
+        points, corners, sides, identities = (
+            points[kept],
+            corners[kept],
+            sides[kept],
+            identities[kept],
+        )
         lines = np.cross(points, np.roll(points, -1, axis=1))  # side k, through corners k and k + 1
         volume = (points[:, 0] * np.cross(points[:, 1], points[:, 2])).sum(axis=1)
         planes = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -132,7 +138,9 @@ class EdgeFinder:
             position = np.stack([x + 0.5 + jitter[0], y + 0.5 + jitter[1], np.ones(len(x))], axis=1)
             weights = np.einsum("nkc,nc->nk", lines[triangle], position)
             weights *= np.sign(volume[triangle])[:, None]
-            covered = (weights >= -_INSIDE_TOLERANCE * np.abs(weights).sum(axis=1)[:, None]).all(axis=1)
+            covered = (weights >= -_INSIDE_TOLERANCE * np.abs(weights).sum(axis=1)[:, None]).all(
+                axis=1
+            )
             triangle, pixel, position = triangle[covered], pixel[covered], position[covered]
             hit = self._depth(planes[triangle], offsets[triangle], position)
             with np.errstate(invalid="ignore", divide="ignore"):
@@ -156,7 +164,9 @@ class EdgeFinder:
         )
         return result, int(surface.sum() - len(found))
 
-    def _boxes(self, points: np.ndarray, jitter: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
+    def _boxes(
+        self, points: np.ndarray, jitter: tuple[float, float]
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Ranges of pixels (x0, x1, y0, y1; ends excluded) whose samples a triangle may cover, and which do at all.
 
         A triangle that passes the plane of the eye may cover any."""
@@ -166,7 +176,9 @@ class EdgeFinder:
         safe = np.where(w > 1e-6, w, 1.0)
         x, y = points[:, :, 0] / safe, points[:, :, 1] / safe
         boxes = np.empty((len(points), 4), np.int64)
-        for column, (values, shift, size) in enumerate(((x, jitter[0], width), (y, jitter[1], height))):
+        for column, (values, shift, size) in enumerate(
+            ((x, jitter[0], width), (y, jitter[1], height))
+        ):
             first = np.ceil(values.min(axis=1) - 0.5 - shift - 1e-6)
             last = np.floor(values.max(axis=1) - 0.5 - shift + 1e-6) + 1
             boxes[:, 2 * column] = np.where(ahead, np.clip(first, 0, size), 0)
@@ -205,7 +217,9 @@ def _pairs(boxes: np.ndarray, sizes: np.ndarray) -> tuple[np.ndarray, np.ndarray
     return triangle, boxes[triangle, 0] + within % columns, boxes[triangle, 2] + within // columns
 
 
-def _axis_distances(lines: np.ndarray, sides: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+def _axis_distances(
+    lines: np.ndarray, sides: np.ndarray, x: np.ndarray, y: np.ndarray
+) -> np.ndarray:
     """The stored pair of each sample: the smallest axis distance of the sides that count, the first of equals."""
     value = lines[:, :, 0] * x[:, None] + lines[:, :, 1] * y[:, None] + lines[:, :, 2]
     along_x = np.abs(lines[:, :, 0]) > np.abs(lines[:, :, 1])
@@ -225,9 +239,7 @@ def _axis_distances(lines: np.ndarray, sides: np.ndarray, x: np.ndarray, y: np.n
 _SURFACES = ("MESH", "CURVE", "SURFACE", "META", "FONT")
 
 
-def collect(
-    finder: EdgeFinder, depsgraph: bpy.types.Depsgraph, identify, shown: set[int]
-) -> None:
+def collect(finder: EdgeFinder, depsgraph: bpy.types.Depsgraph, identify, shown: set[int]) -> None:
     """Adds everything of the evaluated scene that has triangles and whose id is among ``shown``.
 
     ``identify(instance)`` gives the id of an entry of the depsgraph."""

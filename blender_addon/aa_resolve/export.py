@@ -45,7 +45,7 @@ class Exporter:
         self._cameras: dict[str, cam.JitterCamera] = {}
         self._view_sets: dict[str, subsamples.ViewSet] = {}
         self._states: dict[int, analysis.FrameState] = {}
-        self._static_samples: list[rendering.Layers] | None = None
+        self._static_samples: dict[tuple[bool, bool], list[rendering.Layers]] = {}
         self._seconds: dict[str, list[float]] = {"frames": [], "centre": [], "truth": []}
 
     # --- before the first render ---------------------------------------------------------------------------------
@@ -244,7 +244,7 @@ class Exporter:
         """State of a frame; evaluates it unless it is known."""
         if number not in self._states:
             state = analysis.frame_state(
-                self.scene, number, self.frame, self.cuts, "motion" in self.passes
+                self.scene, number, self.frame, self.cuts, "motion" in self.passes_of["frames"]
             )
             self._states = {key: value for key, value in self._states.items() if key == number - 1}
             self._states[number] = state
@@ -473,15 +473,14 @@ class Exporter:
         wants_color = "subsampleColor" in self.passes
         wants_geometry = "subsamples" in self.passes
         views = self._views(number)
-        renders = self._static_samples
+        renders = self._static_samples.get((wants_color, wants_geometry))
         seconds = 0.0
         if renders is None:
             renders = self._render_samples(views, wants_color, wants_geometry)
             seconds = sum(layers.seconds for layers in renders)
             if self.static:
-                self._static_samples = (
-                    renders  # sub-samples are not jittered: they serve all frames
-                )
+                # Sub-samples are not jittered: they serve all frames.
+                self._static_samples[wants_color, wants_geometry] = renders
         names: list[str] = []
         kinds: list[str] = []
         planes: list[np.ndarray] = []

@@ -38,7 +38,9 @@ class Settings:
     methods: list[str]
     passes: list[str]  # of the jittered frames
     frames: list[int]
-    centre_passes: list[str] = field(default_factory=list)  # of the same instants at the pixel centres
+    centre_passes: list[str] = field(
+        default_factory=list
+    )  # of the same instants at the pixel centres
     name: str = ""
     resolution: tuple[int, int] | None = None
     samples: int = 1
