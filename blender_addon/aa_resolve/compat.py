@@ -25,15 +25,6 @@ PASS_NAMES: dict[str, tuple[str, ...]] = {
 }
 
 
-def oiio_module():
-    """OpenImageIO's Python module, or None where this Blender brings none."""
-    try:
-        import OpenImageIO
-    except ImportError:
-        return None
-    return OpenImageIO
-
-
 def set_if_present(owner, name: str, value) -> bool:
     """Sets a property that only some versions have; True when it exists."""
     if hasattr(owner, name):

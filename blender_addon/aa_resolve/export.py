@@ -362,10 +362,10 @@ class Exporter:
             parts.append(part)
             seconds["subsamples"] = spent
         started = time.perf_counter()
-        exr.write_parts(path, parts)
+        sizes = exr.write_parts(path, parts)
         seconds["write"] = time.perf_counter() - started
         entry["render_seconds"] = {name: round(value, 4) for name, value in seconds.items()}
-        entry["bytes"] = exr.part_bytes(path)
+        entry["bytes"] = sizes
         return {
             "entry": entry,
             "objects": self.ids.names(ids) if ids is not None else {},
@@ -509,16 +509,10 @@ class Exporter:
             if wants_color:
                 color = lighting.compose(self.light, renders, view)
                 names += [f"{view}.R", f"{view}.G", f"{view}.B"]
-                # One part holds integers and floats of 32 bits, or colours of any type.
-                kinds += ["float" if wants_geometry else self.settings.color_type] * 3
+                kinds += [self.settings.color_type] * 3
                 planes += list(np.moveaxis(color[:, :, :3], -1, 0))
-        pixels = np.stack([plane.astype(np.float64) for plane in planes], axis=-1)
-        if len(set(kinds)) == 1:
-            pixels = pixels.astype(np.float32)
-        return (
-            exr.Part("subsamples", tuple(names), tuple(kinds), pixels, self.settings.compression),
-            seconds,
-        )
+        part = exr.Part("subsamples", tuple(names), tuple(kinds), planes, self.settings.compression)
+        return part, seconds
 
     def _export_truth(self, number: int, path: str) -> dict:
         self._go_to(number)
@@ -534,8 +528,7 @@ class Exporter:
             parts.append(
                 exr.Part(half, ("R", "G", "B"), ("float",) * 3, color, self.settings.compression)
             )
-        exr.write_parts(path, parts)
-        sizes = exr.part_bytes(path)
+        sizes = exr.write_parts(path, parts)
         return {
             "render_seconds": {"truth": round(seconds, 4)},
             "bytes": {"truth": sum(sizes.values())},

@@ -25,7 +25,7 @@ if __package__ in (None, ""):
 
     __package__ = "aa_resolve"
 
-from . import ADDON_VERSION, jitter, lighting, registry  # noqa: E402
+from . import ADDON_VERSION, exr, jitter, lighting, registry  # noqa: E402
 from .errors import Cancelled, SceneError, UsageError  # noqa: E402
 from .export import Exporter  # noqa: E402
 from .report import Reporter  # noqa: E402
@@ -134,7 +134,7 @@ def build_parser() -> argparse.ArgumentParser:
     )
     add(
         "--compression",
-        choices=("zip", "zips", "none", "piz", "rle"),
+        choices=tuple(exr.COMPRESSIONS),
         default="zip",
         help="of every part (zip)",
     )

@@ -204,7 +204,7 @@ def test_cutouts_use_real_materials() -> None:
 
 
 def test_uint_channels_are_exact() -> None:
-    """Ids share a part with floats; every 32-bit value survives the way through OpenImageIO."""
+    """Ids share a part with floats; every 32-bit value survives, and OpenImageIO reads what this package writes."""
     from aa_resolve import exr
 
     values = np.array(
@@ -218,14 +218,36 @@ def test_uint_channels_are_exact() -> None:
         [[0.1, 1e10, -1.5, 1e-30], [3.0, 7.0, 0.3, 1 / 3], [1e5, -1e10, 2.5, 65504.0]], np.float32
     )
     path = os.path.join(t.temporary_folder(), "mixed.exr")
-    pixels = np.stack([values.astype(np.float64), floats.astype(np.float64)], -1)
-    exr.write_parts(path, [exr.Part("p", ("id", "Z"), ("uint", "float"), pixels)])
-    back = t.read_part(path, "p")
-    assert np.array_equal(back["id"], values.astype(np.uint32)) and np.array_equal(
-        back["Z"], floats
-    )
-    sizes = exr.part_bytes(path)
-    assert sizes.keys() == {"p"} and 0 < sizes["p"] <= os.path.getsize(path)
+    halves = np.array([[0.1, 2.0, -3.0, 0.0]] * 3, np.float16)
+    noise = np.random.default_rng(1).integers(0, 1 << 32, (37, 5), np.uint32)
+    square = np.add.outer(np.arange(37), np.arange(5)).astype(np.float32) / 3
+    for compression in exr.COMPRESSIONS:
+        small = [
+            exr.Part(
+                "mixed",
+                ("id", "Z", "A"),
+                ("uint", "float", "half"),
+                [values, floats, halves],
+                compression,
+            ),
+            exr.Part(
+                "flat", ("Y", "X"), ("float", "float"), np.ones((3, 4, 2), np.float32), compression
+            ),
+        ]
+        large = [
+            exr.Part("noise", ("n",), ("uint",), noise[:, :, None], compression),
+            exr.Part("both", ("b", "a"), ("float", "uint"), [square, noise], compression),
+        ]
+        for chosen in (small, large, small[:1], large[:1]):
+            sizes = exr.write_parts(path, chosen)
+            assert t.part_names(path) == [part.name for part in chosen] == list(sizes), compression
+            assert sum(sizes.values()) < os.path.getsize(path)
+            for part in chosen:
+                back = t.read_part(path, part.name)  # by OpenImageIO
+                for name, plane in zip(part.channels, part.planes()):
+                    assert np.array_equal(back[name], plane), (compression, part.name, name)
+        own = exr.read_channels(path)
+        assert np.array_equal(own["n"], noise.astype(np.float32)), compression
 
 
 if __name__ == "__main__":
