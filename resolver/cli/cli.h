@@ -29,6 +29,7 @@ void withThreads(int threads, const std::function<void()>& body);
 void addList(CLI::App& app, Context& context);
 void addPlan(CLI::App& app, Context& context);
 void addRun(CLI::App& app, Context& context);
+void addBench(CLI::App& app, Context& context);
 void addFilter(CLI::App& app, Context& context);
 void addSheet(CLI::App& app, Context& context);
 void addCompare(CLI::App& app, Context& context);
