@@ -202,8 +202,8 @@ class Exporter:
         return summary
 
     def seconds_of(self, kind: str) -> float:
-        """Seconds of the last picture of a kind (``frames``, ``truth``)."""
-        return self._seconds[kind][-1]
+        """Seconds of the last picture of a kind (``frames``, ``centre``, ``truth``); 0 where there was none."""
+        return self._seconds[kind][-1] if self._seconds[kind] else 0.0
 
     def _truth_frames(self) -> set[int]:
         settings = self.settings

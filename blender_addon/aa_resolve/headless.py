@@ -280,14 +280,16 @@ def _estimate(scene: bpy.types.Scene, settings: Settings, reporter: Reporter) ->
         store.open(probe.fingerprint(), False)
         exporter.run(store)
         frame_seconds, truth_seconds = exporter.seconds_of("frames"), exporter.seconds_of("truth")
+        centre_seconds = exporter.seconds_of("centre")
         size = os.path.getsize(os.path.join(probe.out, store.picture("frames", frames[0])))
     truths = 0 if truth == "none" else 1 if exporter.static else len(truth)
+    centres = 1 if exporter.static else len(frames)
     per_truth = truth_seconds * settings.truth_samples / probe.truth_samples
-    total = frame_seconds * len(frames) + per_truth * truths
+    total = frame_seconds * len(frames) + centre_seconds * centres + per_truth * truths
     reporter.say(
         "estimate",
-        f"about {_duration(total)}: {len(frames)} frames of {frame_seconds:.2g} s, {truths} truths of "
-        f"{per_truth:.2g} s, {size * len(frames) / 1e6:.0f} MB",
+        f"about {_duration(total)}: {len(frames)} frames of {frame_seconds + centre_seconds:.2g} s, "
+        f"{truths} truths of {per_truth:.2g} s, {size * len(frames) / 1e6:.0f} MB",
         seconds=round(total, 1),
         frame_seconds=round(frame_seconds, 3),
         truth_seconds=round(per_truth, 3),

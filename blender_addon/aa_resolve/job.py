@@ -102,7 +102,7 @@ class Job:
         except ValueError:
             return
         kind = event.get("event")
-        if kind in ("frame", "truth"):
+        if kind in ("frame", "centre", "truth"):
             self.done += 1
             self.total = self.done + event["remaining"]
         if kind == "estimate":

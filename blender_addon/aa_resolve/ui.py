@@ -173,11 +173,14 @@ class AAResolveSettings(bpy.types.PropertyGroup):
             else (self.first, self.last)
         )
         methods = self.chosen()
+        choices = [registry.MethodChoice(name) for name in methods]
         options = ["--out", out, "--frames", f"{first}-{last}", "--for", ",".join(methods)]
         options += ["--samples", str(self.samples), "--truth-samples", str(self.truth_samples)]
         middle = (first + last) // 2
         truth = {"ALL": "all", "NONE": "none", "ENDS": f"{first},{middle},{last}"}[self.truth]
-        options += ["--truth-frames", truth, "--jitter", self.jitter, "--period", str(self.period)]
+        options += ["--truth-frames", truth]
+        if registry.required_passes(choices, "jittered"):
+            options += ["--jitter", self.jitter, "--period", str(self.period)]
         options += ["--lighting", self.lighting, "--color-type", self.color_type]
         if self.use_resolution:
             options += ["--resolution", *map(str, self.resolution)]
@@ -536,8 +539,14 @@ class AA_RESOLVE_PT_quality(_Panel, bpy.types.Panel):
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        for name in ("truth", "truth_samples", "samples", "jitter", "period", "lighting"):
+        for name in ("truth", "truth_samples", "samples"):
             layout.prop(settings, name)
+        chosen = [registry.MethodChoice(name) for name in settings.chosen()]
+        column = layout.column()
+        column.enabled = bool(registry.required_passes(chosen, "jittered"))
+        column.prop(settings, "jitter")
+        column.prop(settings, "period")
+        layout.prop(settings, "lighting")
         if settings.lighting == "noise-free":
             layout.prop(settings, "use_ambient")
             if settings.use_ambient:
