@@ -55,11 +55,13 @@ Frames framesFor(const Options& o, const std::vector<MethodSpec>& methods, const
         synth.frames = o.frames;
         synth.subsamples = "d3d8";
         const SynthShot shot(synth);
+        synth.jitter = "none";
+        const SynthShot still(synth);
         r.info = shotInfo(shot.manifest());
         r.info.isStatic = true;  // so that accum is timed as well; no method's speed depends on it
         for (size_t i = 0; i < size_t(o.frames); i++) {
             if (!wanted.empty()) r.jittered.push_back(shot.frame(i));
-            if (!wantedOfCentre.empty()) r.centre.push_back(shot.frame(i, Sampling::centre));
+            if (!wantedOfCentre.empty()) r.centre.push_back(still.frame(i));
         }
     }
     for (auto* frames : {&r.jittered, &r.centre})
