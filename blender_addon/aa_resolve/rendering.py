@@ -15,7 +15,7 @@ import bpy
 import numpy as np
 
 from . import compat, exr
-from .errors import SceneError
+from .errors import Cancelled, SceneError
 
 
 @dataclass
@@ -71,13 +71,23 @@ def render(
     """Renders the scene's current frame with its current settings."""
     path = os.path.join(folder, "native.exr")
     scene.render.filepath = path
+    cancelled: list[bool] = []
+
+    def note_cancel(*_scene) -> None:
+        cancelled.append(True)
+
     started = time.perf_counter()
+    bpy.app.handlers.render_cancel.append(note_cancel)
     try:
         bpy.ops.render.render(write_still=True, scene=scene.name)
     except RuntimeError as error:
         raise SceneError(
             f"Cycles could not render frame {scene.frame_current}: {str(error).strip()}"
         ) from error
+    finally:
+        bpy.app.handlers.render_cancel.remove(note_cancel)
+    if cancelled:  # Ctrl-C; the operator itself calls it finished
+        raise Cancelled("stopped; finished frames are valid, the same command goes on from there")
     if not os.path.exists(path):
         raise SceneError(
             f"Cycles wrote no picture for frame {scene.frame_current}; is the temporary folder full?"

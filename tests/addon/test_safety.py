@@ -9,6 +9,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import support as t  # noqa: E402
@@ -163,6 +164,26 @@ def test_kill_and_resume() -> None:
     assert digest(BLEND) == BEFORE
 
 
+def test_interrupt_stops_cleanly() -> None:
+    """Ctrl-C in the middle of a long truth: exit code 1, one line, no claim left, finished frames valid."""
+    out = os.path.join(FOLDER, "interrupted")
+    process = subprocess.Popen(
+        t.blender_command(BLEND, "--out", out, "--frames", "1-2", "--truth-samples", "100000"),
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    for line in process.stdout:
+        if line.startswith("frame 1"):
+            break
+    time.sleep(1.0)
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    assert (
+        process.returncode == 1 and errors.startswith("error: stopped") and errors.count("\n") == 1
+    ), errors
+    assert not os.listdir(os.path.join(out, ".aa", "claims"))
+    assert [entry["frame"] for entry in t.read_manifest(out)["frames"]] == [1]
+
+
 def test_two_processes_share_a_range() -> None:
     shared, alone = os.path.join(FOLDER, "shared"), os.path.join(FOLDER, "whole")
     options = ("--out", shared, "--frames", "1-4", *COMMON, "--json")
@@ -235,6 +256,7 @@ if __name__ == "__main__":
         test_wrong_usage_is_2_and_one_line,
         test_exit_codes_of_the_process,
         test_kill_and_resume,
+        test_interrupt_stops_cleanly,
         test_two_processes_share_a_range,
         test_foreign_folder_is_left_alone,
         test_scenes_that_are_refused_or_told,
