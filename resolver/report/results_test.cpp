@@ -17,7 +17,7 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 FrameResult frame(int number, double mse, double seconds, double ssim = 0.9) {
     FrameMetrics m;
     m.mse = mse, m.reference = 0.25, m.psnr = psnr(mse), m.snr = snr({mse, 0.25}), m.ssimLuma = ssim;
-    return {number, seconds, m, "noaa/" + std::to_string(number) + ".exr"};
+    return {number, seconds, m, true, "noaa/" + std::to_string(number) + ".exr"};
 }
 RunResults twoMethods() {
     RunResults run;
@@ -31,7 +31,7 @@ RunResults twoMethods() {
     run.sanitised["colourNan"] = 3;
     MethodResult noaa, other;
     noaa.id = noaa.text = noaa.folder = "noaa";
-    noaa.frames = {frame(1, 0.01, 3e-3), frame(2, 0.03, 1e-3), {3, 2e-3, {}, ""}};
+    noaa.frames = {frame(1, 0.01, 3e-3), frame(2, 0.03, 1e-3), {3, 2e-3, {}, true, ""}};
     other.id = "fxaa311", other.text = "fxaa311:preset=12,subpix=0.5", other.folder = "fxaa311_preset=12,subpix=0.5";
     other.parameters["preset"] = "12";
     other.passes = {"color"};
