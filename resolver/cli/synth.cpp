@@ -5,13 +5,16 @@
 #include "cli/cli.h"
 #include "cli/progress.h"
 #include "image/error.h"
+#include "methods/method.h"
 #include "shot/patterns.h"
 
 namespace aa {
 namespace {
 struct Options {
     SynthOptions synth;
-    std::string out, size = "480x270";
+    std::string out;
+    std::vector<std::string> methods;
+    std::vector<int> resolution = {480, 270}, nanPixel;
     int threads = 0;
     bool quiet = false, list = false;
 };
@@ -24,17 +27,29 @@ void printScenes() {
         std::printf("%-16s %s\n", std::string(s.name).c_str(), std::string(s.meaning).c_str());
 }
 
-void parseSize(const std::string& text, SynthOptions& o) {
-    int used = 0;
-    if (std::sscanf(text.c_str(), "%dx%d%n", &o.width, &o.height, &used) != 2 || size_t(used) != text.size())
-        throw UsageError("synth: --size: expected WIDTHxHEIGHT in pixels, found '" + text + "'");
+// The passes that these methods read, from jittered and from centre-sampled frames.
+void planFor(const std::vector<std::string>& methods, SynthOptions& o) {
+    std::vector<MethodSpec> jittered, centre;
+    for (const auto& text : methods) {
+        const MethodSpec spec = parseMethod(text);
+        (spec.method->sampling() == Sampling::centre && o.jitter != "none" ? centre : jittered).push_back(spec);
+    }
+    o.wanted = passesOf(jittered) | Pass::color;
+    o.centreWanted = passesOf(centre);
+    const PassSet all = *o.wanted | *o.centreWanted;
+    const bool colour = all.has(Pass::subsampleColor);
+    if ((colour || all.has(Pass::subsamples)) && o.subsamples.empty()) o.subsamples = "d3d8";
+    o.subsampleColor = o.subsampleColor || colour;
 }
 
 int synth(Options& o) {
     if (o.list) return printScenes(), 0;
     if (o.synth.scene.empty() || o.out.empty())
         throw UsageError("synth: expected NAME -o SHOT; `aaresolve synth --list` shows the names");
-    parseSize(o.size, o.synth);
+    o.synth.width = o.resolution[0];
+    o.synth.height = o.resolution[1];
+    if (!o.nanPixel.empty()) o.synth.nanPixel = glm::ivec2(o.nanPixel[0], o.nanPixel[1]);
+    if (!o.methods.empty()) planFor(o.methods, o.synth);
     Manifest m;
     bool stopped = false;
     withThreads(o.threads, [&] {
@@ -58,7 +73,9 @@ void addSynth(CLI::App& app, Context& context) {
     auto* c = app.add_subcommand("synth", "Analytic shots with exact truth, without Blender");
     c->add_option("NAME", o->synth.scene, "scene; --list shows them");
     c->add_option("-o,--out", o->out, "folder of the shot");
-    c->add_option("--size", o->size, "WIDTHxHEIGHT, px");
+    c->add_option("--resolution", o->resolution, "width and height, px")->expected(2);
+    c->add_option("--for", o->methods, "only the passes that these methods read; all passes without it")
+        ->delimiter(',');
     c->add_option("--frames", o->synth.frames, "number of frames");
     c->add_option("--jitter", o->synth.jitter, "sequence; `none` samples pixel centres");
     c->add_option("--start", o->synth.jitterStart, "index of the first point of halton23; -1 = its own");
@@ -67,9 +84,10 @@ void addSynth(CLI::App& app, Context& context) {
     c->add_option("--subsamples", o->synth.subsamples,
                   "pattern: d3d1, d3d2, d3d4, d3d8, d3d16, grid1..grid8; empty = none");
     c->add_flag("--subsample-color", o->synth.subsampleColor, "colour at the sub-samples, too");
+    c->add_option("--inject-nan", o->nanPixel, "x and y of a NaN in the colour of every frame")->expected(2);
     c->add_option("--seed", o->synth.seed, "of the colours");
     c->add_option("-j,--threads", o->threads, "threads; 0 = all processors")->check(CLI::Range(0, 1024));
-    c->add_flag("--quiet", o->quiet, "no progress");
+    c->add_flag("-q,--quiet", o->quiet, "no progress");
     c->add_flag("--list", o->list, "names of the scenes and jitter sequences");
     c->callback([o, &context] { context.exitCode = synth(*o); });
 }

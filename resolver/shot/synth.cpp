@@ -254,6 +254,8 @@ SynthShot::SynthShot(const SynthOptions& o) {
         f.frame = i + 1;
         f.file = numbered("frames", f.frame);
         f.truth = numbered("truth", m.isStatic ? 1 : f.frame);
+        if (o.jitter != "none" && !(o.centreWanted && o.centreWanted->empty()))
+            f.centre = numbered("centre", m.isStatic ? 1 : f.frame);
         f.reset = i == 0;
         f.jitterPx = jitterPx(jitter, uint64_t(i));
         f.camera = scene_->contents.camera;
@@ -270,7 +272,7 @@ std::function<dvec3(dvec2)> SynthShot::picture(size_t index) const {
     };
 }
 
-Frame SynthShot::frame(size_t index) const {
+Frame SynthShot::frame(size_t index, Sampling sampling) const {
     const FrameEntry& entry = manifest_.frames.at(index);
     const int w = manifest_.width, h = manifest_.height;
     Frame f;
@@ -278,7 +280,7 @@ Frame SynthShot::frame(size_t index) const {
     f.width = w;
     f.height = h;
     f.reset = entry.reset;
-    f.jitterPx = entry.jitterPx;
+    f.jitterPx = sampling == Sampling::centre ? dvec2(0.0) : entry.jitterPx;
     f.camera = entry.camera;
     if (index > 0 && !entry.reset) f.previousCamera = manifest_.frames[index - 1].camera;
     f.passes = passes_;
@@ -365,13 +367,31 @@ Manifest writeSynth(const SynthOptions& options, const std::filesystem::path& fo
     const SynthShot shot(options);
     Manifest m = shot.manifest();
     m.folder = folder;
+    const PassSet wanted = options.wanted.value_or(shot.passes()),
+                  centreWanted = options.centreWanted.value_or(shot.passes());
+    for (const PassSet& p : {wanted, centreWanted})
+        if (const auto missing = names(p.without(shot.passes())); !missing.empty())
+            throw UsageError("synth: scene " + m.name + " has no pass '" + std::string(missing[0]) +
+                             "'; choose another scene");
+    if (const auto at = options.nanPixel; at && !(at->x >= 0 && at->y >= 0 && at->x < m.width && at->y < m.height))
+        throw UsageError("synth: the pixel for the NaN lies outside of the picture");
     makeWritableFolder(folder / "frames");
     makeWritableFolder(folder / "truth");
+    if (!m.frames[0].centre.empty()) makeWritableFolder(folder / "centre");
     // An older manifest would describe the files that now change; the new one comes last.
     std::filesystem::remove(folder / "shot.json");
+    const auto write = [&](const std::string& file, Frame frame, PassSet passes) {
+        frame.passes = passes;
+        if (options.nanPixel)
+            for (auto& plane : frame.colorLinear.c) plane.at(options.nanPixel->x, options.nanPixel->y) = NAN;
+        writeFrame(folder / file, frame, !m.isStatic);
+    };
     for (size_t i = 0; i < m.frames.size(); i++) {
-        writeFrame(folder / m.frames[i].file, shot.frame(i), !m.isStatic);
-        if (i == 0 || !m.isStatic) writeTruth(folder / m.frames[i].truth, shot.truth(i));
+        const bool shared = m.isStatic && i > 0;
+        write(m.frames[i].file, shot.frame(i), wanted);
+        if (!m.frames[i].centre.empty() && !shared)
+            write(m.frames[i].centre, shot.frame(i, Sampling::centre), centreWanted);
+        if (!shared) writeTruth(folder / m.frames[i].truth, shot.truth(i));
         if (goOn && !goOn(m.frames[i])) m.frames.resize(i + 1);
     }
     writeManifest(m);

@@ -28,6 +28,10 @@ struct SynthOptions {
     std::string subsamples;       // pattern name; empty: none
     bool subsampleColor = false;  // colour at the sub-samples, too
     uint32_t seed = 1;            // of the colours
+    // What writeSynth writes of the frames: everything, or what the chosen methods read. An empty centreWanted leaves
+    // the centre-sampled frames out; an unjittered shot needs none in any case.
+    std::optional<PassSet> wanted, centreWanted;
+    std::optional<glm::ivec2> nanPixel;  // a NaN in the written colours of every frame: to see what becomes of it
 };
 
 struct SynthScene {
@@ -62,7 +66,7 @@ class SynthShot {
 
     const Manifest& manifest() const { return manifest_; }
     PassSet passes() const { return passes_; }
-    Frame frame(size_t index) const;
+    Frame frame(size_t index, Sampling sampling = Sampling::jittered) const;
     Truth truth(size_t index) const;
 
     const std::vector<SynthShape>& shapes() const;  // front to back
@@ -76,8 +80,8 @@ class SynthShot {
     std::shared_ptr<const Scene> scene_;
 };
 
-// Writes the shot below `folder` and returns its manifest. A static shot gets one truth. Calls goOn(frame) after each
-// frame; when that returns false the shot ends there, complete in itself.
+// Writes the shot below `folder` and returns its manifest. A static shot gets one truth and one centre-sampled frame.
+// Calls goOn(frame) after each frame; when that returns false the shot ends there, complete in itself.
 Manifest writeSynth(const SynthOptions& options, const std::filesystem::path& folder,
                     const std::function<bool(const FrameEntry&)>& goOn = {});
 

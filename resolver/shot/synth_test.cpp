@@ -238,8 +238,30 @@ TEST(Synth, WrittenShotReadsBackBitForBit) {
         EXPECT_EQ(f.jitterPx, e.jitterPx);
         EXPECT_EQ(f.camera->view, e.camera->view);
         EXPECT_TRUE(reader.readTruth(1)->a.samePixels(shot.truth(1).a));
+        SynthOptions still = o;
+        still.jitter = "none";
+        ASSERT_TRUE(reader.hasCentreFrames());
+        EXPECT_TRUE(reader.readCentre(1, Pass::color).colorLinear.samePixels(SynthShot(still).frame(1).colorLinear));
         std::filesystem::remove_all(folder);
     }
+}
+
+TEST(Synth, WritesOnlyWhatIsWanted) {
+    const auto folder = std::filesystem::path(testing::TempDir()) / "aa_synth_wanted";
+    SynthOptions o = small("moving", 2);
+    o.wanted = Pass::color | Pass::motion;
+    o.centreWanted = PassSet{};
+    o.nanPixel = glm::ivec2(10, 7);
+    writeSynth(o, folder);
+    const ShotReader reader(folder);
+    EXPECT_EQ(reader.offered(), *o.wanted);
+    EXPECT_FALSE(reader.hasCentreFrames());
+    SanitiseCounts counts;
+    reader.read(1, Pass::color, &counts);
+    EXPECT_EQ(counts.colourNan, 3u);
+    o.wanted = Pass::edges;  // a disc has no edges
+    EXPECT_THROW(writeSynth(o, folder), UsageError);
+    std::filesystem::remove_all(folder);
 }
 
 TEST(Synth, WrongOptionsAreUsageErrors) {
