@@ -8,7 +8,9 @@
 #include "methods/msaa.h"
 #include "methods/noaa.h"
 #include "methods/rsaa.h"
+#include "methods/sbaa.h"
 #include "methods/smaa.h"
+#include "methods/sraa.h"
 #include "methods/ssaa.h"
 #include "methods/taa_simplest.h"
 #include "methods/uncharted.h"
@@ -30,6 +32,8 @@ const std::vector<MethodDescriptor>& registry() {
         dmsaaDescriptor(),
         gbaaDescriptor(),
         d2eDescriptor(),
+        sraaDescriptor(),
+        sbaaDescriptor(),
         rsaaDescriptor(),
         // temporal
         taaSimplestDescriptor(),

@@ -1,0 +1,70 @@
+#include "methods/sbaa.h"
+
+#include <gtest/gtest.h>
+
+#include "methods/geometry_test_frames.h"
+
+namespace aa {
+namespace {
+using namespace testing;
+
+const Line kLine{std::cos(0.4), std::sin(0.4), 22.3};
+
+TEST(Sbaa, GainOnHalfPlanesIsThatOfCoverage) {
+    EXPECT_NEAR(halfPlaneGainDb("sbaa", d3dPattern(4)), 8.6, 0.5);
+    EXPECT_NEAR(halfPlaneGainDb("sbaa", d3dPattern(8)), 12.7, 0.5);
+    EXPECT_NEAR(halfPlaneGainDb("sbaa", d3dPattern(16)), 15.0, 0.5);
+}
+// Four surfaces in one pixel: 3 and 2 sub-samples on two near planes, 2 and 1 on a far one and on the background.
+Frame fourSurfaces() {
+    const TestScene scene{{{{0, 0, 1}, -4, glm::vec3(1.0f), 1},
+                           {{std::sqrt(0.5), 0, std::sqrt(0.5)}, -3, glm::vec3(8.0f), 1},
+                           {{0, 0, 1}, -9, glm::vec3(64.0f), 2}},
+                          [](double x, double y) {
+                              return y < 0.3 && x > 0.9 ? -1 : x < 0.4 ? 0 : x < 0.6 ? 1 : 2;
+                          },
+                          glm::vec3(512.0f)};
+    return renderPlanes(scene, 1, 1, d3dPattern(8));
+}
+TEST(Sbaa, KeepsAsManySurfacesAsAsked) {
+    const Frame f = fourSurfaces();
+    // Samples 3 4 5; 0 1; 2 6; 7.
+    EXPECT_FLOAT_EQ(resolved("sbaa:surfaces=4", f).c[0].at(0, 0), (3 * 1 + 2 * 8 + 2 * 64 + 512) / 8.0f);
+    std::vector<DebugLayer> layers;
+    for (const int k : {1, 2, 3, 4}) {
+        resolved("sbaa:surfaces=" + std::to_string(k), f, {}, &layers);
+        EXPECT_EQ(layer(layers, "clusters").at(0, 0), 4.0f);
+        EXPECT_EQ(layer(layers, "surfaces").at(0, 0), float(k));
+    }
+    // Alone, everything has the colour of the sub-sample nearest to the centroid (0.5, 1)/16, which is 0.
+    EXPECT_FLOAT_EQ(resolved("sbaa:surfaces=1", f).c[0].at(0, 0), 8.0f);
+}
+TEST(Sbaa, AsManySurfacesAsSamplesIsMsaa) {
+    for (const glm::dvec2 jitterPx : {glm::dvec2(0), glm::dvec2(0.3, -0.2)}) {
+        const Frame f = renderPlanes(parallelPlanes(kLine), 48, 31, d3dPattern(8), jitterPx);
+        const Rgb a = resolved("sbaa:surfaces=8", f), b = resolved("msaa", f);
+        for (int y = 0; y < 31; y++)
+            for (int x = 0; x < 48; x++) ASSERT_NEAR(a.c[0].at(x, y), b.c[0].at(x, y), 1e-6);
+    }
+}
+// Pieces of one plane are one surface, whatever their object: a decal is not anti-aliased.
+TEST(Sbaa, CoplanarPiecesMerge) {
+    const TestScene decal{{{{0, 0, 1}, -4, glm::vec3(1.0f), 1}, {{0, 0, 1}, -4, glm::vec3(0.0f), 2}}, kLine.visible()};
+    const Frame f = renderPlanes(decal, 48, 31, d3dPattern(8));
+    EXPECT_TRUE(resolved("sbaa", f).samePixels(f.colorLinear));
+}
+TEST(Sbaa, EmptyAndBrokenGeometry) {
+    const TestScene empty{{}, [](double, double) { return -1; }, glm::vec3(0.3f)};
+    const Frame sky = renderPlanes(empty, 9, 5, d3dPattern(8));
+    EXPECT_TRUE(resolved("sbaa", sky).samePixels(sky.colorLinear));
+    Frame f = fourSurfaces();
+    for (auto& s : f.subSamples) s.normalWorld = Rgb(1, 1, NAN);
+    f.normalWorld = Rgb(1, 1, 0.0f);
+    f.subSamples[7].colorLinear.c[0].at(0, 0) = NAN;
+    EXPECT_TRUE(std::isfinite(resolved("sbaa", f).c[0].at(0, 0)));
+    for (auto& s : f.subSamples) s.colorLinear = Rgb(1, 1, NAN);
+    EXPECT_EQ(resolved("sbaa", f).c[0].at(0, 0), 0.0f);
+}
+
+}  // namespace
+}  // namespace aa
