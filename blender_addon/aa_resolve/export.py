@@ -439,13 +439,14 @@ class Exporter:
         geometry = {"Depth", "Normal", "IndexOB"} if wants_geometry else set()
         if not wants_color:
             rendering.request_passes(self.view_layer, geometry)
+            own_override = self.view_layer.material_override
             with subsamples.no_lights(self.light, self.scene):
                 if subsamples.uses_override(wants_color, self.cutout):
                     self.view_layer.material_override = self.ids.override()
                 try:
                     return [views.render(self.view_layer, self.frame, depsgraph, self.folder)]
                 finally:
-                    self.view_layer.material_override = None
+                    self.view_layer.material_override = own_override
         renders = []
         for index, light in enumerate(self.light.lights if len(self.light.lights) > 1 else [None]):
             rendering.request_passes(

@@ -141,14 +141,17 @@ def copy_of_open_file() -> tuple[str, str]:
     return folder, path
 
 
-def identity_of_open_file() -> str:
-    """Identity for resuming: the file's content when nothing is unsaved, else the name of the file alone."""
+def identity_of_open_file() -> str | None:
+    """Identity by which an export resumes: the content of the saved file; None while changes are unsaved.
+
+    Without one the copy's own bytes decide, which differ each time: a scene that may have changed never continues an
+    old export unnoticed."""
     from .headless import file_identity
 
     path = bpy.data.filepath
     if path and not bpy.data.is_dirty and os.path.exists(path):
         return file_identity(path)
-    return f"unsaved {path}"
+    return None
 
 
 def export_command(blend: str, options: list[str]) -> list[str]:

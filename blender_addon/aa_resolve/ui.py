@@ -278,7 +278,9 @@ class _JobOperator:
         running = _State.running
         if event.type == "ESC" and event.value == "PRESS":
             running.cancel()
-            _State.result = "Stopped. Finished frames are valid; the export resumes."
+            _State.result = (
+                "Stopped. Finished frames are valid; with the file saved, the export resumes."
+            )
             self._leave(context)
             self.report({"WARNING"}, _State.result)
             return {"CANCELLED"}
@@ -319,8 +321,11 @@ class _JobOperator:
         if not settings.chosen():
             self.report({"ERROR"}, "Choose at least one method")
             return None
+        identity = job.identity_of_open_file()
         folder, blend = job.copy_of_open_file()
-        options = [*settings.options(out), "--source", job.identity_of_open_file(), *extra]
+        options = [*settings.options(out), *extra]
+        if identity:
+            options += ["--source", identity]
         return folder, job.Step(title, job.export_command(blend, options))
 
 

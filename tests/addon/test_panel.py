@@ -43,6 +43,18 @@ shot = json.load(open(os.path.join(folder, "shot", "shot.json")))
 assert [entry["frame"] for entry in shot["frames"]] == [2, 3, 4]
 assert [bool(entry.get("truth")) for entry in shot["frames"]] == [True, True, True]
 assert bpy.ops.aa_resolve.estimate() == {{"FINISHED"}}
+bpy.data.objects["Cube"].location.z += 0.25
+bpy.ops.wm.save_mainfile()
+try:
+    bpy.ops.aa_resolve.export()
+    raise SystemExit("a changed file must not continue an old export")
+except RuntimeError as error:
+    assert "the .blend file has changed" in str(error), error
+settings.overwrite = True
+assert bpy.ops.aa_resolve.export() == {{"FINISHED"}}
+settings.overwrite = False
+bpy.ops.wm.save_mainfile()
+hash_before = digest(blend)
 settings.period = 8
 try:
     bpy.ops.aa_resolve.export()
