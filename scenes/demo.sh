@@ -19,7 +19,7 @@ scene() {
         { tail -5 "$out/$name.log" >&2; exit 1; }
     ids=$(echo "$methods" | sed 's/:[^ ]*//g; s/ /,/g')
     "$blender" -b "$blend" --python-exit-code 9 -P "$here/../blender_addon/aa_resolve/headless.py" -- \
-        --out "$out/$name/shot" --for "$ids" --resolution 480 270 "$@" |
+        --out "$out/$name/shot" --for "$ids" --resolution 480 270 --name "$name" --passes normal,object "$@" |
         { grep -v '^Blender\|^Read blend\|^$' || true; }
     "$program" check "$out/$name/shot"
     set --
@@ -29,9 +29,9 @@ scene() {
     "$program" report "$out/$name/results" -o "$out/$name/report.html"
 }
 
-methods="noaa fxaa311:preset=12 fxaa311:preset=39 taaSimplest uncharted unchartedNorm accum"
+methods="noaa fxaa311:preset=12 fxaa311:preset=39 taaSimplest uncharted unchartedNorm unchartedNoSharpen accum"
 scene hard_edges --frames 1-16 --truth-samples 128
-methods="noaa fxaa311:preset=12 fxaa311:preset=39 taaSimplest uncharted unchartedNorm"
+methods="noaa fxaa311:preset=12 fxaa311:preset=39 taaSimplest uncharted unchartedNorm unchartedNoSharpen"
 scene moving_sphere --frames 1-16 --truth-samples 64 --truth-frames 8,12,16
 
 echo

@@ -1,8 +1,9 @@
-#include <cstdio>
+#include <algorithm>
 #include <iostream>
 
 #include "cli/cli.h"
 #include "image/error.h"
+#include "methods/params.h"
 
 int main(int argc, char** argv) {
     CLI::App app{
@@ -20,6 +21,14 @@ int main(int argc, char** argv) {
     };
     for (const auto add : commands) add(app, context);
     try {
+        if (argc > 1 && argv[1][0] != '-') {
+            std::vector<std::string_view> known;
+            for (const auto* c : app.get_subcommands({})) known.push_back(c->get_name());
+            const std::string near = aa::suggestion(argv[1], known);
+            if (std::find(known.begin(), known.end(), argv[1]) == known.end())
+                throw aa::UsageError("unknown command '" + std::string(argv[1]) + "'" +
+                                     (near.empty() ? "; see aaresolve --help" : "; did you mean '" + near + "'?"));
+        }
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
         if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version

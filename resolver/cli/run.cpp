@@ -43,7 +43,9 @@ void printTable(const RunResults& r) {
         }
         std::printf(" %9.2f %10.2f\n", m->nsPerPixel, double(m->stateBytes) / (1 << 20));
     }
-    if (r.truthNoise)
+    if (r.truthNoise && *r.truthNoise == 0)
+        std::puts("truth: exact");
+    else if (r.truthNoise)
         std::printf("truth: %d samples per half, error bar of the MSE %.4g (PSNR %.2f dB)\n", r.truthSamplesPerHalf,
                     *r.truthNoise, psnr(*r.truthNoise));
     for (const auto& [what, count] : r.sanitised)

@@ -1,0 +1,113 @@
+"""Bad input: each case ends with one clear line and the right exit code, and damages nothing."""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import shutil
+import signal
+from pathlib import Path
+
+from program import ProgramTest, main
+
+
+class BadInput(ProgramTest):
+    def setUp(self) -> None:
+        super().setUp()
+        self.shot = self.folder / "shot"
+        self.aaresolve("synth", "moving", "-o", self.shot, "--resolution", "48", "32", "--frames", "3", "--for", "noaa,uncharted")
+
+    def run_refused(self, code: int, *says: str, method: str = "noaa", **options) -> str:
+        return self.refused(code, "run", self.shot, "-m", method, "-o", self.folder / "out", "-q", says=says, **options)
+
+    def frame(self, number: int) -> Path:
+        return self.shot / "frames" / f"{number:06d}.exr"
+
+    def edit_manifest(self, change) -> None:
+        path = self.shot / "shot.json"
+        manifest = json.loads(path.read_text())
+        change(manifest)
+        path.write_text(json.dumps(manifest))
+
+    def test_missing_shot(self) -> None:
+        shutil.rmtree(self.shot)
+        self.run_refused(3, str(self.shot))
+
+    def test_missing_frame(self) -> None:
+        self.frame(2).unlink()
+        self.run_refused(3, "000002.exr")
+
+    def test_truncated_exr(self) -> None:
+        path = self.frame(2)
+        path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+        self.run_refused(3, "000002.exr", method="uncharted")
+
+    def test_not_an_exr(self) -> None:
+        self.frame(2).write_text("this is no picture")
+        self.run_refused(3, "000002.exr")
+
+    def test_wrong_resolution(self) -> None:
+        self.edit_manifest(lambda m: m.update(resolution=[64, 32]))
+        self.run_refused(3, "64", "48")
+
+    def test_missing_pass_names_pass_and_method(self) -> None:
+        shot = self.folder / "colour_only"
+        self.aaresolve("synth", "moving", "-o", shot, "--resolution", "48", "32", "--frames", "2", "--for", "noaa")
+        self.refused(3, "run", shot, "-m", "uncharted", "-o", self.folder / "o", "-q", says=("uncharted", "depth"))
+
+    def test_manifest_with_wrong_type(self) -> None:
+        self.edit_manifest(lambda m: m["frames"][1].update(jitter="none"))
+        self.run_refused(3, "shot.json", "frames[1].jitter")
+
+    def test_manifest_is_not_json(self) -> None:
+        (self.shot / "shot.json").write_text("{")
+        self.run_refused(3, "shot.json")
+
+    def test_unknown_method_is_suggested(self) -> None:
+        self.run_refused(2, "unchartedd", "did you mean 'uncharted'", method="unchartedd")
+
+    def test_parameter_out_of_range(self) -> None:
+        self.run_refused(2, "kmin", "0 to 1", method="uncharted:kmin=2")
+
+    def test_unknown_parameter_is_suggested(self) -> None:
+        self.run_refused(2, "did you mean 'kmin'", method="uncharted:kmni=0.5")
+
+    def test_nan_is_counted_or_refused(self) -> None:
+        shot = self.folder / "nan"
+        self.aaresolve("synth", "moving", "-o", shot, "--resolution", "48", "32", "--frames", "2", "--for", "noaa", "--inject-nan", "10", "7")
+        done = self.aaresolve("run", shot, "-m", "noaa", "-o", self.folder / "o", "-q")
+        self.assertIn("colourNan", done.stdout)
+        self.refused(3, "run", shot, "-m", "noaa", "-o", self.folder / "o", "-q", "--input", "strict", says=("color", "10", "7"))
+
+    def test_output_folder_not_writable(self) -> None:
+        if os.geteuid() == 0:  # root may write anywhere: a file in the way is the same refusal
+            (self.folder / "out").write_text("in the way")
+        else:
+            (self.folder / "out").mkdir(mode=0o500)
+        self.run_refused(3, str(self.folder / "out"))
+
+    def test_disk_full_keeps_finished_frames(self) -> None:
+        """A limit on the size of files stands in for a full disk: the large image fails, earlier files stay whole."""
+        out = self.folder / "out"
+        self.aaresolve("run", self.shot, "-m", "noaa", "-o", out, "-q", "--write-frames", "all")
+        before = {p: p.read_bytes() for p in sorted(out.rglob("*.exr"))}
+        self.assertGreater(len(before), 3)
+
+        def small_files() -> None:
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (1500, 1500))
+
+        self.run_refused(3, "cannot be written", preexec_fn=small_files)
+        self.assertEqual(before, {p: p.read_bytes() for p in sorted(out.rglob("*.exr"))})
+        self.assertEqual([], [p for p in out.rglob(".*")], "a partial file was left behind")
+
+    def test_usage(self) -> None:
+        self.refused(2, "run", self.shot, says=("--method",))
+        self.refused(2, "nonsense", says=("nonsense",))
+        self.refused(2, "filter", "uncharted", "a.png", "b.png", says=("needs more than one image",))
+        self.refused(3, "filter", "noaa", self.folder / "none.png", self.folder / "b.png", says=("none.png", "no such file"))
+        self.refused(3, "run", self.shot, "-m", "noaa", "-o", self.folder / "o", "--frames", "99", says=("99",))
+
+
+main()

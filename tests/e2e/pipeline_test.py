@@ -1,0 +1,60 @@
+"""From a synthetic shot to a contact sheet and a report; same bits for any thread count and instruction set."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+
+from program import ROOT, ProgramTest, main
+
+
+class Pipeline(ProgramTest):
+    def test_synth_check_run_sheet_report(self) -> None:
+        shot, out = self.folder / "shot", self.folder / "out"
+        self.aaresolve("synth", "circles", "-o", shot, "--resolution", "96", "64", "--frames", "16", "--for", "noaa,accum,fxaa311,unchartedNorm")
+        self.aaresolve("check", shot)
+        self.aaresolve("run", shot, "-m", "noaa", "-m", "accum", "-m", "fxaa311:preset=39", "-m", "unchartedNorm", "-o", out, "-q")
+        results = json.loads((out / "results.json").read_text())
+        psnr = {m["text"]: m["pooled"]["psnr"] for m in results["methods"]}
+        self.assertGreater(psnr["fxaa311:preset=39"], psnr["noaa"] + 1)
+        # The mean of 16 frames, judged over all frames of the shot, must be far better than one sample.
+        self.assertGreater(psnr["accum"], psnr["noaa"] + 3)
+        rows = list(csv.DictReader((out / "results.csv").open()))
+        self.assertGreaterEqual(len(rows), 4 * 16)
+        self.aaresolve("sheet", out, "-o", self.folder / "sheet.png")
+        self.assertEqual((self.folder / "sheet.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        self.aaresolve("report", out, "-o", self.folder / "report.html")
+        html = (self.folder / "report.html").read_text()
+        self.assertNotIn("http://", html.replace("http://www.w3.org", ""), "the report must load nothing from the network")
+        self.assertIn("unchartedNorm", html)
+
+    def test_same_bits_for_threads_and_instruction_sets(self) -> None:
+        shot = self.folder / "shot"
+        self.aaresolve("synth", "moving", "-o", shot, "--resolution", "90", "50", "--frames", "5", "--for", "uncharted,fxaa311")
+        images = []
+        for name, options in {"a": ("-j", 1, "--isa", "v2"), "b": ("-j", 2), "c": ("-j", 2, "--precision", "scalar")}.items():
+            out = self.folder / name
+            self.aaresolve("run", shot, "-m", "uncharted", "-m", "fxaa311", "-o", out, "-q", "--write-frames", "all", *options)
+            images.append({p.relative_to(out): p.read_bytes() for p in sorted(out.rglob("*.exr"))})
+        self.assertEqual(len(images[0]), 15)
+        self.assertEqual(images[0], images[1])
+        self.assertEqual(images[0], images[2])
+
+    def test_a_sequence_may_start_in_the_middle(self) -> None:
+        shot, out = self.folder / "shot", self.folder / "out"
+        self.aaresolve("synth", "moving", "-o", shot, "--resolution", "48", "32", "--frames", "6", "--for", "uncharted")
+        self.aaresolve("run", shot, "-m", "uncharted", "-o", out, "-q", "--frames", "4-6")
+        results = json.loads((out / "results.json").read_text())
+        self.assertEqual([f["frame"] for f in results["methods"][0]["frames"]], [4, 5, 6])
+        self.assertTrue(math.isfinite(results["methods"][0]["pooled"]["psnr"]))
+
+    def test_addon_ships_the_registry(self) -> None:
+        shipped = json.loads((ROOT / "blender_addon/aa_resolve/methods.json").read_text())
+        self.assertEqual(shipped, json.loads(self.aaresolve("list", "--json").stdout), "run `make docs`")
+
+    def test_docs_are_generated_from_the_registry(self) -> None:
+        self.assertEqual((ROOT / "docs/methods.md").read_text(), self.aaresolve("list", "--markdown").stdout, "run `make docs`")
+
+
+main()

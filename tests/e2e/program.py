@@ -1,0 +1,45 @@
+"""Runs aaresolve as a user would and keeps what it said."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+PROGRAM = Path(sys.argv[1]).resolve()
+ROOT = Path(sys.argv[2]).resolve()
+
+
+class ProgramTest(unittest.TestCase):
+    """A test case with a temporary folder and the program."""
+
+    def setUp(self) -> None:
+        self._folder = tempfile.TemporaryDirectory()
+        self.folder = Path(self._folder.name)
+
+    def tearDown(self) -> None:
+        self._folder.cleanup()
+
+    def aaresolve(self, *arguments: object, expect: int = 0, **options) -> subprocess.CompletedProcess:
+        done = subprocess.run(
+            [str(PROGRAM), *map(str, arguments)], capture_output=True, text=True, timeout=600, **options
+        )
+        self.assertEqual(
+            done.returncode, expect, f"aaresolve {' '.join(map(str, arguments))}\n{done.stdout}\n{done.stderr}"
+        )
+        return done
+
+    def refused(self, code: int, *arguments: object, says: tuple[str, ...], **options) -> str:
+        """The call must end with `code` and one line on stderr that holds every word of `says`."""
+        done = self.aaresolve(*arguments, expect=code, **options)
+        lines = [line for line in done.stderr.splitlines() if line.startswith("aaresolve: ")]
+        self.assertEqual(len(lines), 1, done.stderr)
+        for words in says:
+            self.assertIn(words, lines[0])
+        return lines[0]
+
+
+def main() -> None:
+    unittest.main(argv=sys.argv[:1])
