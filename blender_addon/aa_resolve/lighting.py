@@ -128,13 +128,6 @@ def noise_causes(scene: bpy.types.Scene, samples: int) -> list[str]:
     return causes if samples < 64 else []
 
 
-def _world_is_one_colour(world: bpy.types.World) -> bool:
-    if not world.use_nodes:
-        return True
-    kinds = {node.bl_idname for node in world.node_tree.nodes}
-    return kinds <= {"ShaderNodeBackground", "ShaderNodeOutputWorld"}
-
-
 def mean_world_radiance(scene: bpy.types.Scene, folder: str) -> tuple[float, float, float]:
     """Mean radiance of the world over the sphere: a small panorama of the empty world, weighted by solid angle."""
     world = scene.world

@@ -58,7 +58,6 @@ class Settings:
     instance_ids: bool = True
     source: str = ""
     overwrite: bool = False
-    extra: dict = field(default_factory=dict)
 
     def fingerprint(self) -> dict:
         """What decides the content of every file: equal fingerprints, equal bytes.
@@ -66,7 +65,7 @@ class Settings:
         The number of frames may grow between runs, the first one (where the jitter begins) may not.
         """
         wishes = asdict(self)
-        for name in ("out", "methods", "truth_frames", "overwrite", "name", "extra"):
+        for name in ("out", "methods", "truth_frames", "overwrite", "name"):
             wishes.pop(name)
         wishes["first_frame"] = wishes.pop("frames")[0]
         return json.loads(json.dumps(wishes))

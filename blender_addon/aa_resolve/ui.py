@@ -14,7 +14,6 @@ from bl_operators.presets import AddPresetBase
 from bpy.props import (
     BoolProperty,
     EnumProperty,
-    FloatProperty,
     FloatVectorProperty,
     IntProperty,
     IntVectorProperty,

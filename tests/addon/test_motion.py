@@ -7,13 +7,12 @@ object; both are projected by formulas of the support module.
 
 from __future__ import annotations
 
-import math
 import os
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import support as t  # noqa: E402
-from support import Matrix, Vector, bpy, np  # noqa: E402
+from support import Vector, bpy, np  # noqa: E402
 
 LIMIT_PX = 0.001
 FRAME = 5
