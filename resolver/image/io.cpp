@@ -16,7 +16,11 @@ using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
 fs::path temporaryName(const fs::path& file) {
-    return file.parent_path() / ("." + file.stem().string() + ".partial" + file.extension().string());
+    std::string name = ".";
+    name += file.stem().string();
+    name += ".partial";
+    name += file.extension().string();
+    return file.parent_path() / name;
 }
 
 void renameInto(const fs::path& temporary, const fs::path& file) {
