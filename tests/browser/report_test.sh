@@ -10,6 +10,17 @@ trap 'rm -rf "$folder"' EXIT
 "$program" run "$folder/shot" -m noaa -m fxaa311 -m taaSimplest -m uncharted -m unchartedNorm -o "$folder/run" -q >/dev/null
 "$program" report "$folder/run" -o "$folder/report.html" >/dev/null
 
+# A visitor who sorts by PSNR, asks for an error map, another zoom, and swaps the sides.
+cat >>"$folder/report.html" <<'VISITOR'
+<script>
+  const pick = (id, value) => { const e = document.getElementById(id); e.value = value; e.dispatchEvent(new Event("change")); };
+  document.querySelector("#figures thead button").click();
+  pick("left", "error:0");
+  pick("zoom", "3");
+  document.getElementById("swap").click();
+</script>
+VISITOR
+
 "$browser" --headless=new --no-sandbox --disable-gpu --user-data-dir="$folder/profile" --host-resolver-rules="MAP * ~NOTFOUND" \
     --enable-logging=stderr --virtual-time-budget=20000 --dump-dom "file://$folder/report.html" >"$folder/dom.html" 2>"$folder/log"
 
@@ -24,10 +35,12 @@ if grep -E 'CONSOLE' "$folder/log" | grep -iE 'error|uncaught|failed|refused'; t
 fi
 expect "rows of the table" '<th scope="row">(noaa|fxaa311|taaSimplest|uncharted|unchartedNorm)<small' 5
 expect "sortable columns" 'aria-sort="none"' 6
+expect "a sorted column" 'aria-sort="descending"' 1
 expect "sentences" '<li>' 2
 expect "charts that were drawn" '<canvas id="(scatter|gain|frames)"[^>]*style="[^"]*(width|height)' 3
 expect "slider that was set up" '<img-comparison-slider[^>]*rendered' 1
 expect "pictures in the slider" '<img id="(left|right)-image"[^>]*src="data:image/png' 2
+expect "the error map, swapped to the right" '<img id="right-image"[^>]*alt="error of noaa"[^>]*width: 1440px' 1
 expect "details" '<canvas width="48" height="48"' 6
 expect "parameters" 'What was run' 1
 exit $failed
