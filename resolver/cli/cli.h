@@ -33,6 +33,7 @@ void addBench(CLI::App& app, Context& context);
 void addFilter(CLI::App& app, Context& context);
 void addSheet(CLI::App& app, Context& context);
 void addCompare(CLI::App& app, Context& context);
+void addReport(CLI::App& app, Context& context);
 void addLearnRsaa(CLI::App& app, Context& context);
 void addSynth(CLI::App& app, Context& context);
 

@@ -1,0 +1,151 @@
+#include "report/caption.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/format.h"
+#include "report/sheet.h"
+
+namespace aa {
+namespace {
+
+const MethodResult* findNoaa(const RunResults& run) {
+    for (const auto& m : run.methods)
+        if (m.id == "noaa" && m.pooled) return &m;
+    return nullptr;
+}
+bool resolved(const RunResults& run, size_t a, size_t b) {
+    const Comparison* c = comparisonOf(run, a, b);
+    return !c || c->resolved;
+}
+std::string joined(const std::vector<std::string>& parts) {
+    std::string all;
+    for (size_t i = 0; i < parts.size(); i++) all += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
+    return all;
+}
+std::string gain(const MethodResult& m) { return signedDecibelNumber(*m.pooled->gainDb) + " dB"; }
+
+// Methods with figures, best first.
+std::vector<size_t> ranking(const RunResults& run) {
+    std::vector<size_t> order;
+    for (size_t i = 0; i < run.methods.size(); i++)
+        if (run.methods[i].pooled) order.push_back(i);
+    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+        return run.methods[a].pooled->mean.mse < run.methods[b].pooled->mean.mse;
+    });
+    return order;
+}
+
+std::string bestSentence(const RunResults& run, const std::vector<size_t>& order) {
+    const MethodResult& best = run.methods[order[0]];
+    std::vector<std::string> peers;
+    for (size_t i = 1; i < order.size(); i++)
+        if (!resolved(run, order[0], order[i])) peers.push_back(run.methods[order[i]].text);
+    std::string s = best.text + " is nearest to the ground truth: PSNR " + decibels(best.pooled->mean.psnr);
+    if (best.pooled->gainDb && best.id != "noaa") s += ", " + gain(best) + " over no anti-aliasing";
+    if (!peers.empty()) s += "; " + joined(peers) + " cannot be told apart from it";
+    return s + ".";
+}
+
+// The cheapest method that is nearer to the truth than no anti-aliasing, when it is not the best one anyway.
+std::string cheapestSentence(const RunResults& run, const std::vector<size_t>& order, size_t noaa) {
+    const MethodResult* cheapest = nullptr;
+    for (const size_t i : order) {
+        const MethodResult& m = run.methods[i];
+        if (i != noaa && *m.pooled->gainDb > 0 && resolved(run, i, noaa) &&
+            (!cheapest || m.nsPerPixel < cheapest->nsPerPixel))
+            cheapest = &m;
+    }
+    if (!cheapest || cheapest == &run.methods[order[0]]) return {};
+    return cheapest->text + " is the cheapest that helps: " + gain(*cheapest) + " for " +
+           shortNumber(cheapest->nsPerPixel) + " ns per pixel, where " + run.methods[order[0]].text + " takes " +
+           shortNumber(run.methods[order[0]].nsPerPixel) + ".";
+}
+std::string harmSentence(const RunResults& run, const std::vector<size_t>& order, size_t noaa) {
+    std::vector<std::string> worse;
+    for (const size_t i : order)
+        if (i != noaa && *run.methods[i].pooled->gainDb < 0 && resolved(run, i, noaa))
+            worse.push_back(run.methods[i].text + " (" + gain(run.methods[i]) + ")");
+    if (worse.empty()) return {};
+    return joined(worse) + (worse.size() == 1 ? " is" : " are") +
+           " farther from the truth than no anti-aliasing at all.";
+}
+
+// Two forms of one method that differ in sharpening only: X and XNorm or XNoSharpen, or one parameter named sharpen*.
+bool differInSharpening(const MethodResult& sharp, const MethodResult& plain) {
+    if (sharp.id == plain.id) {
+        std::vector<std::string> differing;
+        for (const auto& [name, value] : sharp.parameters)
+            if (const auto other = plain.parameters.find(name);
+                other == plain.parameters.end() || other->second != value)
+                differing.push_back(name);
+        return differing.size() == 1 && differing[0].starts_with("sharpen") &&
+               sharp.pooled->mean.mse > plain.pooled->mean.mse;
+    }
+    return plain.id == sharp.id + "Norm" || plain.id == sharp.id + "NoSharpen";
+}
+std::vector<std::string> sharpenSentences(const RunResults& run, const std::vector<size_t>& order) {
+    std::vector<std::string> sentences;
+    for (const size_t s : order)
+        for (const size_t p : order) {
+            const MethodResult &sharp = run.methods[s], &plain = run.methods[p];
+            if (s == p || !differInSharpening(sharp, plain)) continue;
+            const double cost = plain.pooled->mean.psnr - sharp.pooled->mean.psnr;
+            if (!resolved(run, s, p))
+                sentences.push_back("The sharpen filter makes no difference that can be resolved between " +
+                                    sharp.text + " and " + plain.text + ".");
+            else if (cost > 0)
+                sentences.push_back("The sharpen filter of " + sharp.text + " costs " + decibels(cost) + ": " +
+                                    plain.text + ", the same method with other sharpening, reaches " +
+                                    decibels(plain.pooled->mean.psnr) + ".");
+            else
+                sentences.push_back("The sharpen filter of " + sharp.text + " gains " + decibels(-cost) + " over " +
+                                    plain.text + ".");
+        }
+    return sentences;
+}
+
+std::string unresolvedSentence(const RunResults& run) {
+    std::vector<std::string> pairs;
+    for (const auto& p : run.pairs)
+        if (!p.comparison.resolved) pairs.push_back(run.methods[p.first].text + " and " + run.methods[p.second].text);
+    if (run.pairs.empty()) return {};
+    if (pairs.empty()) return "All methods can be told apart: every difference is larger than the error bar.";
+    constexpr size_t kListed = 6;
+    const size_t more = pairs.size() > kListed ? pairs.size() - kListed : 0;
+    pairs.resize(pairs.size() - more);
+    std::string s = "Below the error bar, so not resolved: ";
+    for (size_t i = 0; i < pairs.size(); i++) s += (i ? "; " : "") + pairs[i];
+    return s + (more ? "; and " + std::to_string(more) + " more pairs." : ".");
+}
+std::string truthSentence(const RunResults& run, const std::vector<size_t>& order) {
+    if (!run.truthNoise || *run.truthNoise == 0) return {};
+    double smallest = run.methods[order[0]].pooled->mean.mse;
+    if (smallest == 0) return {};
+    const double share = *run.truthNoise / smallest;
+    std::string s = "The truth's own noise is " + significant(100 * share, 2) + " % of the smallest error";
+    // methods/07 s.9 asks for less than 1 %.
+    return s + (share < 0.01 ? "."
+                             : ": more than the 1 % that a fair ranking asks for; render the truth with more samples.");
+}
+}  // namespace
+
+std::vector<std::string> captions(const RunResults& run) {
+    const auto order = ranking(run);
+    if (order.empty()) return {"This run has no ground truth: only times and pictures can be compared."};
+    std::vector<std::string> all = {bestSentence(run, order)};
+    const auto add = [&](std::string sentence) {
+        if (!sentence.empty()) all.push_back(std::move(sentence));
+    };
+    if (const MethodResult* noaa = findNoaa(run)) {
+        const auto index = size_t(noaa - run.methods.data());
+        add(cheapestSentence(run, order, index));
+        add(harmSentence(run, order, index));
+    }
+    for (auto& s : sharpenSentences(run, order)) add(s);
+    add(unresolvedSentence(run));
+    add(truthSentence(run, order));
+    return all;
+}
+
+}  // namespace aa

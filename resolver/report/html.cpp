@@ -1,0 +1,154 @@
+#include "report/html.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "image/error.h"
+#include "report/canvas.h"
+#include "report/caption.h"
+#include "report/colour_map.h"
+#include "report/sheet.h"
+#include "report/web/web_files.h"
+
+namespace aa {
+namespace {
+using json = nlohmann::ordered_json;
+
+constexpr int kMostWidth = 960, kMostHeight = 540;
+constexpr size_t kMostBytes = 11'000'000;  // a third more in base64: the page stays near 15 MB
+
+json rectangle(const Window& w) { return {w.x, w.y, w.width, w.height}; }
+
+// The shown part of a frame: all of it, or the most telling window when it is too large to embed.
+Window shownPart(const Pictures& p) {
+    const int w = p.methods[0].width(), h = p.methods[0].height();
+    const Window whole{0, 0, std::min(w, kMostWidth), std::min(h, kMostHeight)};
+    if (whole.width == w && whole.height == h) return whole;
+    const auto windows = mostTellingWindows(p, whole.width, whole.height, 1);
+    return windows.empty() ? whole : windows[0];
+}
+Pictures part(const Pictures& p, const Window& w) {
+    Pictures cut{p.frame, {}, {}};
+    if (!p.truth.empty()) cut.truth = cropped(p.truth, w);
+    for (const Rgb& m : p.methods) cut.methods.push_back(cropped(m, w));
+    return cut;
+}
+
+// One frame's pictures as the page reads them; `bytes` grows by the size of the files.
+json embedded(const Pictures& whole, const Window& window, size_t& bytes) {
+    const Pictures p = part(whole, window);
+    const auto uri = [&](const Rgb& image) {
+        const auto file = pngBytes(image);
+        bytes += file.size();
+        return "data:image/png;base64," + base64(file);
+    };
+    json j = {{"frame", p.frame}, {"window", rectangle(window)}, {"truth", nullptr}, {"methods", json::array()}};
+    if (!p.truth.empty()) j["truth"] = uri(p.truth);
+    for (const Rgb& m : p.methods) j["methods"].push_back(uri(m));
+    j["details"] = json::array();
+    constexpr int kDetails = 3, kDetailPx = 48;
+    for (Window d : mostTellingWindows(p, kDetailPx, kDetailPx, kDetails)) {
+        d.x += window.x, d.y += window.y;
+        j["details"].push_back(rectangle(d));
+    }
+    return j;
+}
+std::string replaced(std::string text, std::string_view what, std::string_view with) {
+    const size_t at = text.find(what);
+    return text.replace(at, what.size(), with);
+}
+// Inside <script>, "</" would end it; "<\/" is the same JSON string.
+std::string forScript(const json& j) {
+    const std::string text = j.dump();
+    std::string safe;
+    safe.reserve(text.size());
+    for (const char c : text) {
+        if (c == '/' && !safe.empty() && safe.back() == '<') safe += '\\';
+        safe += c;
+    }
+    return safe;
+}
+std::string forHtml(const std::string& text) {
+    std::string safe;
+    for (const char c : text) safe += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
+    return safe;
+}
+}  // namespace
+
+std::vector<int> framesToShow(const std::vector<int>& withPictures) {
+    constexpr size_t kFrames = 4;
+    if (withPictures.size() <= kFrames) return {withPictures.rbegin(), withPictures.rend()};
+    std::vector<int> chosen;
+    for (size_t i = 0; i < kFrames; i++)
+        chosen.push_back(withPictures[(withPictures.size() - 1) * (kFrames - 1 - i) / (kFrames - 1)]);
+    return chosen;
+}
+
+std::vector<unsigned char> pngBytes(const Rgb& encoded) {
+    const int w = encoded.width(), h = encoded.height();
+    std::vector<unsigned char> codes(size_t(w) * size_t(h) * 3);
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++)
+            for (size_t c = 0; c < 3; c++) {
+                const float v = encoded.c[c].at(x, y);
+                codes[(size_t(y) * size_t(w) + size_t(x)) * 3 + c] =
+                    static_cast<unsigned char>(std::floor(255.0f * (v > 0 ? std::min(v, 1.0f) : 0.0f) + 0.5f));
+            }
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput memory(bytes);
+    OIIO::ImageSpec spec(w, h, 3, OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    spec.attribute("png:compressionLevel", 9);
+    auto out = OIIO::ImageOutput::create("png");
+    if (!out || !out->set_ioproxy(&memory) || !out->open("picture.png", spec) ||
+        !out->write_image(OIIO::TypeDesc::UINT8, codes.data()) || !out->close())
+        throw InputError("a picture cannot be encoded as PNG (" + (out ? out->geterror() : OIIO::geterror()) +
+                         "); check OpenImageIO's installation");
+    return bytes;
+}
+std::string base64(const std::vector<unsigned char>& bytes) {
+    constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (size_t i = 0; i < bytes.size(); i += 3) {
+        const auto byte = [&](size_t k) { return k < bytes.size() ? uint32_t(bytes[k]) : 0u; };
+        const uint32_t group = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
+        for (int digit = 0; digit < 4; digit++)
+            text += i + size_t(digit) > bytes.size() ? '=' : kDigits[group >> (18 - 6 * digit) & 63];
+    }
+    return text;
+}
+
+std::string reportHtml(const RunResults& run, const std::vector<Pictures>& pictures) {
+    json data = {{"run", json::parse(toJsonText(run))}, {"order", presentationOrder(run)}, {"words", captions(run)}};
+    data["errorScale"] = kErrorScale;
+    constexpr int kColours = 256;
+    for (int i = 0; i < kColours; i++) {
+        const Colour c = errorColour(double(i) / (kColours - 1));
+        data["errorColours"].push_back(
+            {int(std::lround(255 * c[0])), int(std::lround(255 * c[1])), int(std::lround(255 * c[2]))});
+    }
+    data["pictures"] = json::array();
+    size_t bytes = 0, last = 0;
+    for (const Pictures& p : pictures) {
+        if (!data["pictures"].empty() && bytes + last > kMostBytes) break;  // the next frame will be about as large
+        const size_t before = bytes;
+        data["pictures"].push_back(embedded(p, shownPart(p), bytes));
+        last = bytes - before;
+    }
+    std::string page(web::html);
+    page = replaced(page, "{{title}}", forHtml("AA Resolve: " + run.shot));
+    page = replaced(page, "{{sliderCss}}", web::sliderCss);
+    page = replaced(page, "{{css}}", web::css);
+    page = replaced(page, "{{chart}}", web::chart);
+    page = replaced(page, "{{slider}}", web::slider);
+    page = replaced(page, "{{js}}", web::js);
+    return replaced(page, "{{data}}", forScript(data));
+}
+
+}  // namespace aa

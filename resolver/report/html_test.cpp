@@ -1,0 +1,153 @@
+#include "report/html.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <regex>
+
+#include "image/io.h"
+#include "report/caption.h"
+
+namespace aa {
+namespace {
+namespace fs = std::filesystem;
+
+MethodResult method(const std::string& id, double mse, double seconds) {
+    MethodResult m;
+    m.id = m.text = m.folder = id;
+    FrameResult f;
+    FrameMetrics metrics;
+    metrics.mse = mse, metrics.reference = 0.2, metrics.psnr = psnr(mse), metrics.snr = snr({mse, 0.2}),
+    metrics.ssimLuma = 0.9;
+    f.frame = 1, f.seconds = seconds, f.metrics = metrics;
+    m.frames = {f};
+    return m;
+}
+// Tile errors that agree with the methods' MSE, equal in all tiles: every difference is consistent.
+RunResults runOf(std::vector<MethodResult> methods, double noise) {
+    RunResults run;
+    run.shot = "</script><b>shot", run.width = run.height = 100, run.truthNoise = noise, run.programVersion = "1";
+    run.methods = std::move(methods);
+    std::vector<TileErrors> errors;
+    for (const auto& m : run.methods) {
+        TileErrors e;
+        e.values.assign(16, 3072);
+        e.sum.assign(16, 3072 * m.frames[0].metrics->mse);
+        errors.push_back(e);
+    }
+    finish(run, errors);
+    return run;
+}
+std::string allOf(const std::vector<std::string>& sentences) {
+    return std::accumulate(sentences.begin(), sentences.end(), std::string(),
+                           [](auto a, auto& b) { return a + b + "\n"; });
+}
+bool says(const RunResults& run, const std::string& text) {
+    return allOf(captions(run)).find(text) != std::string::npos;
+}
+
+TEST(Caption, FollowsTheFigures) {
+    const RunResults run =
+        runOf({method("noaa", 1e-3, 1e-5), method("accum", 1e-4, 9e-5), method("fxaa311", 5e-4, 3e-5),
+               method("uncharted", 4e-3, 5e-5), method("unchartedNorm", 2e-4, 5e-5)},
+              1e-7);
+    EXPECT_TRUE(says(run, "accum is nearest to the ground truth: PSNR 40.00 dB, +10.00 dB over no anti-aliasing."))
+        << allOf(captions(run));
+    EXPECT_TRUE(says(run, "fxaa311 is the cheapest that helps: +3.01 dB for 3 ns per pixel, where accum takes 9."));
+    EXPECT_TRUE(says(run, "uncharted (-6.02 dB) is farther from the truth than no anti-aliasing"));
+    EXPECT_TRUE(says(run, "The sharpen filter of uncharted costs 13.01 dB"));
+    EXPECT_TRUE(says(run, "All methods can be told apart"));
+    EXPECT_TRUE(says(run, "0.1 % of the smallest error."));
+}
+TEST(Caption, SaysWhatIsNotResolved) {
+    const RunResults run =
+        runOf({method("noaa", 1e-3, 1e-5), method("a", 1.00e-4, 2e-5), method("b", 1.01e-4, 2e-5)}, 2e-6);
+    EXPECT_TRUE(says(run, "; b cannot be told apart from it.")) << allOf(captions(run));
+    EXPECT_TRUE(says(run, "Below the error bar, so not resolved: a and b."));
+    EXPECT_TRUE(says(run, "render the truth with more samples"));
+    EXPECT_FALSE(says(run, "sharpen"));
+    EXPECT_FALSE(says(run, "farther"));
+}
+TEST(Caption, SharpeningCanGainAndCanBeAParameter) {
+    const RunResults gains = runOf({method("uncharted", 1e-4, 1e-5), method("unchartedNorm", 2e-4, 1e-5)}, 0);
+    EXPECT_TRUE(says(gains, "The sharpen filter of uncharted gains 3.01 dB over unchartedNorm."));
+    auto strong = method("x", 4e-4, 1e-5), weak = method("x", 1e-4, 1e-5);
+    strong.text = "x:sharpen=1", weak.text = "x:sharpen=0";
+    strong.parameters = {{"sharpen", "1"}, {"k", "2"}}, weak.parameters = {{"sharpen", "0"}, {"k", "2"}};
+    EXPECT_TRUE(says(runOf({strong, weak}, 0), "The sharpen filter of x:sharpen=1 costs 6.02 dB"));
+    weak.parameters["k"] = "3";  // now something else differs too
+    EXPECT_FALSE(says(runOf({strong, weak}, 0), "sharpen filter"));
+}
+TEST(Caption, WithoutTruth) {
+    RunResults run;
+    run.methods = {method("noaa", 1, 1)};
+    run.methods[0].frames[0].metrics.reset();
+    finish(run, {});
+    EXPECT_TRUE(says(run, "no ground truth"));
+}
+
+TEST(Html, Base64) {  // RFC 4648 s.10
+    const auto encode = [](const std::string& s) { return base64({s.begin(), s.end()}); };
+    EXPECT_EQ(encode(""), "");
+    EXPECT_EQ(encode("f"), "Zg==");
+    EXPECT_EQ(encode("fo"), "Zm8=");
+    EXPECT_EQ(encode("foo"), "Zm9v");
+    EXPECT_EQ(encode("foobar"), "Zm9vYmFy");
+}
+TEST(Html, PngKeepsTheCodes) {
+    Rgb image(5, 3);
+    for (size_t c = 0; c < 3; c++)
+        for (int y = 0; y < 3; y++)
+            for (int x = 0; x < 5; x++) image.c[c].at(x, y) = float(int(c) * 50 + y * 10 + x) / 255;
+    const auto bytes = pngBytes(image);
+    const fs::path file = fs::temp_directory_path() / "aaresolve_html_test.png";
+    writeText(file, std::string(bytes.begin(), bytes.end()));
+    const Rgb back = readImage(file).rgb;
+    for (size_t c = 0; c < 3; c++)
+        for (int x = 0; x < 5; x++) EXPECT_NEAR(back.c[c].at(x, 2) * 255, float(int(c) * 50 + 20 + x), 1e-3);
+    fs::remove(file);
+}
+TEST(Html, FramesAreSpread) {
+    EXPECT_EQ(framesToShow({7}), std::vector<int>{7});
+    EXPECT_EQ(framesToShow({1, 2, 3}), (std::vector<int>{3, 2, 1}));
+    std::vector<int> many(16);
+    std::iota(many.begin(), many.end(), 1);
+    EXPECT_EQ(framesToShow(many), (std::vector<int>{16, 11, 6, 1}));
+}
+TEST(Html, SelfContained) {
+    const RunResults run = runOf({method("noaa", 1e-3, 1e-5), method("accum", 1e-4, 9e-5)}, 1e-7);
+    Pictures p{1, Rgb(100, 100, 0.5f), {Rgb(100, 100, 0.4f), Rgb(100, 100, 0.45f)}};
+    const std::string page = reportHtml(run, {p});
+    EXPECT_EQ(page.find("{{"), std::string::npos);
+    // Nothing is loaded from elsewhere.
+    EXPECT_FALSE(std::regex_search(page.substr(0, page.find("id=\"data\"")), std::regex("(src|href)=\"?(https?:)?//")));
+    // The shot's name cannot break out of the script.
+    const size_t begin = page.find("id=\"data\">") + 10, end = page.find("</script>", begin);
+    const auto data = nlohmann::json::parse(page.substr(begin, end - begin));
+    EXPECT_EQ(data["run"]["shot"]["name"], run.shot);
+    EXPECT_EQ(data["order"], nlohmann::json({1, 0}));
+    EXPECT_EQ(data["pictures"].size(), 1u);
+    EXPECT_EQ(data["pictures"][0]["methods"].size(), 2u);
+    EXPECT_TRUE(data["pictures"][0]["truth"].get<std::string>().starts_with("data:image/png;base64,iVBOR"));
+    EXPECT_NE(page.find("Chart.js"), std::string::npos);
+}
+TEST(Html, LargeFramesShowTheirTellingPart) {
+    const RunResults run = runOf({method("noaa", 1e-3, 1e-5), method("accum", 1e-4, 9e-5)}, 0);
+    Pictures p{1, Rgb(1920, 1080, 0.5f), {Rgb(1920, 1080, 0.5f), Rgb(1920, 1080, 0.5f)}};
+    for (auto& plane : p.methods[0].c)
+        for (int y = 1000; y < 1010; y++)
+            for (int x = 1700; x < 1710; x++) plane.at(x, y) = 1;
+    const std::string page = reportHtml(run, {p});
+    EXPECT_LT(page.size(), 2'000'000u);
+    const size_t begin = page.find("id=\"data\">") + 10, end = page.find("</script>", begin);
+    const auto window = nlohmann::json::parse(page.substr(begin, end - begin))["pictures"][0]["window"];
+    EXPECT_EQ(window[2], 960);
+    EXPECT_EQ(window[3], 540);
+    EXPECT_LE(window[0], 1700);
+    EXPECT_GE(window[0].get<int>() + 960, 1710);
+    EXPECT_GE(window[1].get<int>() + 540, 1010);
+}
+}  // namespace
+}  // namespace aa

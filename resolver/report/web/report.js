@@ -1,0 +1,287 @@
+// The report's page: everything is drawn from the JSON in #data, which `aaresolve report` wrote. No network, no storage.
+"use strict";
+(() => {
+  const { run, order, words, pictures, errorScale, errorColours } = JSON.parse(document.getElementById("data").textContent);
+  const $ = (id) => document.getElementById(id);
+  const methods = run.methods;
+  const measured = (m) => m.frames.filter((f) => f.metrics);
+
+  // ---- numbers: JSON carries Inf and NaN as text ----
+  const value = (v) => (v === "Inf" ? Infinity : v === "-Inf" ? -Infinity : v === "NaN" ? NaN : v);
+  const fixed = (v, digits) => {
+    const n = value(v);
+    return n == null ? "–" : Number.isFinite(n) ? n.toFixed(digits) : n > 0 ? "Inf" : n < 0 ? "−Inf" : "NaN";
+  };
+  const signed = (v) => (value(v) > 0 ? "+" : "") + fixed(v, 2).replace("-", "−");
+  const short = (v) => (v == null ? "–" : Number.isFinite(value(v)) ? Number(value(v).toPrecision(4)).toString() : fixed(v, 0));
+  const psnr = (mse) => (mse > 0 ? -10 * Math.log10(mse) : Infinity);
+
+  const element = (name, attributes = {}, ...children) => {
+    const e = document.createElement(name);
+    for (const [key, v] of Object.entries(attributes)) if (v != null) e.setAttribute(key, v);
+    e.append(...children.filter((c) => c != null));
+    return e;
+  };
+
+  // ---- header and words ----
+  $("shot").textContent = run.shot.name;
+  $("subtitle").textContent = "Anti-aliasing methods against ground truth, " + run.shot.resolution.join(" × ") + ", " +
+    (run.shot.static ? "static" : "moving") + " shot";
+  $("words").append(...words.map((w) => element("li", {}, w)));
+  $("version").textContent = run.run.program;
+
+  // ---- the table of figures ----
+  const pair = (a, b) => run.pairs.find((p) => (p.indices[0] === a && p.indices[1] === b) || (p.indices[0] === b && p.indices[1] === a));
+  const noaa = methods.findIndex((m) => m.id === "noaa");
+  const pooled = (key) => (m) => (m.pooled ? value(m.pooled[key]) : null);
+  const has = (key) => methods.some((m) => m.pooled && m.pooled[key] != null);
+  const columns = [
+    { title: "PSNR, dB", better: "high", get: pooled("psnr"), show: (m) => (m.pooled ? fixed(m.pooled.psnr, 2) : "–"),
+      // What the truth's own noise takes off the MSE: the PSNR lies between the two.
+      small: (m) => (m.pooled && m.pooled.mseCorrected > 0 && m.pooled.mseCorrected < value(m.pooled.mse)
+        ? "to " + fixed(psnr(m.pooled.mseCorrected), 2) : null) },
+    { title: "Over noaa, dB", better: "high", get: pooled("gainDb"), show: (m) => (m.pooled && m.pooled.gainDb != null && m.id !== "noaa" ? signed(m.pooled.gainDb) : "–"),
+      tone: (m) => (!m.pooled || m.pooled.gainDb == null || m.id === "noaa" ? "" : value(m.pooled.gainDb) >= 0 ? "better" : "worse"),
+      small: (m, i) => { const p = i !== noaa && pair(i, noaa); return p && !p.resolved ? "not resolved" : null; } },
+    { title: "To the next better, dB", get: (m, i) => { const g = toNext(i); return g ? g.gain : null; },
+      show: (m, i) => { const g = toNext(i); return g ? signed(g.gain) : "–"; },
+      small: (m, i) => { const g = toNext(i); return g && !g.resolved ? "not resolved" : null; } },
+    { title: "SSIM", better: "high", get: pooled("ssimLuma"), show: (m) => (m.pooled ? fixed(m.pooled.ssimLuma, 6) : "–") },
+    has("ssimRgb") && { title: "SSIM RGB", better: "high", get: pooled("ssimRgb"), show: (m) => (m.pooled ? fixed(m.pooled.ssimRgb, 6) : "–") },
+    has("flip") && { title: "FLIP", better: "low", get: pooled("flip"), show: (m) => (m.pooled ? short(m.pooled.flip) : "–") },
+    { title: "MSE", better: "low", get: pooled("mse"), show: (m) => (m.pooled ? short(m.pooled.mse) : "–"),
+      small: () => (run.truth.noiseMse > 0 ? "± " + short(run.truth.noiseMse) : null) },
+    { title: "SNR, dB", better: "high", get: pooled("snr"), show: (m) => (m.pooled ? fixed(m.pooled.snr, 2) : "–") },
+    has("relMse") && { title: "relMSE", better: "low", get: pooled("relMse"), show: (m) => (m.pooled ? short(m.pooled.relMse) : "–") },
+    { title: "Time, ns/px", better: "low", get: (m) => m.nsPerPixel, show: (m) => short(m.nsPerPixel),
+      small: (m) => short(m.secondsMedian * 1000) + " ms per frame" },
+    { title: "State, MB", better: "low", get: (m) => m.stateBytes, show: (m) => (m.stateBytes / 1048576).toFixed(2) },
+  ].filter(Boolean);
+  const ranked = methods.map((m, i) => i).filter((i) => methods[i].pooled).sort((a, b) => value(methods[a].pooled.mse) - value(methods[b].pooled.mse));
+  function toNext(i) {
+    const place = ranked.indexOf(i);
+    if (place < 1) return null;
+    const p = pair(i, ranked[place - 1]);
+    return { gain: value(methods[i].pooled.psnr) - value(methods[ranked[place - 1]].pooled.psnr), resolved: !p || p.resolved };
+  }
+  let rows = order.slice(), sortedBy = null, descending = true;
+  const drawTable = () => {
+    const heads = columns.map((c, k) => element("th", { scope: "col", "aria-sort": sortedBy === k ? (descending ? "descending" : "ascending") : "none" },
+      Object.assign(element("button", { type: "button" }, c.title), { onclick: () => sortBy(k) })));
+    $("figures").replaceChildren(
+      element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "Method"), ...heads)),
+      element("tbody", {}, ...rows.map((i) => {
+        const m = methods[i];
+        return element("tr", {}, element("th", { scope: "row" }, m.text, element("small", {}, m.title)), ...columns.map((c) => {
+          const small = c.small && c.small(m, i);
+          return element("td", { class: c.tone ? c.tone(m) : null }, c.show(m, i),
+            small ? element("small", { class: small === "not resolved" ? "unresolved" : null }, small) : null);
+        }));
+      })));
+  };
+  const sortBy = (k) => {
+    descending = sortedBy === k ? !descending : columns[k].better !== "low";
+    sortedBy = k;
+    const key = (i) => { const v = columns[k].get(methods[i], i); return v == null || Number.isNaN(v) ? null : v; };
+    rows = order.slice().sort((a, b) => {
+      const x = key(a), y = key(b);
+      if (x === null || y === null) return (x === null) - (y === null);
+      return x === y ? 0 : (x < y) === descending ? 1 : -1;
+    });
+    drawTable();
+    $("figures").querySelectorAll("thead button")[k].focus();
+  };
+  drawTable();
+  const judgedFrames = methods.length && methods[0].pooled ? methods[0].pooled.frames : 0;
+  $("figures-note").textContent = judgedFrames
+    ? `Figures of display-encoded values, pooled over ${judgedFrames} frame${judgedFrames > 1 ? "s" : ""} with ground truth: the mean squared error is averaged, never the decibels. ` +
+      "“to” is the PSNR after the truth’s own noise is taken off. “Not resolved”: the difference is below that noise, or not consistent over the picture (95 % bootstrap over tiles of 32 × 32 px)."
+    : "This run has no ground truth, so only times are known.";
+
+  // ---- charts ----
+  const hues = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#b8a800"]; // Okabe and Ito 2008
+  const markers = ["circle", "rect", "triangle", "rectRot", "star", "crossRot", "rectRounded", "cross"];
+  const colourOf = (i) => hues[order.indexOf(i) % hues.length];
+  const markerOf = (i) => markers[(order.indexOf(i) + Math.floor(order.indexOf(i) / hues.length)) % markers.length];
+  const dashOf = (i) => [[], [6, 3], [2, 2]][Math.floor(order.indexOf(i) / hues.length) % 3];
+  const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  let charts = [];
+  const drawCharts = () => {
+    charts.forEach((c) => c.destroy());
+    charts = [];
+    Chart.defaults.color = css("--quiet");
+    Chart.defaults.borderColor = css("--line");
+    Chart.defaults.font.family = getComputedStyle(document.body).fontFamily;
+    Chart.defaults.animation = false;
+    Chart.defaults.maintainAspectRatio = false;
+    const finite = (v) => (Number.isFinite(value(v)) ? value(v) : null);
+    const axis = (text, more = {}) => ({ title: { display: true, text }, ...more });
+    const shown = order.filter((i) => methods[i].pooled && finite(methods[i].pooled.psnr) !== null);
+    const show = (id, config) => charts.push(new Chart($(id), config));
+    if (!shown.length) { $("charts").hidden = true; return; }
+    show("scatter", {
+      type: "scatter",
+      data: { datasets: shown.map((i) => ({ label: methods[i].text, data: [{ x: methods[i].nsPerPixel, y: value(methods[i].pooled.psnr) }],
+        backgroundColor: colourOf(i), borderColor: colourOf(i), pointStyle: markerOf(i), pointRadius: 7, pointHoverRadius: 9, borderWidth: 2 })) },
+      options: { scales: { x: axis("time, ns per pixel (logarithmic)", { type: "logarithmic" }), y: axis("PSNR, dB", { grace: "8%" }) },
+        plugins: { legend: { position: "bottom", labels: { usePointStyle: true } },
+          tooltip: { callbacks: { label: (t) => `${t.dataset.label}: ${t.parsed.x.toPrecision(3)} ns/px, ${t.parsed.y.toFixed(2)} dB` } } } },
+    });
+    const gains = order.filter((i) => i !== noaa && methods[i].pooled && finite(methods[i].pooled.gainDb) !== null && methods[i].pooled.gainDb != null);
+    if (gains.length)
+      show("gain", {
+        type: "bar",
+        data: { labels: gains.map((i) => methods[i].text), datasets: [{ data: gains.map((i) => methods[i].pooled.gainDb),
+          backgroundColor: gains.map((i) => { const p = pair(i, noaa); return p && !p.resolved ? css("--line") : methods[i].pooled.gainDb >= 0 ? css("--better") : css("--worse"); }) }] },
+        options: { indexAxis: "y", scales: { x: axis("dB; grey = not resolved") }, plugins: { legend: { display: false },
+          tooltip: { callbacks: { label: (t) => `${signed(t.parsed.x)} dB` } } } },
+      });
+    else $("gain").closest("figure").hidden = true;
+    const numbers = [...new Set(methods.flatMap((m) => measured(m).map((f) => f.frame)))].sort((a, b) => a - b);
+    if (numbers.length > 1)
+      show("frames", {
+        type: "line",
+        data: { labels: numbers, datasets: order.filter((i) => measured(methods[i]).length).map((i) => {
+          const byFrame = new Map(measured(methods[i]).map((f) => [f.frame, finite(f.metrics.psnr)]));
+          return { label: methods[i].text, data: numbers.map((n) => byFrame.get(n) ?? null), borderColor: colourOf(i), backgroundColor: colourOf(i),
+            pointStyle: markerOf(i), borderDash: dashOf(i), borderWidth: 2, pointRadius: numbers.length > 40 ? 0 : 3, spanGaps: true };
+        }) },
+        options: { interaction: { mode: "index", intersect: false }, scales: { x: axis("frame"), y: axis("PSNR, dB", { grace: "5%" }) },
+          plugins: { legend: { position: "bottom", labels: { usePointStyle: true } },
+            tooltip: { itemSort: (a, b) => b.parsed.y - a.parsed.y, callbacks: { label: (t) => `${t.dataset.label}: ${t.parsed.y.toFixed(2)} dB` } } } },
+      });
+    else $("frames").closest("figure").hidden = true;
+  };
+  drawCharts();
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", drawCharts);
+
+  // ---- pictures ----
+  // A source is "truth", a method's index, or "error:" and a method's index.
+  const loaded = new Map();
+  const load = (url) => {
+    if (!loaded.has(url))
+      loaded.set(url, new Promise((resolve, reject) => {
+        const image = new Image();
+        image.onload = () => resolve(image);
+        image.onerror = () => reject(new Error("a picture in this report is damaged"));
+        image.src = url;
+      }));
+    return loaded.get(url);
+  };
+  const pixels = async (url) => {
+    const image = await load(url), canvas = element("canvas", { width: image.naturalWidth, height: image.naturalHeight });
+    const context = canvas.getContext("2d", { willReadFrequently: true });
+    context.drawImage(image, 0, 0);
+    return { canvas, context, data: context.getImageData(0, 0, canvas.width, canvas.height) };
+  };
+  const errorMaps = new Map();
+  const errorMap = (set, method) => {
+    const key = set.frame + ":" + method;
+    if (!errorMaps.has(key))
+      errorMaps.set(key, (async () => {
+        const test = await pixels(set.methods[method]), truth = await pixels(set.truth), out = test.data, t = out.data, r = truth.data.data;
+        for (let i = 0; i < t.length; i += 4) {
+          const d0 = t[i] - r[i], d1 = t[i + 1] - r[i + 1], d2 = t[i + 2] - r[i + 2];
+          const error = Math.sqrt((d0 * d0 + d1 * d1 + d2 * d2) / 3) / 255 / errorScale;
+          const c = errorColours[Math.min(errorColours.length - 1, Math.round(error * (errorColours.length - 1)))];
+          t[i] = c[0]; t[i + 1] = c[1]; t[i + 2] = c[2];
+        }
+        test.context.putImageData(out, 0, 0);
+        return test.canvas.toDataURL("image/png");
+      })());
+    return errorMaps.get(key);
+  };
+  const urlOf = (set, source) => (source === "truth" ? set.truth : source.startsWith("error:") ? errorMap(set, Number(source.slice(6))) : set.methods[Number(source)]);
+  const nameOf = (source) => (source === "truth" ? "ground truth" : source.startsWith("error:") ? "error of " + methods[Number(source.slice(6))].text : methods[Number(source)].text);
+
+  if (!pictures.length) {
+    $("viewer").hidden = $("details").hidden = true;
+  } else {
+    const zooms = [1, 2, 3, 4, 6, 8];
+    const options = () => [
+      pictures[0].truth ? element("option", { value: "truth" }, "Ground truth") : null,
+      element("optgroup", { label: "Methods" }, ...order.map((i) => element("option", { value: i }, methods[i].text))),
+      pictures[0].truth ? element("optgroup", { label: "Error maps" }, ...order.map((i) => element("option", { value: "error:" + i }, "error of " + methods[i].text))) : null,
+    ].filter(Boolean);
+    $("left").append(...options());
+    $("right").append(...options());
+    $("left").value = String(noaa >= 0 ? noaa : order[order.length - 1]);
+    $("right").value = String(order[0]);
+    $("frame").append(...pictures.map((p, k) => element("option", { value: k }, String(p.frame))));
+    $("frame-label").hidden = pictures.length < 2;
+    $("zoom").append(...zooms.map((z) => element("option", { value: z }, "× " + z)));
+    const fit = () => Math.max(1, Math.floor($("stage").clientWidth / pictures[0].window[2]));
+    $("zoom").value = String(zooms.filter((z) => z <= fit()).pop());
+
+    const setImage = async (id, set, source) => {
+      const image = $(id), zoom = Number($("zoom").value);
+      image.src = await urlOf(set, source);
+      image.alt = nameOf(source);
+      image.style.width = set.window[2] * zoom + "px";
+      image.style.height = set.window[3] * zoom + "px";
+    };
+    const show = async () => {
+      const set = pictures[Number($("frame").value)], [left, right] = [$("left").value, $("right").value];
+      await Promise.all([setImage("left-image", set, left), setImage("right-image", set, right)]);
+      const [x, y, w, h] = set.window, part = w < run.shot.resolution[0] || h < run.shot.resolution[1];
+      $("stage-note").textContent = `Left: ${nameOf(left)}. Right: ${nameOf(right)}. Drag the bar, or focus it and use the arrow keys.` +
+        (part ? ` The part of the frame at ${x}, ${y} (${w} × ${h} px) where the methods differ most.` : "");
+      $("scale").hidden = !left.startsWith("error:") && !right.startsWith("error:");
+    };
+    for (const id of ["left", "right", "frame", "zoom"]) $(id).addEventListener("change", show);
+    $("frame").addEventListener("change", () => drawCrops());
+    $("swap").addEventListener("click", () => {
+      [$("left").value, $("right").value] = [$("right").value, $("left").value];
+      show();
+    });
+    $("scale").append("0", element("span", { class: "bar", style: `background: linear-gradient(to right, ${errorColours.map((c) => `rgb(${c})`).join(",")})` }),
+      "≥ " + errorScale, "error per pixel of encoded values 0 to 1, RMS over R, G, B");
+
+    // ---- crops ----
+    const drawCrops = async () => {
+      const set = pictures[Number($("frame").value)];
+      const sources = (set.truth ? ["truth"] : []).concat(order.map(String));
+      const drawn = await Promise.all(set.details.map(async ([x, y, w, h]) => {
+        const figures = await Promise.all(sources.map(async (source) => {
+          const image = await load(await urlOf(set, source));
+          const canvas = element("canvas", { width: w, height: h, role: "img", "aria-label": `${nameOf(source)}, detail at ${x}, ${y}` });
+          canvas.getContext("2d").drawImage(image, x - set.window[0], y - set.window[1], w, h, 0, 0, w, h);
+          return element("figure", {}, canvas, element("figcaption", {}, nameOf(source)));
+        }));
+        return element("div", {}, element("h3", {}, `Frame ${set.frame}, ${w} × ${h} px at ${x}, ${y}`), element("div", { class: "crop-row" }, ...figures));
+      }));
+      $("crops").replaceChildren(...drawn);
+      $("details").hidden = !drawn.length;
+    };
+    show();
+    drawCrops();
+  }
+
+  // ---- what was run ----
+  const facts = [
+    ["Shot", `${run.shot.name}, ${run.shot.resolution.join(" × ")}, ${run.shot.static ? "static" : "moving"}`],
+    ["Jitter", run.shot.jitter.period > 1
+      ? `${run.shot.jitter.sequence}, from index ${run.shot.jitter.start}, period ${run.shot.jitter.period}; mean of a block ` +
+        `(${run.shot.jitter.meanPx.map((v) => v.toFixed(4)).join(", ")}) px, ${run.shot.jitter.centred ? "centred" : "not centred"}`
+      : "none"],
+    ["Truth", Object.keys(run.truth.images).length || run.truth.noiseMse != null
+      ? (run.truth.samplesPerHalf > 0 ? `two halves of ${run.truth.samplesPerHalf} samples per pixel` : "exact coverage") +
+        `, ${run.truth.filter} filter ${run.truth.filterWidthPx} px` +
+        (run.truth.noiseMse > 0 ? `; its own noise is an MSE of ${short(run.truth.noiseMse)} (${fixed(psnr(run.truth.noiseMse), 2)} dB)` : "")
+      : "none"],
+    ["Display", `exposure ${run.run.display.exposureEv} EV, tone map ${run.run.display.toneMap}, sRGB`],
+    ["Machine", `${run.run.machine}, ${run.run.instructionSet}, ${run.run.threads} thread${run.run.threads > 1 ? "s" : ""}, precision ${run.run.precision}`],
+    ["Program", `AA Resolve ${run.run.program}`],
+    ["Input repaired", Object.entries(run.run.sanitised).filter(([, n]) => n > 0).map(([what, n]) => `${what} ${n}`).join(", ") || "nothing"],
+    run.shot.renderSeconds && ["Render time per frame", Object.entries(run.shot.renderSeconds).map(([what, s]) => `${what} ${short(s)} s`).join(", ")],
+  ].filter(Boolean);
+  $("run").append(...facts.flatMap(([name, text]) => [element("dt", {}, name), element("dd", {}, text)]));
+  $("parameters").append(
+    element("thead", {}, element("tr", {}, ...["Method", "Parameters", "Passes read", "Source"].map((t) => element("th", { scope: "col" }, t)))),
+    element("tbody", {}, ...order.map((i) => {
+      const m = methods[i];
+      return element("tr", {}, element("th", { scope: "row" }, m.text),
+        element("td", {}, Object.entries(m.parameters).map(([k, v]) => `${k} = ${v}`).join(", ") || "none"),
+        element("td", {}, m.passes.join(", ")), element("td", {}, m.source));
+    })));
+})();

@@ -1,0 +1,46 @@
+#!/bin/sh
+# report_test.sh PROGRAM BROWSER: makes a report of a synthetic shot and opens it from disk, without network. The page must
+# draw its table, charts, slider and details, and its console must stay empty of errors.
+set -eu
+program=$1
+browser=$2
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+"$program" synth moving -o "$folder/shot" --frames 3 >/dev/null
+"$program" run "$folder/shot" -m noaa -m fxaa311 -m taaSimplest -m uncharted -m unchartedNorm -o "$folder/run" -q >/dev/null
+"$program" report "$folder/run" -o "$folder/report.html" >/dev/null
+
+# A visitor who sorts by PSNR, asks for an error map, another zoom, and swaps the sides.
+cat >>"$folder/report.html" <<'VISITOR'
+<script>
+  const pick = (id, value) => { const e = document.getElementById(id); e.value = value; e.dispatchEvent(new Event("change")); };
+  document.querySelector("#figures thead button").click();
+  pick("left", "error:0");
+  pick("zoom", "3");
+  document.getElementById("swap").click();
+</script>
+VISITOR
+
+"$browser" --headless=new --no-sandbox --disable-gpu --user-data-dir="$folder/profile" --host-resolver-rules="MAP * ~NOTFOUND" \
+    --enable-logging=stderr --virtual-time-budget=20000 --dump-dom "file://$folder/report.html" >"$folder/dom.html" 2>"$folder/log"
+
+failed=0
+expect() { # WHAT PATTERN COUNT: at least COUNT lines or places of the drawn page match
+    found=$(grep -oE "$2" "$folder/dom.html" | wc -l)
+    [ "$found" -ge "$3" ] || { echo "report: $1: expected at least $3, found $found"; failed=1; }
+}
+if grep -E 'CONSOLE' "$folder/log" | grep -iE 'error|uncaught|failed|refused'; then
+    echo "report: errors in the browser's console"
+    failed=1
+fi
+expect "rows of the table" '<th scope="row">(noaa|fxaa311|taaSimplest|uncharted|unchartedNorm)<small' 5
+expect "sortable columns" 'aria-sort="none"' 6
+expect "a sorted column" 'aria-sort="descending"' 1
+expect "sentences" '<li>' 2
+expect "charts that were drawn" '<canvas id="(scatter|gain|frames)"[^>]*style="[^"]*(width|height)' 3
+expect "slider that was set up" '<img-comparison-slider[^>]*rendered' 1
+expect "pictures in the slider" '<img id="(left|right)-image"[^>]*src="data:image/png' 2
+expect "the error map, swapped to the right" '<img id="right-image"[^>]*alt="error of noaa"[^>]*width: 1440px' 1
+expect "details" '<canvas width="48" height="48"' 6
+expect "parameters" 'What was run' 1
+exit $failed
