@@ -1,18 +1,13 @@
 #include "methods/fxaa.h"
 
-#include "methods/fxaa_kernels.h"
-#include "methods/luma.h"
+#include "methods/fxaa_base.h"
 
 namespace aa {
 namespace {
 
-struct Preset {
-    std::string_view name;
-    std::vector<double> stepsPx;  // increments; the last is a jump whose end is never sampled
-};
 // FXAA 3.11, methods/02 s.2.1: 10-15 medium dither, 20-29 less dither, 39 no dither.
-const std::vector<Preset>& presets311() {
-    static const std::vector<Preset> presets = {
+const std::vector<FxaaPreset>& presets311() {
+    static const std::vector<FxaaPreset> presets = {
         {"10", {1.5, 3, 12}},
         {"11", {1, 1.5, 3, 12}},
         {"12", {1, 1.5, 2, 4, 12}},
@@ -33,60 +28,6 @@ const std::vector<Preset>& presets311() {
     };
     return presets;
 }
-std::vector<std::string_view> presetNames(const std::vector<Preset>& presets) {
-    std::vector<std::string_view> names;
-    for (const auto& p : presets) names.push_back(p.name);
-    return names;
-}
-void setDistances(FxaaArgs& args, const std::vector<double>& stepsPx) {
-    double sumPx = 0;
-    args.steps = 0;
-    for (const double step : stepsPx) args.distanceHalfPx[args.steps++] = int(2 * (sumPx += step));
-}
-
-// What every variant keeps: the luma plane and, on request, what it found at each edge pixel.
-class FxaaMethod : public Method {
-  public:
-    size_t stateBytes() const override { return luma_.bytes(); }
-    std::vector<DebugLayer> debugLayers() const override {
-        if (!keepDebugLayers) return {};
-        // Gold: horizontal; blue: vertical (methods/02 s.2.2).
-        std::vector<PlaneF> colour(3, PlaneF(orientation_.width(), orientation_.height()));
-        for (int y = 0; y < orientation_.height(); y++)
-            for (int x = 0; x < orientation_.width(); x++) {
-                const bool horizontal = orientation_.at(x, y) == 1, vertical = orientation_.at(x, y) == 2;
-                colour[0].at(x, y) = horizontal ? 1.0f : 0.0f;
-                colour[1].at(x, y) = horizontal ? 0.84f : 0.0f;
-                colour[2].at(x, y) = vertical ? 1.0f : 0.0f;
-            }
-        return {{"edges", std::move(colour)}, {"search", {negativePx_, positivePx_, shiftPx_}}};
-    }
-
-  protected:
-    FxaaArgs prepare(const Rgb& filtered, Rgb& out) {
-        args_.luma = luma_.row(0);
-        args_.in = view(filtered);
-        args_.out = view(out);
-        args_.stride = filtered.stride();
-        args_.width = filtered.width();
-        args_.height = filtered.height();
-        if (keepDebugLayers) {
-            for (PlaneF* p : {&orientation_, &negativePx_, &positivePx_, &shiftPx_})
-                *p = PlaneF(filtered.width(), filtered.height());
-            args_.orientation = orientation_.row(0);
-            args_.negativePx = negativePx_.row(0);
-            args_.positivePx = positivePx_.row(0);
-            args_.shiftPx = shiftPx_.row(0);
-        }
-        return args_;
-    }
-    FxaaArgs args_{};
-    PlaneF luma_;
-
-  private:
-    PlaneF orientation_, negativePx_, positivePx_, shiftPx_;
-};
-
 class Fxaa311 : public FxaaMethod {
   public:
     explicit Fxaa311(const Params& p) : linear_(p.choice("blendSpace") == "linear") {
@@ -100,11 +41,12 @@ class Fxaa311 : public FxaaMethod {
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         const bool lumaOfLinear = lumaKind_ == LumaKind::sqrtLinear;
         lumaPlane(lumaOfLinear ? frame.colorLinear : frame.colorEncoded, lumaKind_, exec, luma_);
-        const FxaaArgs args = prepare(linear_ ? frame.colorLinear : frame.colorEncoded, out);
-        runKernel(fxaaKernelsFor(exec.isa).fxaa311, exec, args, frame.height);
+        prepare(args_, linear_ ? frame.colorLinear : frame.colorEncoded, out);
+        runKernel(fxaaKernelsFor(exec.isa).fxaa311, exec, args_, frame.height);
     }
 
   private:
+    FxaaArgs args_{};
     bool linear_;
     LumaKind lumaKind_;
 };

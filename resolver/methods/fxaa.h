@@ -12,4 +12,7 @@
 
 namespace aa {
 MethodDescriptor fxaa311Descriptor();
-}
+MethodDescriptor fxaa1Descriptor();        // white paper: exhaustive search, low-pass against sub-pixel aliasing
+MethodDescriptor fxaaCsDescriptor();       // compute shader (J. Stanard): log-luma decisions, blend in linear light
+MethodDescriptor fxaaConsoleDescriptor();  // FXAA 3.11 console: four taps along the local edge direction
+}  // namespace aa

@@ -20,5 +20,24 @@ struct FxaaArgs {
 struct FxaaKernels {
     RowKernel<FxaaArgs> fxaa311;
 };
+
+// FXAA 1: sub-pixel aliasing is removed by mixing in a low-pass instead of by shifting further.
+struct Fxaa1Args : FxaaArgs {
+    double subpixCap, subpixTrim;
+    int acceleration;   // pixels per read of the search
+    bool crossLowPass;  // mean of 5 taps instead of 9
+};
+// Compute-shader variant: `subpix` is SubpixelRemoval; edgeThreshold is unused (the contrast test is absolute).
+struct FxaaCsArgs : FxaaArgs {};
+// Console variant: four taps along the edge.
+struct FxaaConsoleArgs : FxaaArgs {
+    double reachPx, sharpness;
+};
+struct FxaaVariantKernels {
+    RowKernel<Fxaa1Args> fxaa1;
+    RowKernel<FxaaCsArgs> fxaaCs;
+    RowKernel<FxaaConsoleArgs> console;
+};
 }  // namespace aa
+AA_KERNEL_TABLE(aa::FxaaVariantKernels, fxaaVariantKernels)
 AA_KERNEL_TABLE(aa::FxaaKernels, fxaaKernels)

@@ -1,6 +1,9 @@
 // One line per method; it then appears in `list`, every property test, sweeps and reports.
 #include "methods/accum.h"
 #include "methods/dmsaa.h"
+#include "methods/deaa.h"
+#include "methods/dlaa.h"
+#include "methods/edge_blur.h"
 #include "methods/fxaa.h"
 #include "methods/gbaa.h"
 #include "methods/master.h"
@@ -9,6 +12,10 @@
 #include "methods/noaa.h"
 #include "methods/rsaa.h"
 #include "methods/sbaa.h"
+#include "methods/mlaa.h"
+#include "methods/noaa.h"
+#include "methods/rsaa.h"
+#include "methods/resolve_filters.h"
 #include "methods/smaa.h"
 #include "methods/sraa.h"
 #include "methods/ssaa.h"
@@ -23,9 +30,20 @@ const std::vector<MethodDescriptor>& registry() {
         noaaDescriptor(),
         accumDescriptor(),
         ssaaDescriptor(),
+        noaaDescriptor(), accumDescriptor(), ssaaDescriptor(),
+        resolveDescriptor(),
         // spatial
+        fxaa1Descriptor(),
         fxaa311Descriptor(),
+        fxaaCsDescriptor(),
+        fxaaConsoleDescriptor(),
+        mlaaDescriptor(),
         smaa1xDescriptor(),
+        smaaS2xDescriptor(),
+        dlaaDescriptor(),
+        nfaaDescriptor(),
+        ssssaaDescriptor(),
+        deaaDescriptor(),
         // geometry
         msaaDescriptor(),
         csaaDescriptor(),
@@ -36,6 +54,8 @@ const std::vector<MethodDescriptor>& registry() {
         sbaaDescriptor(),
         rsaaDescriptor(),
         // temporal
+        smaaT2xDescriptor(),
+        smaa4xDescriptor(),
         taaSimplestDescriptor(),
         unchartedDescriptor(),
         unchartedNormDescriptor(),

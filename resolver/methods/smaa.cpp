@@ -1,33 +1,9 @@
 #include "methods/smaa.h"
 
-#include <cstring>
-
 #include "methods/luma.h"
 #include "methods/smaa_areas.h"
 
 namespace aa {
-
-void EdgePlane::resize(int width, int height, int border) {
-    if (width == width_ && height == height_ && border == border_) return;
-    width_ = width;
-    height_ = height;
-    border_ = border;
-    stride_ = width + 2 * border + 16;  // lanes may write past the width
-    bytes_.assign(size_t(stride_) * size_t(height + 2 * border) + 16, 0);
-}
-void EdgePlane::clear() { std::memset(bytes_.data(), 0, bytes_.size()); }
-void EdgePlane::fillBorder() {
-    for (int y = 0; y < height_; y++) {
-        uint8_t* const r = row(y);
-        std::memset(r - border_, r[0], size_t(border_));
-        std::memset(r + width_, r[width_ - 1], size_t(border_));
-    }
-    const size_t length = size_t(width_ + 2 * border_);
-    for (int y = 1; y <= border_; y++) {
-        std::memcpy(row(-y) - border_, row(0) - border_, length);
-        std::memcpy(row(height_ - 1 + y) - border_, row(height_ - 1) - border_, length);
-    }
-}
 
 namespace {
 struct Preset {
@@ -48,8 +24,7 @@ Preset chosen(const Params& p) {
 }
 }  // namespace
 
-Smaa::Smaa(const Params& p, const SmaaSubSample& subSample)
-    : topOffset_(subSample.topEdgeOffset), leftOffset_(subSample.leftEdgeOffset) {
+Smaa::Smaa(const Params& p) : published_(p.choice("areas") == "table") {
     const Preset preset = chosen(p);
     edge_.kind = SmaaEdges(p.choiceIndex("edges"));
     edge_.predication = SmaaPredication(p.choiceIndex("predication"));
@@ -64,13 +39,26 @@ Smaa::Smaa(const Params& p, const SmaaSubSample& subSample)
     weight_.cornerRounding = preset.cornerRounding < 0 ? -1 : preset.cornerRounding / 100;
     weight_.unorm8 = p.choice("weights") == "unorm8";
     border_ = std::max(2 * preset.searchSteps, preset.diagonalSteps) + 4;
-    const bool published = p.choice("areas") == "table";
-    if (published) {
-        orthoTables_[0] = orthogonalTable(double(topOffset_));
-        orthoTables_[1] = orthogonalTable(double(leftOffset_));
+}
+
+const Smaa::Tables& Smaa::tablesFor(glm::dvec2 samplePx) {
+    for (const auto& t : tables_)
+        if (t.samplePx == samplePx) return t;
+    Tables t;
+    t.samplePx = samplePx;
+    if (published_) {
+        t.orthogonal[0] = orthogonalTable(-samplePx.y);
+        t.orthogonal[1] = orthogonalTable(-samplePx.x);
     }
-    if (preset.diagonalSteps > 0)
-        for (size_t k = 0; k < 2; k++) diagonalTables_[k] = diagonalTable(subSample.diagonalOffsets[k], published);
+    if (weight_.diagonalSteps > 0) {
+        // The displacement along the line does nothing; across it, half of it in x and half in y (y up).
+        const double first = (samplePx.x + samplePx.y) / 2, second = (samplePx.x - samplePx.y) / 2;
+        t.diagonal[0] = diagonalTable({first, -first}, published_);
+        t.diagonal[1] = diagonalTable({second, -second}, published_);
+    }
+    if (tables_.size() == 64) tables_.erase(tables_.begin());  // jitter without a period
+    tables_.push_back(std::move(t));
+    return tables_.back();
 }
 
 void Smaa::findEdges(const Frame& frame, const Rgb& colorEncoded, const Exec& exec) {
@@ -93,10 +81,10 @@ void Smaa::findEdges(const Frame& frame, const Rgb& colorEncoded, const Exec& ex
     args.edgeStride = edges_.stride();
     args.width = width_;
     runKernel(smaaKernelsFor(exec.isa).edges, exec, args, height_);
-    edges_.fillBorder();
+    edges_.repeatBorder();
 }
 
-void Smaa::findWeights(const Frame& frame, const Rgb& colorEncoded, const Exec& exec) {
+void Smaa::findWeights(const Frame& frame, const Rgb& colorEncoded, glm::dvec2 samplePx, const Exec& exec) {
     findEdges(frame, colorEncoded, exec);
     const size_t pairs = 2 * size_t(width_) * size_t(height_);
     topWeights_.resize(pairs);
@@ -105,7 +93,8 @@ void Smaa::findWeights(const Frame& frame, const Rgb& colorEncoded, const Exec& 
     transposed_.clear();
 
     SmaaWeightArgs args = weight_;
-    for (size_t k = 0; k < 2; k++) args.diagonalTable[k] = diagonalTables_[k].data();
+    const Tables& tables = tablesFor(samplePx);
+    for (size_t k = 0; k < 2; k++) args.diagonalTable[k] = tables.diagonal[k].data();
     args.edges = edges_.row(0);
     args.edgeStride = edges_.stride();
     args.width = width_;
@@ -115,12 +104,12 @@ void Smaa::findWeights(const Frame& frame, const Rgb& colorEncoded, const Exec& 
     args.lengths = keepDebugLayers ? topLengths_.data() : nullptr;
     args.weightAlong = 1;
     args.weightAcross = width_;
-    args.offset = topOffset_;
-    args.orthoTable = orthoTables_[0].empty() ? nullptr : orthoTables_[0].data();
+    args.offset = -float(samplePx.y);
+    args.orthoTable = published_ ? tables.orthogonal[0].data() : nullptr;
     const auto& kernel = smaaWeightKernelsFor(exec.isa).weights;
     runKernel(kernel, exec, args, height_);
 
-    transposed_.fillBorder();
+    transposed_.repeatBorder();
     args.edges = transposed_.row(0);
     args.edgeStride = transposed_.stride();
     args.width = height_;
@@ -129,8 +118,8 @@ void Smaa::findWeights(const Frame& frame, const Rgb& colorEncoded, const Exec& 
     args.lengths = keepDebugLayers ? leftLengths_.data() : nullptr;
     args.weightAlong = width_;
     args.weightAcross = 1;
-    args.offset = leftOffset_;
-    args.orthoTable = orthoTables_[1].empty() ? nullptr : orthoTables_[1].data();
+    args.offset = -float(samplePx.x);
+    args.orthoTable = published_ ? tables.orthogonal[1].data() : nullptr;
     runKernel(kernel, exec, args, width_);
 }
 
@@ -225,10 +214,10 @@ PassSet smaaPasses(const Params& p) {
 namespace {
 class Smaa1x : public Method {
   public:
-    explicit Smaa1x(const Params& p) : smaa_(p, {}), linear_(p.choice("blendSpace") == "linear") {}
+    explicit Smaa1x(const Params& p) : smaa_(p), linear_(p.choice("blendSpace") == "linear") {}
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         smaa_.keepDebugLayers = keepDebugLayers;
-        smaa_.findWeights(frame, frame.colorEncoded, exec);
+        smaa_.findWeights(frame, frame.colorEncoded, {0, 0}, exec);
         smaa_.blend(linear_ ? frame.colorLinear : frame.colorEncoded, out, exec);
     }
     size_t stateBytes() const override { return smaa_.bytes(); }

@@ -10,39 +10,19 @@
 // Deviations: areas are exact at the integer distances instead of a lookup in an 8-bit texture of square distances
 // (areas=table gives that); left edges are processed as top edges of the transposed edge plane.
 #pragma once
+#include "methods/edge_plane.h"
 #include "methods/method.h"
 #include "methods/smaa_kernels.h"
 
 namespace aa {
 
-// A plane of bytes whose border repeats the edge pixels `border` far in both axes.
-class EdgePlane {
-  public:
-    void resize(int width, int height, int border);
-    void clear();
-    void fillBorder();
-    uint8_t* row(int y) { return bytes_.data() + (ptrdiff_t(y) + border_) * stride_ + border_; }
-    const uint8_t* row(int y) const { return bytes_.data() + (ptrdiff_t(y) + border_) * stride_ + border_; }
-    int stride() const { return stride_; }
-    size_t bytes() const { return bytes_.size(); }
-
-  private:
-    int width_ = 0, height_ = 0, border_ = 0, stride_ = 0;
-    std::vector<uint8_t> bytes_;
-};
-
-// Sub-sample of a frame: across which offset its edges are revectorised (methods/03 s.3.3-3.5).
-struct SmaaSubSample {
-    float leftEdgeOffset = 0, topEdgeOffset = 0;
-    std::array<std::array<double, 2>, 2> diagonalOffsets = {};  // of the two diagonal directions, y up
-};
-
 // The three passes, for one image at a time.
 class Smaa {
   public:
-    Smaa(const Params& params, const SmaaSubSample& subSample);
-    // Finds edges in `colorEncoded` (or frame.depthView) and the weights of `edges()`.
-    void findWeights(const Frame& frame, const Rgb& colorEncoded, const Exec& exec);
+    explicit Smaa(const Params& params);
+    // Finds edges in `colorEncoded` (or frame.depthView) and their weights. The image was sampled at `samplePx` from
+    // the pixel centres (y down); its revectorised edges are moved back by that much (methods/03 s.3.3-3.5).
+    void findWeights(const Frame& frame, const Rgb& colorEncoded, glm::dvec2 samplePx, const Exec& exec);
     // Blends `channels` planes of stride `stride` by the weights found last; borders of the input are filled.
     void blend(const float* const in[3], float* const out[3], int channels, int stride, const Exec& exec) const;
     void blend(const Rgb& in, Rgb& out, const Exec& exec) const;
@@ -52,10 +32,16 @@ class Smaa {
 
   private:
     void findEdges(const Frame& frame, const Rgb& colorEncoded, const Exec& exec);
+    // Area tables for one sample position: of top and left edges, and of the two diagonal directions.
+    struct Tables {
+        glm::dvec2 samplePx;
+        std::vector<float> orthogonal[2], diagonal[2];
+    };
+    const Tables& tablesFor(glm::dvec2 samplePx);  // made on first use
     SmaaEdgeArgs edge_{};
     SmaaWeightArgs weight_{};
-    std::vector<float> orthoTables_[2], diagonalTables_[2];  // top and left edges; the two directions
-    float topOffset_, leftOffset_;
+    bool published_;  // areas as in the shader's texture
+    std::vector<Tables> tables_;
     int width_ = 0, height_ = 0, border_;
     PlaneF luma_;
     EdgePlane edges_, transposed_;
@@ -67,5 +53,8 @@ std::vector<ParamSpec> smaaParams();
 PassSet smaaPasses(const Params& params);
 
 MethodDescriptor smaa1xDescriptor();
+MethodDescriptor smaaS2xDescriptor();  // two sub-samples, each through SMAA 1x, averaged (methods/03 s.3.4)
+MethodDescriptor smaaT2xDescriptor();  // two jittered frames, weighted by velocity (s.3.3)
+MethodDescriptor smaa4xDescriptor();   // both (s.3.5)
 
 }  // namespace aa

@@ -1,0 +1,37 @@
+// resolve: reconstruction filters over the sub-samples of a neighbourhood (MSAAFilter; methods/01 s.1.8).
+//
+// out = sum w c / sum w over all sub-samples within the filter's radius r = diameter / 2, w = f(|dx| / r) f(|dy| / r),
+// colours clamped to >= 0 before, the result after. Linear light, offsets in px from the output pixel's centre.
+#pragma once
+#include "methods/method.h"
+#include "methods/resolve_filters_kernels.h"
+
+namespace aa {
+
+enum class ResolveFilter {
+    box,
+    tent,
+    gaussian,
+    smoothstep,
+    bspline,
+    mitchell,
+    catmullRom,
+    cubic,
+    blackmanHarris,
+    sinc,
+    lanczos
+};
+struct ResolveShape {
+    ResolveFilter filter = ResolveFilter::box;
+    double diameterPx = 1, sigma = 0.5, b = 0, c = 0.5;
+    bool textbookSinc = false;  // zeros at whole pixels instead of every half pixel
+    int lobes = 2;              // lanczos
+};
+// f of the filter at x = |offset| / radius, 0 <= x <= 1.
+double filterWeight(const ResolveShape& shape, double x);
+// All sub-samples in the footprint, nearest first, weights normalised to 1 (the box where they sum to less than 1e-5).
+std::vector<ResolveTap> resolveTaps(const ResolveShape& shape, const std::vector<glm::dvec2>& samplePositionsPx);
+
+MethodDescriptor resolveDescriptor();
+
+}  // namespace aa
