@@ -1,21 +1,19 @@
 // One line per method; it then appears in `list`, every property test, sweeps and reports.
 #include "methods/accum.h"
-#include "methods/dmsaa.h"
 #include "methods/deaa.h"
 #include "methods/dlaa.h"
+#include "methods/dmsaa.h"
 #include "methods/edge_blur.h"
 #include "methods/fxaa.h"
 #include "methods/gbaa.h"
 #include "methods/master.h"
 #include "methods/method.h"
+#include "methods/mlaa.h"
 #include "methods/msaa.h"
 #include "methods/noaa.h"
+#include "methods/resolve_filters.h"
 #include "methods/rsaa.h"
 #include "methods/sbaa.h"
-#include "methods/mlaa.h"
-#include "methods/noaa.h"
-#include "methods/rsaa.h"
-#include "methods/resolve_filters.h"
 #include "methods/smaa.h"
 #include "methods/sraa.h"
 #include "methods/ssaa.h"
@@ -30,7 +28,6 @@ const std::vector<MethodDescriptor>& registry() {
         noaaDescriptor(),
         accumDescriptor(),
         ssaaDescriptor(),
-        noaaDescriptor(), accumDescriptor(), ssaaDescriptor(),
         resolveDescriptor(),
         // spatial
         fxaa1Descriptor(),
