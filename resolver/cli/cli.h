@@ -35,5 +35,6 @@ void addSheet(CLI::App& app, Context& context);
 void addCompare(CLI::App& app, Context& context);
 void addLearnRsaa(CLI::App& app, Context& context);
 void addSynth(CLI::App& app, Context& context);
+void addCheck(CLI::App& app, Context& context);
 
 }  // namespace aa

@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
     aa::Context context;
     const auto commands = {
         aa::addList,  aa::addPlan,    aa::addRun,       aa::addBench, aa::addFilter,
-        aa::addSheet, aa::addCompare, aa::addLearnRsaa, aa::addSynth,
+        aa::addSheet, aa::addCompare, aa::addLearnRsaa, aa::addSynth, aa::addCheck,
     };
     for (const auto add : commands) add(app, context);
     try {
