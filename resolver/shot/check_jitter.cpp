@@ -1,11 +1,13 @@
 #include "shot/check_jitter.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <glm/geometric.hpp>
 #include <glm/mat2x2.hpp>
 #include <glm/matrix.hpp>
+#include <numbers>
 
 namespace aa {
 using glm::dvec2;
@@ -15,6 +17,7 @@ constexpr size_t kFewestPixels = 60;     // below, the standard error of a fit e
 constexpr double kLeastContrast = 0.02;  // linear; weaker edges drown in shading
 constexpr double kTolerancePx = 0.12;    // busy edges shorten an offset of 0.5 px by about this much
 constexpr double kSigmas = 4;
+constexpr size_t kDirections = 16, kFewestOfADirection = 12;
 constexpr double kLeastIsotropy = 0.35;  // of edge directions: 4 l1 l2 / (l1 + l2)^2; 0.64 when 80 % run one way
 
 // Where an edge between two flat sides crosses a pixel of the mean picture.
@@ -64,10 +67,13 @@ std::string px(dvec2 v) {
 
 Registration registerSamples(const std::vector<const PlaneF*>& sample, const std::vector<const PlaneF*>& mean,
                              const std::vector<dvec2>& meanOver, const Plane<uint8_t>& usable) {
-    glm::dmat2 normalMatrix(0.0);
-    dvec2 right(0.0);
-    double squares = 0;
-    Registration r;
+    struct Sample {
+        dvec2 v;
+        double difference;
+        size_t direction;
+    };
+    std::vector<Sample> samples;
+    std::array<size_t, kDirections> count{};
     const int w = mean[0]->width(), h = mean[0]->height();
     for (int y = 1; y + 1 < h; y++)
         for (int x = 1; x + 1 < w; x++) {
@@ -76,23 +82,34 @@ Registration registerSamples(const std::vector<const PlaneF*>& sample, const std
             if (e.contrast == 0) continue;
             const double difference = (double(sample[e.channel]->at(x, y)) - mean[e.channel]->at(x, y)) / e.contrast;
             if (!(std::abs(difference) <= 1.1)) continue;  // lit differently: not this edge
-            const dvec2 v = e.normal / extentAlong(e.normal, meanOver);
-            normalMatrix += glm::outerProduct(v, v);
-            right += v * difference;
-            squares += difference * difference;
-            r.pixels++;
+            const double turn =
+                std::atan2(e.normal.y, e.normal.x) / std::numbers::pi;  // a line is the same after half a turn
+            const size_t direction = size_t((turn - std::floor(turn)) * kDirections) % kDirections;
+            samples.push_back({e.normal / extentAlong(e.normal, meanOver), difference, direction});
+            count[direction]++;
         }
-    const double determinant = glm::determinant(normalMatrix);
-    // Edges of one direction say nothing about the offset along them, and noise in their normals would say it wrongly.
-    const double trace = normalMatrix[0][0] + normalMatrix[1][1];
-    if (r.pixels < 3 || !(determinant > kLeastIsotropy * trace * trace / 4)) {
-        r.pixels = 0;
-        return r;
+    // Every direction counts the same, however many edges run that way: one wall of stripes must not drown the rest.
+    glm::dmat2 normalMatrix(0.0), weightSquares(0.0);
+    dvec2 right(0.0);
+    Registration r;
+    for (const Sample& s : samples) {
+        if (count[s.direction] < kFewestOfADirection) continue;
+        const double weight = 1.0 / double(count[s.direction]);
+        normalMatrix += weight * glm::outerProduct(s.v, s.v);
+        weightSquares += weight * weight * glm::outerProduct(s.v, s.v);
+        right += weight * s.difference * s.v;
+        r.pixels++;
     }
+    // Edges of one direction say nothing about the offset along them, and noise in their normals would say it wrongly.
+    const double determinant = glm::determinant(normalMatrix), trace = normalMatrix[0][0] + normalMatrix[1][1];
+    if (r.pixels < 3 || !(determinant > kLeastIsotropy * trace * trace / 4)) return {};
     const glm::dmat2 inverse = glm::inverse(normalMatrix);
     r.offsetPx = inverse * right;
-    const double variance = std::max(squares - glm::dot(right, r.offsetPx), 0.0) / double(r.pixels - 2);
-    r.sigmaPx = {std::sqrt(variance * inverse[0][0]), std::sqrt(variance * inverse[1][1])};
+    double squares = 0;
+    for (const Sample& s : samples)
+        if (count[s.direction] >= kFewestOfADirection) squares += std::pow(s.difference - glm::dot(s.v, r.offsetPx), 2);
+    const glm::dmat2 covariance = inverse * weightSquares * inverse * (squares / double(r.pixels - 2));
+    r.sigmaPx = {std::sqrt(covariance[0][0]), std::sqrt(covariance[1][1])};
     return r;
 }
 
