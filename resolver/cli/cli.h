@@ -36,5 +36,6 @@ void addCompare(CLI::App& app, Context& context);
 void addReport(CLI::App& app, Context& context);
 void addLearnRsaa(CLI::App& app, Context& context);
 void addSynth(CLI::App& app, Context& context);
+void addCheck(CLI::App& app, Context& context);
 
 }  // namespace aa

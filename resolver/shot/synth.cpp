@@ -194,6 +194,26 @@ void zonePlateTruth(int width, int height, uint32_t half, Rgb& to) {
     });
 }
 
+// Planar z of each object's geometry, nearest and farthest: what `check` holds a scaled depth against.
+nlohmann::json depthBounds(const SynthSceneContents& scene, int width, int height, double time) {
+    std::map<uint32_t, std::pair<double, double>> range;
+    const Sampler sampler(scene, width, height, time);
+    for (const Placed& p : placedAt(scene.shapes, time)) {
+        const auto add = [&](dvec2 corner) {
+            const double z = sampler.depth(&p, corner);
+            auto [it, isNew] = range.emplace(p.shape->object, std::pair(z, z));
+            it->second = {std::min(it->second.first, z), std::max(it->second.second, z)};
+        };
+        if (const auto* polygon = std::get_if<Polygon>(&p.region))
+            for (const dvec2& corner : *polygon) add(corner);
+        else
+            add(std::get<Disc>(p.region).centre);  // discs face the camera
+    }
+    nlohmann::json j = nlohmann::json::object();
+    for (const auto& [id, z] : range) j[std::to_string(id)] = {z.first, z.second};
+    return j;
+}
+
 std::string numbered(const char* folder, int frame) {
     char text[48];
     std::snprintf(text, sizeof text, "%s/%06d.exr", folder, frame);
@@ -259,6 +279,7 @@ SynthShot::SynthShot(const SynthOptions& o) {
         f.reset = i == 0;
         f.jitterPx = jitterPx(jitter, uint64_t(i));
         f.camera = scene_->contents.camera;
+        f.extra["depth_bounds"] = depthBounds(scene_->contents, o.width, o.height, i);
         m.frames.push_back(std::move(f));
     }
 }

@@ -1,0 +1,59 @@
+#include "shot/check.h"
+
+#include <cstdio>
+#include <iostream>
+
+#include "cli/cli.h"
+#include "cli/progress.h"
+#include "shot/manifest.h"
+
+namespace aa {
+namespace {
+std::string passList(PassSet passes) {
+    std::string s;
+    for (auto n : names(passes)) s += (s.empty() ? "" : " ") + std::string(n);
+    return s;
+}
+void print(const CheckReport& r) {
+    for (const auto& f : r.findings) std::printf("%s\n", f.line().c_str());
+    for (const auto& m : r.measured) std::printf("  %-32s %.4g\n", m.name.c_str(), m.value);
+    for (const auto& n : r.notChecked) std::printf("  not checked: %s\n", n.c_str());
+    std::printf("%s: %s; %zu frames; passes: %s\n", r.name.c_str(),
+                r.clean()
+                    ? "clean"
+                    : (std::to_string(r.findings.size()) + (r.findings.size() == 1 ? " finding" : " findings")).c_str(),
+                r.frames, passList(r.passes).c_str());
+}
+}  // namespace
+
+void addCheck(CLI::App& app, Context& context) {
+    struct Options {
+        std::string shot;
+        bool json = false, quiet = false;
+        int threads = 0;
+    };
+    auto o = std::make_shared<Options>();
+    auto* c = app.add_subcommand("check", "Is the shot what its manifest claims? Exit code 1 when something is found");
+    c->add_option("SHOT", o->shot, "folder of the shot")->required();
+    c->add_option("-j,--threads", o->threads, "threads; 0 = all processors")->check(CLI::Range(0, 1024));
+    c->add_flag("--json", o->json, "as JSON");
+    c->add_flag("-q,--quiet", o->quiet, "no progress");
+    c->callback([o, &context] {
+        CheckReport report;
+        withThreads(o->threads, [&] {
+            const size_t frames = readManifest(o->shot).frames.size();
+            Progress progress("check", frames, o->quiet || o->json);
+            report = checkShot(o->shot, [&](int frame) {
+                progress.step("frame " + std::to_string(frame));
+                return !progress.interrupted();
+            });
+        });
+        if (o->json)
+            std::cout << toJson(report).dump(1) << "\n";
+        else
+            print(report);
+        context.exitCode = report.clean() ? 0 : 1;
+    });
+}
+
+}  // namespace aa
