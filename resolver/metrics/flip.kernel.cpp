@@ -7,6 +7,7 @@ namespace AA_ARCH {
 using namespace aa;
 using namespace aa::flip_constants;
 
+constexpr int kStrip = 128;  // columns; 64 load more margin, 256 leave the cache: both are slower
 constexpr int kMargin = 16;  // loaded beside a strip: kCsfReach rounded up to whole lanes
 constexpr int kLoaded = kStrip + 2 * kMargin;
 constexpr int kWindow = 2 * kCsfReach + 1;

@@ -88,7 +88,18 @@ double ssimLuma(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF*
     return ssim(test, reference, exec, SsimSignal::luma, map);
 }
 double ssimRgb(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map) {
-    return ssim(test, reference, exec, SsimSignal::rgb, map);
+    constexpr SsimSignal kChannels[] = {SsimSignal::red, SsimSignal::green, SsimSignal::blue};
+    double sum = 0;
+    PlaneF maps[3];
+    for (size_t c = 0; c < 3; c++) sum += ssim(test, reference, exec, kChannels[c], map ? &maps[c] : nullptr);
+    if (map) {
+        *map = PlaneF(test.width(), test.height());
+        for (int y = 0; y < map->height(); y++)
+            for (int x = 0; x < map->width(); x++)
+                map->at(x, y) = (maps[0].at(x, y) + maps[1].at(x, y) + maps[2].at(x, y)) / 3;
+        map->fillBorder();
+    }
+    return sum / 3;
 }
 double ssimMatlab3D(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map) {
     return ssim(test, reference, exec, SsimSignal::volume, map);

@@ -51,6 +51,7 @@ __attribute__((flatten)) void relativeErrorRows(const RelativeErrorArgs& a, int 
 //   var = sum_j w_j (var_j + (mean_j - mean)^2).
 
 constexpr int kTaps = 11, kReach = 5;
+constexpr int kStrip = 64;               // columns; twice as many are slower here
 constexpr int kPadded = kStrip + 2 * 8;  // a strip and its neighbourhood, a whole number of lanes
 // exp(-i^2 / (2 1.5^2)) / sum, i = 0..5 (methods/07 s.2; here to double precision)
 constexpr double kGauss[kReach + 1] = {0.2660117248617943,  0.21300553771125366,  0.1093606895097,
@@ -166,7 +167,7 @@ AA_INLINE void ssim_strip(const SsimArgs& a, int x0, int y0, int y1) {
     for (int y = y0 - kReach; y < y1 + kReach; y++) {
         const int slot = (y - y0 + kReach) % kTaps;
         for (int k = 0; k < Signals; k++) {
-            load_row<R>(a, Signals == 1 ? 3 : k, x0, y, s, d);
+            load_row<R>(a, Signals == 1 ? int(a.signal) : k, x0, y, s, d);
             MomentRow<T>&row = ring[k][slot], &again = ring[k][slot + kTaps];
             for (int signal = 0; signal < 2; signal++)
                 for (int x = 0; x < columns; x += N<R>) {
@@ -197,9 +198,7 @@ AA_INLINE void ssim_strip(const SsimArgs& a, int x0, int y0, int y1) {
             else {
                 R sum(T(0));
                 for (int k = 0; k < 3; k++)
-                    sum = sum + (a.signal == SsimSignal::volume
-                                     ? ssim_of(moments_across_channels(ms, k), moments_across_channels(md, k))
-                                     : ssim_of(ms[k], md[k]));
+                    sum = sum + ssim_of(moments_across_channels(ms, k), moments_across_channels(md, k));
                 value = sum / R(T(3));
             }
             sum.add(value, x, columns - x);
@@ -214,10 +213,10 @@ AA_INLINE void ssim_strip(const SsimArgs& a, int x0, int y0, int y1) {
 template <class R>
 __attribute__((flatten)) void ssimRows(const SsimArgs& a, int y0, int y1) {
     for (int x0 = 0; x0 < a.width; x0 += kStrip) {
-        if (a.signal == SsimSignal::luma)
-            ssim_strip<R, 1>(a, x0, y0, y1);
-        else
+        if (a.signal == SsimSignal::volume)
             ssim_strip<R, 3>(a, x0, y0, y1);
+        else
+            ssim_strip<R, 1>(a, x0, y0, y1);
     }
 }
 }  // namespace AA_ARCH

@@ -19,7 +19,7 @@ struct RelativeErrorArgs {
     double* rows;  // [height]
 };
 
-enum class SsimSignal { luma, rgb, volume };
+enum class SsimSignal { red, green, blue, luma, volume };  // the first three: channels 0, 1, 2
 struct SsimArgs {
     RgbIn test, reference;
     int stride, width, height;

@@ -7,7 +7,6 @@
 namespace AA_ARCH {
 using aa::kSumStrands;
 
-constexpr int kStrip = 64;  // columns
 // A strip jumps from row to row, which no processor foresees: without this, waiting for memory is half of the time.
 constexpr int kRowsAhead = 4;
 AA_INLINE void prefetch(const float* from, int count) {
