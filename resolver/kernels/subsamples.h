@@ -55,4 +55,53 @@ AA_INLINE Separation<R> to_sample(const aa::GeometryArgs& g, R x, int y, int k) 
     return separation(g, x, y, 0.0f, 0.0f, g.sample[k].offsetPx[0], g.sample[k].offsetPx[1]);
 }
 
+// The dense part of a sparse method: marked[i] gets the lanes of the i-th group of pixels from column x0 in which
+// differs(k, x, o) holds for some sub-sample. One sub-sample at a time over a chunk of a row, while the next one's
+// chunk is fetched: all planes start at the same place in a memory page, so that forty of them side by side push each
+// other out of the first-level cache, and a chunk is too short for the processor to foresee the next lines by itself.
+inline constexpr int kChunk = 256;  // pixels
+template <class R>
+AA_INLINE int chunk_groups(int width) {  // groups of lanes that cover it, at most a chunk
+    return ((width < kChunk ? width : kChunk) + N<R> - 1) / N<R>;
+}
+template <class R>
+AA_INLINE void copy_chunk(const aa::RgbIn& from, const aa::RgbOut& to, int width, long o) {
+    const int groups = chunk_groups<R>(width);
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < groups; i++) store(load<R>(from.c[c] + o + i * N<R>), to.c[c] + o + i * N<R>);
+}
+template <class R>
+AA_INLINE void fill_chunk(float value, float* to, int width) {
+    const int groups = chunk_groups<R>(width);
+    for (int i = 0; i < groups; i++) store(R(Elem<R>(value)), to + i * N<R>);
+}
+template <class R>
+struct Marks {
+    uint32_t lanes[kChunk / N<R>];
+};
+// Fetches what the group of pixels at o will read of sub-sample k.
+AA_INLINE void prefetch_sample(const aa::GeometryArgs& g, int k, long o) {
+    const aa::SubSampleArgs& s = g.sample[k];
+    __builtin_prefetch(s.depthView + o);
+    for (int c = 0; c < 3; c++)
+        if (s.normalWorld.c[c]) __builtin_prefetch(s.normalWorld.c[c] + o);
+    if (s.objectId) __builtin_prefetch(s.objectId + o);
+}
+// The same for the sub-sample that a chunk-wise loop visits after k: the next one, or the first of the next chunk.
+AA_INLINE void prefetch_next(const aa::GeometryArgs& g, int k, long o) {
+    k + 1 < g.samples ? prefetch_sample(g, k + 1, o) : prefetch_sample(g, 0, o + kChunk);
+}
+template <class R, class Differs>
+AA_INLINE void mark(const aa::GeometryArgs& g, int x0, int y, Marks<R>& marks, const Differs& differs) {
+    const int groups = chunk_groups<R>(g.width - x0);
+    for (int i = 0; i < groups; i++) marks.lanes[i] = 0;
+    for (int k = 0; k < g.samples; k++)
+        for (int i = 0; i < groups; i++) {
+            const int x = x0 + i * N<R>;
+            const long o = long(y) * g.stride + x;
+            prefetch_next(g, k, o);
+            marks.lanes[i] |= mask_bits<R>(differs(k, x, o));
+        }
+}
+
 }  // namespace AA_ARCH

@@ -45,16 +45,22 @@ struct Dmsaa {
         a.out.c[0][o] = float(c.x), a.out.c[1][o] = float(c.y), a.out.c[2][o] = float(c.z);
         if (a.countLayer) a.countLayer[o] = float(count), a.offsetXLayer[o] = float(u), a.offsetYLayer[o] = float(v);
     }
+    AA_INLINE void markEdges(int x0, int y, Marks<R>& marks) const {
+        mark<R>(
+            g, x0, y, marks, [&](int k, int, long o) __attribute__((always_inline)) { return differs<R>(k, o); });
+    }
     AA_INLINE void rows(int y0, int y1) const {
         for (int y = y0; y < y1; y++)
-            for (int x = 0; x < g.width; x += N<R>) {
-                const long o = long(y) * g.stride + x;
-                for (int c = 0; c < 3; c++) store(load<R>(a.color.c[c] + o), a.out.c[c] + o);
-                Mask<R> any = R(T(1)) < R(T(0));
-                for (int k = 0; k < g.samples; k++) any = either(any, differs<R>(k, o));
-                const unsigned marked = mask_bits<R>(any);
-                for (int i = 0; marked >> i && x + i < g.width; i++)
-                    if (marked >> i & 1u) edgePixel(x + i, y);
+            for (int x0 = 0; x0 < g.width; x0 += kChunk) {
+                const long o = long(y) * g.stride + x0;
+                Marks<R> marks;
+                markEdges(x0, y, marks);
+                copy_chunk<R>(a.color, a.out, g.width - x0, o);
+                for (int i = 0; i < chunk_groups<R>(g.width - x0); i++)
+                    for (int lane = 0; marks.lanes[i] >> lane; lane++) {
+                        const int x = x0 + i * N<R> + lane;
+                        if (marks.lanes[i] >> lane & 1u && x < g.width) edgePixel(x, y);
+                    }
             }
     }
 };

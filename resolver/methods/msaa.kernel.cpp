@@ -11,16 +11,15 @@ struct Msaa {
     const MsaaArgs& a;
     const GeometryArgs& g = *a.geometry;
 
-    // Lanes in which some sub-sample lies on another surface than the centre sample.
-    AA_INLINE unsigned edges(int x, int y, long o) const {
-        Mask<R> any = R(T(1)) < R(T(0));
-        for (int k = 0; k < g.samples; k++) {
-            any = either(any, ids_differ<R>(g.objectId + o, g.sample[k].objectId + o));
-            if (a.byGeometry)
-                any = either(any, negate(same_surface(a.rule, centre_point<R>(g, o), sample_point<R>(g, k, o),
-                                                      to_sample(g, columns<R>(x), y, k))));
-        }
-        return mask_bits<R>(any);
+    // Marks the pixels in which some sub-sample lies on another surface than the centre sample.
+    AA_INLINE void markEdges(int x0, int y, Marks<R>& marks) const {
+        mark<R>(
+            g, x0, y, marks, [&](int k, int x, long o) __attribute__((always_inline)) {
+                const auto otherObject = ids_differ<R>(g.objectId + o, g.sample[k].objectId + o);
+                if (!a.byGeometry) return otherObject;
+                return either(otherObject, negate(same_surface(a.rule, centre_point<R>(g, o), sample_point<R>(g, k, o),
+                                                               to_sample(g, columns<R>(x), y, k))));
+            });
     }
 
     struct Surface {
@@ -96,13 +95,20 @@ struct Msaa {
     }
     AA_INLINE void rows(int y0, int y1) const {
         for (int y = y0; y < y1; y++)
-            for (int x = 0; x < g.width; x += N<R>) {
-                const long o = long(y) * g.stride + x;
-                for (int c = 0; c < 3; c++) store(load<R>(a.color.c[c] + o), a.out.c[c] + o);
-                if (a.surfacesLayer) store(R(T(1)), a.surfacesLayer + o), store(R(T(1)), a.coverageLayer + o);
-                const unsigned marked = edges(x, y, o);
-                for (int i = 0; marked >> i && x + i < g.width; i++)
-                    if (marked >> i & 1u) edgePixel(x + i, y);
+            for (int x0 = 0; x0 < g.width; x0 += kChunk) {
+                const long o = long(y) * g.stride + x0;
+                Marks<R> marks;
+                markEdges(x0, y, marks);
+                copy_chunk<R>(a.color, a.out, g.width - x0, o);
+                if (a.surfacesLayer) {
+                    fill_chunk<R>(1, a.surfacesLayer + o, g.width - x0);
+                    fill_chunk<R>(1, a.coverageLayer + o, g.width - x0);
+                }
+                for (int i = 0; i < chunk_groups<R>(g.width - x0); i++)
+                    for (int lane = 0; marks.lanes[i] >> lane; lane++) {
+                        const int x = x0 + i * N<R> + lane;
+                        if (marks.lanes[i] >> lane & 1u && x < g.width) edgePixel(x, y);
+                    }
             }
     }
 };

@@ -16,7 +16,7 @@ TEST(Msaa, GainOnHalfPlanesIsThatOfCoverage) {
     EXPECT_NEAR(halfPlaneGainDb("msaa", d3dPattern(4)), 8.6, 0.5);
     EXPECT_NEAR(halfPlaneGainDb("msaa", d3dPattern(8)), 12.7, 0.5);
     EXPECT_NEAR(halfPlaneGainDb("msaa", d3dPattern(16)), 15.0, 0.5);
-    EXPECT_GT(halfPlaneGainDb("msaa:key=object", d3dPattern(2)), 4.0);
+    EXPECT_NEAR(halfPlaneGainDb("msaa:key=object", d3dPattern(2)), 3.4, 0.5);
 }
 // Shaded once per surface of one colour, so it is the mean of the sub-samples: supersampling.
 TEST(Msaa, EqualsSsaaWhereSurfacesHaveOneColour) {

@@ -25,16 +25,86 @@ struct Rsaa {
         return point<R>(g.sample[k].depthView, g.sample[k].normalWorld, o);
     }
 
-    // Lanes in which some sub-sample may be another surface.
-    AA_INLINE unsigned suspects(int x, int y, long o) const {
-        const auto own = centre(o);
+    AA_INLINE Mask<R> mayDiffer(int k, int x, int y, long o, R limit) const {
+        return may_differ<measure>(centre(o), sample(k, o), to_sample(g, columns<R>(x), y, k), limit);
+    }
+    // Marks the pixels in which some sub-sample may be another surface.
+    AA_INLINE void markSuspects(int x0, int y, Marks<R>& marks) const {
         const R limit{T(a.floor)};
-        Mask<R> any = limit < R(T(0));
-        for (int k = 0; k < a.samples; k++) {
-            any = either(any, may_differ<measure>(own, sample(k, o), to_sample(g, columns<R>(x), y, k), limit));
-            if (g.objectId) any = either(any, ids_differ<R>(g.objectId + o, g.sample[k].objectId + o));
+        if constexpr (measure == Dissimilarity::sadp) return markSadpSuspects(x0, y, marks);
+        mark<R>(
+            g, x0, y, marks, [&](int k, int x, long o) __attribute__((always_inline)) {
+                const auto differs = mayDiffer(k, x, y, o, limit);
+                return g.objectId ? either(differs, ids_differ<R>(g.objectId + o, g.sample[k].objectId + o)) : differs;
+            });
+    }
+    // The same, sooner. With normals na, nb = na + e and v = dz ray + s, where s is the step on the image plane:
+    //   (|na.v| + |nb.v|) / |v| <= 2 |na.v| / |v| + |e|  and  |v| >= |s across the ray|,
+    // so a sub-sample is on the centre's surface when 2 |na.v| < (limit - |e|) |s across the ray|, with |e| taken as
+    // the sum of its components. That holds nearly everywhere on flat and on smooth surfaces and needs neither v nor
+    // |v|; the whole test runs where it does not.
+    AA_INLINE void markSadpSuspects(int x0, int y, Marks<R>& marks) const {
+        const R limit{T(a.floor)};
+        const int groups = chunk_groups<R>(g.width - x0);
+        const vec3<R> rayX = broadcast3<R>(g.rayX);
+        const vec3<R> rowRay = broadcast3<R>(g.ray) + broadcast3<R>(g.rayY) * R(T(y));
+        R alongRay[kChunk / N<R>], skyFrom[kChunk / N<R>];  // na.ray, NaN where the test does not apply; depth of sky
+        for (int i = 0; i < groups; i++) {
+            const int x = x0 + i * N<R>;
+            const auto own = centre(long(y) * a.stride + x);
+            const auto empty = is_background(own.depthView);
+            const auto usable = both(negate(empty), has_normal(own.normalWorld));
+            alongRay[i] = select(usable, dot(own.normalWorld, rowRay + rayX * columns<R>(x)), R(T(NAN)));
+            skyFrom[i] = select(empty, R(T(1e9)), R(T(INFINITY)));
+            marks.lanes[i] = 0;
         }
-        return mask_bits<R>(any);
+        for (int k = 0; k < a.samples; k++) {
+            const auto separationHere = to_sample(g, R(T(x0)), y, k);
+            const bool perspective = g.originX[0] == 0 && g.originX[1] == 0 && g.originX[2] == 0;
+            const vec3<R> step = perspective ? separationHere.stepRay : separationHere.stepOrigin;
+            const R across = stepAcrossRay(step, x0, y);
+            for (int i = 0; i < groups; i++) {
+                const int x = x0 + i * N<R>;
+                const long o = long(y) * a.stride + x;
+                prefetch_next(g, k, o);
+                const auto own = centre(o), other = sample(k, o);
+                const R scale = perspective ? other.depthView : R(T(1));
+                const R alongV = (other.depthView - own.depthView) * alongRay[i] + scale * dot(own.normalWorld, step);
+                const vec3<R> e = abs(other.normalWorld - own.normalWorld);
+                const auto onSurface = R(T(2)) * abs(alongV) < (limit - (e.x + e.y + e.z)) * (scale * across);
+                const auto same = either(onSurface, other.depthView >= skyFrom[i]);
+                unsigned suspects = mask_bits<R>(negate(same));
+                if (suspects) suspects &= mask_bits<R>(mayDiffer(k, x, y, o, limit));
+                if (g.objectId) suspects |= mask_bits<R>(ids_differ<R>(g.objectId + o, g.sample[k].objectId + o));
+                marks.lanes[i] |= suspects;
+            }
+        }
+    }
+    // A lower bound over the chunk of the length of `step` perpendicular to the ray: the least of the chunk's ends,
+    // less a tenth for what lies between them.
+    AA_INLINE R stepAcrossRay(vec3<R> step, int x0, int y) const {
+        R least{T(INFINITY)};
+        for (int x = x0; x <= x0 + kChunk; x += kChunk) {
+            const vec3<R> ray =
+                broadcast3<R>(g.ray) + broadcast3<R>(g.rayX) * R(T(x)) + broadcast3<R>(g.rayY) * R(T(y));
+            const R along = dot(step, ray);
+            least = min(least, dot(step, step) - along * along / dot(ray, ray));
+        }
+        return R(T(0.9)) * sqrt(max(R(T(0)), least));
+    }
+    AA_INLINE void markByPass(int x0, int y, Marks<R>& marks) const {
+        uint32_t allOnes[16];
+        for (uint32_t& m : allOnes) m = full;
+        const int groups = chunk_groups<R>(a.width - x0);
+        for (int i = 0; i < groups; i++) {
+            const long o = long(y) * a.stride + x0 + i * N<R>;
+            marks.lanes[i] = mask_bits<R>(ids_differ<R>(a.maskPass + o, allOnes));
+            if (!marks.lanes[i] || !a.tuning) continue;
+            uint32_t similar = full;  // what tuning will read
+            for (int lane = 0; lane < N<R>; lane++) similar &= a.maskPass[o + lane];
+            for (int k = 0; k < a.samples; k++)
+                if (!(similar >> k & 1u)) prefetch_sample(g, k, o);
+        }
     }
     // Bit k of mask[lane] is 1 where sub-sample k is similar to the centre; farthest[lane] is the largest
     // dissimilarity.
@@ -69,23 +139,33 @@ struct Rsaa {
         store(farthest, farthestOut);
     }
 
-    // Of sub-sample k of pixel (x, y) to the centre sample of pixel (qx, qy).
-    AA_INLINE T outside(int k, int x, int y, int qx, int qy) const {
+    // From the centre sample of pixel (qx, qy) to sub-sample k of pixel (x, y).
+    struct Outside {
+        SurfacePoint<T> neighbour, own;
+        Separation<T> way;
+        bool otherObject;
+        AA_INLINE T dissimilarity() const {
+            return otherObject ? T(kFarthest) : AA_ARCH::dissimilarity<measure>(neighbour, own, way);
+        }
+    };
+    AA_INLINE Outside outside(int k, int x, int y, int qx, int qy) const {
         const SubSampleArgs& s = g.sample[k];
         const long o = long(y) * a.stride + x, q = long(qy) * a.stride + qx;
-        if (g.objectId && g.objectId[q] != s.objectId[o]) return T(kFarthest);
-        return dissimilarity<measure>(
-            point<T>(g.depthView, g.normalWorld, q), point<T>(s.depthView, s.normalWorld, o),
-            separation(g, T(qx), qy, 0.0f, 0.0f, s.offsetPx[0] - float(qx - x), s.offsetPx[1] - float(qy - y)));
+        return {point<T>(g.depthView, g.normalWorld, q), point<T>(s.depthView, s.normalWorld, o),
+                separation(g, T(qx), qy, 0.0f, 0.0f, s.offsetPx[0] - float(qx - x), s.offsetPx[1] - float(qy - y)),
+                g.objectId && g.objectId[q] != s.objectId[o]};
     }
     // Keeps a different sub-sample only when a neighbouring pixel shows its surface: else resampling toward it would
     // fetch a third surface.
     AA_INLINE bool shownByNeighbour(int k, int x, int y) const {
-        const T half = a.tuneAdaptive ? outside(k, x, y, x, y) * T(0.5) : T(0), limit = max(T(a.floor), half);
+        const T half = a.tuneAdaptive ? outside(k, x, y, x, y).dissimilarity() * T(0.5) : T(0);
+        const T limit = max(T(a.floor), half);
         const RsaaNeighbours& n = a.neighbours[k];
         for (int i = 0; i < n.count; i++) {
             const int qx = clampIndex(x + n.at[i][0], a.width), qy = clampIndex(y + n.at[i][1], a.height);
-            if (outside(k, x, y, qx, qy) < limit) return true;
+            const Outside to = outside(k, x, y, qx, qy);
+            if (to.otherObject) continue;
+            if (!may_differ<measure>(to.neighbour, to.own, to.way, limit) || to.dissimilarity() < limit) return true;
         }
         return false;
     }
@@ -101,7 +181,7 @@ struct Rsaa {
         const uint32_t last = a.tuning ? tuned(mask, x, y) : mask;
         const T u = a.offsetsPx[2 * last], v = a.offsetsPx[2 * last + 1];
         if (last != full) {
-            const vec3<T> c = resample<T>(a.color, a.stride, x, y, u, v);
+            const vec3<T> c = AA_ARCH::resample<T>(a.color, a.stride, x, y, u, v);
             a.out.c[0][o] = float(c.x), a.out.c[1][o] = float(c.y), a.out.c[2][o] = float(c.z);
         }
         if (a.maskLayer) {
@@ -109,36 +189,53 @@ struct Rsaa {
             a.offsetXLayer[o] = float(u), a.offsetYLayer[o] = float(v);
         }
     }
-    AA_INLINE void copy(long o) const {
-        for (int c = 0; c < 3; c++) store(load<R>(a.color.c[c] + o), a.out.c[c] + o);
+    // The rows above and below, which tuning and resampling read: nothing else has brought them near yet.
+    AA_INLINE void prefetchNeighbours(long o) const {
+        for (long row = -a.stride; row <= a.stride; row += a.stride) {
+            for (int c = 0; c < 3; c++) __builtin_prefetch(a.color.c[c] + o + row);
+            if (!a.tuning) continue;
+            __builtin_prefetch(g.depthView + o + row);
+            if (measure != Dissimilarity::depth)
+                for (int c = 0; c < 3; c++) __builtin_prefetch(g.normalWorld.c[c] + o + row);
+            if (g.objectId) __builtin_prefetch(g.objectId + o + row);
+        }
+    }
+    AA_INLINE void keepColors(int x0, int y) const {
+        const long o = long(y) * a.stride + x0;
+        const int width = a.width - x0;
+        copy_chunk<R>(a.color, a.out, width, o);
         if (!a.maskLayer) return;
-        store(R(T(full)), a.maskLayer + o), store(R(T(full)), a.tunedLayer + o);
-        store(R(T(0)), a.dissimilarityLayer + o);
-        store(R(T(0)), a.offsetXLayer + o), store(R(T(0)), a.offsetYLayer + o);
+        fill_chunk<R>(float(full), a.maskLayer + o, width), fill_chunk<R>(float(full), a.tunedLayer + o, width);
+        fill_chunk<R>(0, a.dissimilarityLayer + o, width);
+        fill_chunk<R>(0, a.offsetXLayer + o, width), fill_chunk<R>(0, a.offsetYLayer + o, width);
+    }
+    AA_INLINE void resample(unsigned marked, int x, int y) const {
+        const long o = long(y) * a.stride + x;
+        int mask[16];
+        if (a.maskPass) {
+            for (int i = 0; i < N<R>; i++) mask[i] = int(a.maskPass[o + i] & full);
+        } else {
+            float farthest[16];
+            cluster(x, y, o, mask, farthest);
+            for (int i = 0; i < N<R>; i++)
+                if (a.dissimilarityLayer && marked >> i & 1u) a.dissimilarityLayer[o + i] = farthest[i];
+        }
+        for (int i = 0; i < N<R> && x + i < a.width; i++)
+            if (marked >> i & 1u && uint32_t(mask[i]) != full) edgePixel(uint32_t(mask[i]), x + i, y);
     }
     AA_INLINE void rows(int y0, int y1) const {
-        uint32_t allOnes[16];
-        for (uint32_t& m : allOnes) m = full;
         for (int y = y0; y < y1; y++)
-            for (int x = 0; x < a.width; x += N<R>) {
-                const long o = long(y) * a.stride + x;
-                copy(o);
-                int mask[16];
-                unsigned marked;
-                if (a.maskPass) {
-                    marked = mask_bits<R>(ids_differ<R>(a.maskPass + o, allOnes));
-                    if (!marked) continue;
-                    for (int i = 0; i < N<R>; i++) mask[i] = int(a.maskPass[o + i] & full);
-                } else {
-                    marked = suspects(x, y, o);
-                    if (!marked) continue;
-                    float farthest[16];
-                    cluster(x, y, o, mask, farthest);
-                    for (int i = 0; i < N<R>; i++)
-                        if (a.dissimilarityLayer && marked >> i & 1u) a.dissimilarityLayer[o + i] = farthest[i];
-                }
-                for (int i = 0; i < N<R> && x + i < a.width; i++)
-                    if (marked >> i & 1u && uint32_t(mask[i]) != full) edgePixel(uint32_t(mask[i]), x + i, y);
+            for (int x0 = 0; x0 < a.width; x0 += kChunk) {
+                Marks<R> marks;
+                if (a.maskPass)
+                    markByPass(x0, y, marks);
+                else
+                    markSuspects(x0, y, marks);
+                for (int i = 0; i < chunk_groups<R>(a.width - x0); i++)
+                    if (marks.lanes[i]) prefetchNeighbours(long(y) * a.stride + x0 + i * N<R>);
+                keepColors(x0, y);
+                for (int i = 0; i < chunk_groups<R>(a.width - x0); i++)
+                    if (marks.lanes[i]) resample(marks.lanes[i], x0 + i * N<R>, y);
             }
     }
 };

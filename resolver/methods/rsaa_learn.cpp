@@ -5,6 +5,9 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <string>
+
+#include "shot/patterns.h"
 
 namespace aa {
 namespace {
@@ -186,16 +189,7 @@ RsaaEntry bestOffset(uint32_t mask, const MaskCases& cases) {
 
 }  // namespace
 
-std::vector<dvec2> d3dPattern(size_t samples) {
-    static const std::vector<dvec2> d3d4 = {{-2, -6}, {6, -2}, {-6, 2}, {2, 6}};
-    static const std::vector<dvec2> d3d8 = {{1, -3}, {-1, 3}, {5, 1}, {-3, -5}, {-5, 5}, {-7, -1}, {3, 7}, {7, -7}};
-    static const std::vector<dvec2> d3d16 = {{1, 1},  {-1, -3}, {-3, 2},  {4, -1}, {-5, -2}, {2, 5},  {5, 3}, {3, -5},
-                                             {-2, 6}, {0, -7},  {-4, -6}, {-6, 4}, {-8, 0},  {7, -4}, {6, 7}, {-7, -8}};
-    std::vector<dvec2> positionsPx = samples == 4 ? d3d4 : samples == 8 ? d3d8 : d3d16;
-    assert(positionsPx.size() == samples);
-    for (dvec2& p : positionsPx) p /= 16.0;
-    return positionsPx;
-}
+std::vector<dvec2> d3dPattern(size_t samples) { return patternPositionsPx("d3d" + std::to_string(samples)); }
 
 std::vector<RsaaEntry> learnRsaa(const std::vector<dvec2>& positionsPx, RsaaTraining training) {
     assert(!positionsPx.empty() && positionsPx.size() <= kRsaaMaxSamples);

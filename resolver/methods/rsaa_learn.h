@@ -30,7 +30,7 @@ inline constexpr int kRsaaMaxSamples = 16;
 // The training classes: all three, or half-planes alone (the alternative of methods/11 #33).
 enum class RsaaTraining { all, halfPlanes };
 
-// The D3D11 standard pattern of 4, 8 or 16 sub-samples: offsets from the pixel centre, px, y down (methods/00 s.2).
+// The D3D11 standard pattern of 1, 2, 4, 8 or 16 sub-samples (shot/patterns.h).
 std::vector<glm::dvec2> d3dPattern(size_t samples);
 
 // Entries of every mask with at least 20 training cases, by ascending mask; the all-ones mask is not an entry.

@@ -11,25 +11,38 @@ AA_INLINE Mask<R> finite(vec3<R> c) {
     return both(both(c.x - c.x == zero, c.y - c.y == zero), c.z - c.z == zero);
 }
 
+// One sub-sample at a time over a chunk of a row, while the next one's is fetched (see kernels/subsamples.h).
+inline constexpr int kSumChunk = 128;  // pixels; the sums stay in the first-level cache
 template <class R>
 __attribute__((flatten)) void ssaaRows(const SsaaArgs& a, int y0, int y1) {
     const R zero(Elem<R>(0)), one(Elem<R>(1));
+    vec3<R> sum[kSumChunk / N<R>];
+    R count[kSumChunk / N<R>];
     for (int y = y0; y < y1; y++)
-        for (int x = 0; x < a.width; x += N<R>) {
-            const long o = long(y) * a.stride + x;
-            vec3<R> sum(zero);
-            R count = zero;
+        for (int x0 = 0; x0 < a.width; x0 += kSumChunk) {
+            const long o0 = long(y) * a.stride + x0;
+            const int left = a.width - x0, groups = ((left < kSumChunk ? left : kSumChunk) + N<R> - 1) / N<R>;
+            for (int i = 0; i < groups; i++) sum[i] = vec3<R>(zero), count[i] = zero;
             for (int k = 0; k < a.count; k++) {
                 const RgbIn& s = a.samples[k];
-                const vec3<R> c{load<R>(s.c[0] + o), load<R>(s.c[1] + o), load<R>(s.c[2] + o)};
-                const auto counts = finite(c);
-                sum = sum + select(counts, c, vec3<R>(zero));
-                count = count + select(counts, one, zero);
+                const RgbIn& next = k + 1 < a.count ? a.samples[k + 1] : a.samples[0];
+                const long ahead = k + 1 < a.count ? 0 : kSumChunk;
+                for (int i = 0; i < groups; i++) {
+                    const long o = o0 + i * N<R>;
+                    for (int c = 0; c < 3; c++) __builtin_prefetch(next.c[c] + o + ahead);
+                    const vec3<R> c{load<R>(s.c[0] + o), load<R>(s.c[1] + o), load<R>(s.c[2] + o)};
+                    const auto counts = finite(c);
+                    sum[i] = sum[i] + select(counts, c, vec3<R>(zero));
+                    count[i] = count[i] + select(counts, one, zero);
+                }
             }
-            const R divisor = max(one, count);
-            store(sum.x / divisor, a.out.c[0] + o);
-            store(sum.y / divisor, a.out.c[1] + o);
-            store(sum.z / divisor, a.out.c[2] + o);
+            for (int i = 0; i < groups; i++) {
+                const long o = o0 + i * N<R>;
+                const R divisor = max(one, count[i]);
+                store(sum[i].x / divisor, a.out.c[0] + o);
+                store(sum[i].y / divisor, a.out.c[1] + o);
+                store(sum[i].z / divisor, a.out.c[2] + o);
+            }
         }
 }
 }  // namespace AA_ARCH
