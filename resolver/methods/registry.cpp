@@ -19,6 +19,10 @@
 #include "methods/ssaa.h"
 #include "methods/taa_simplest.h"
 #include "methods/uncharted.h"
+#include "methods/accum_reject.h"
+#include "methods/inside.h"
+#include "methods/karis.h"
+#include "methods/raptor.h"
 
 namespace aa {
 
@@ -58,6 +62,13 @@ const std::vector<MethodDescriptor>& registry() {
         unchartedNormDescriptor(),
         unchartedNoSharpenDescriptor(),
         masterDescriptor(),
+        accumRejectDescriptor(),
+        raptorDescriptor(),
+        donutDescriptor(),
+        falcorDescriptor(),
+        salviDescriptor(),
+        karisDescriptor(),
+        insideDescriptor(),
     };
     return methods;
 }
