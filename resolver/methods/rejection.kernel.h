@@ -57,7 +57,7 @@ AA_INLINE Mask<R> id_lost(const uint32_t* ids, const uint32_t* previous, int str
     if constexpr (N<R> == 1)
         return lostAt(0);
     else {
-        Mask<R> m;
+        Mask<R> m{};
         for (int i = 0; i < N<R>; i++) m[i] = lostAt(i) ? -1 : 0;
         return m;
     }
