@@ -1,97 +1,104 @@
-// exp2, log2 and powers in lanes: own polynomials, because libm differs between machines. Include from *.kernel.cpp only.
+// Logarithm, exponential and power for lanes: own polynomials, because libm differs between machines. Only exactly
+// rounded operations, so float lanes and scalar float give the same bits; error a few units in the last place of R.
 #pragma once
 #include "kernels/lanes.h"
 
 namespace AA_ARCH {
 
-// 2^n for whole n in the normal range of float.
-AA_INLINE float exp2_whole(float n) {
-    const int32_t bits = (int32_t(n) + 127) << 23;
-    float r;
-    std::memcpy(&r, &bits, 4);
-    return r;
+// x = m 2^e with m in [sqrt(1/2), sqrt(2)) for normal x > 0.
+template <class R>
+struct Split {
+    R mantissa, exponent;
+};
+AA_INLINE Split<float> split_exponent(float x) {
+    int32_t i;
+    std::memcpy(&i, &x, 4);
+    const int32_t e = (i - 0x3f3504f3) >> 23;  // bits of sqrt(1/2)
+    i -= e << 23;
+    Split<float> s;
+    std::memcpy(&s.mantissa, &i, 4);
+    s.exponent = float(e);
+    return s;
 }
-AA_INLINE double exp2_whole(double n) { return double(exp2_whole(float(n))); }
+AA_INLINE Split<double> split_exponent(double x) {
+    int64_t i;
+    std::memcpy(&i, &x, 8);
+    const int64_t e = (i - 0x3fe6a09e667f3bcd) >> 52;  // bits of sqrt(1/2)
+    i -= e << 52;
+    Split<double> s;
+    std::memcpy(&s.mantissa, &i, 8);
+    s.exponent = double(e);
+    return s;
+}
 template <class T, int W>
-AA_INLINE Lanes<T, W> exp2_whole(Lanes<T, W> n) {
+AA_INLINE Split<Lanes<T, W>> split_exponent(Lanes<T, W> x) {
+    using V = typename Lanes<T, W>::V;
     if constexpr (std::is_same_v<T, float>) {
         using I = typename ints_of<W>::type;
-        const I bits = (__builtin_convertvector(n.v, I) + 127) << 23;
-        return (typename Lanes<T, W>::V)bits;
+        const I i = (I)x.v, e = (i - 0x3f3504f3) >> 23;
+        return {(V)(i - (e << 23)), __builtin_convertvector(e, V)};
     } else {
-        Lanes<T, W> r;
-        for (int i = 0; i < W; i++) r.v[i] = exp2_whole(n.v[i]);
-        return r;
+        Split<Lanes<T, W>> s;
+        for (int k = 0; k < W; k++) {
+            const auto one = split_exponent(x.v[k]);
+            s.mantissa.v[k] = one.mantissa, s.exponent.v[k] = one.exponent;
+        }
+        return s;
     }
 }
-// Exponent and mantissa in [1, 2) of a positive normal number.
-AA_INLINE void split_float(float x, float& exponent, float& mantissa) {
-    int32_t bits;
-    std::memcpy(&bits, &x, 4);
-    exponent = float((bits >> 23) - 127);
-    bits = (bits & 0x007fffff) | 0x3f800000;
-    std::memcpy(&mantissa, &bits, 4);
+// 2^n for a whole n in [-126, 127].
+AA_INLINE float power_of_two(float n) {
+    const int32_t i = (int32_t(n) + 127) << 23;
+    float p;
+    std::memcpy(&p, &i, 4);
+    return p;
 }
-AA_INLINE void split_float(double x, double& exponent, double& mantissa) {
-    int64_t bits;
-    std::memcpy(&bits, &x, 8);
-    exponent = double((bits >> 52) - 1023);
-    bits = (bits & 0x000fffffffffffffll) | 0x3ff0000000000000ll;
-    std::memcpy(&mantissa, &bits, 8);
+AA_INLINE double power_of_two(double n) {
+    const int64_t i = (int64_t(n) + 1023) << 52;
+    double p;
+    std::memcpy(&p, &i, 8);
+    return p;
 }
 template <class T, int W>
-AA_INLINE void split_float(Lanes<T, W> x, Lanes<T, W>& exponent, Lanes<T, W>& mantissa) {
+AA_INLINE Lanes<T, W> power_of_two(Lanes<T, W> n) {
     if constexpr (std::is_same_v<T, float>) {
         using I = typename ints_of<W>::type;
-        const I bits = (I)x.v;
-        exponent = __builtin_convertvector((bits >> 23) - 127, typename Lanes<T, W>::V);
-        mantissa = (typename Lanes<T, W>::V)((bits & 0x007fffff) | 0x3f800000);
-    } else
-        for (int i = 0; i < W; i++) {
-            T e, m;
-            split_float(x.v[i], e, m);
-            exponent.v[i] = e, mantissa.v[i] = m;
-        }
+        return (typename Lanes<T, W>::V)((__builtin_convertvector(n.v, I) + 127) << 23);
+    } else {
+        Lanes<T, W> p;
+        for (int k = 0; k < W; k++) p.v[k] = power_of_two(n.v[k]);
+        return p;
+    }
 }
 
-// 2^x for |x| <= 126: whole part by the exponent, fraction in [-1/2, 1/2] by the Taylor series of e^(x ln 2)
-// (terms to x^7 for float: 2e-8; to x^13 for double: 1e-16).
-template <class R>
-AA_INLINE R exp2_lanes(R x) {
-    using T = Elem<R>;
-    const R limit(T(126)), clamped = min(max(x, -limit), limit);
-    const R whole = floor(clamped + R(T(0.5))), u = (clamped - whole) * R(T(0.693147180559945309417));
-    constexpr int terms = std::is_same_v<T, double> ? 14 : 8;
-    R sum(T(1));
-    for (int n = terms; n >= 1; n--) sum = sum * u * R(T(1) / T(n)) + R(T(1));
-    return sum * exp2_whole(whole);
-}
-// log2(a / b) from t = (a - b) / (a + b), |t| <= 0.172: 2/ln 2 atanh(t).
-template <class R>
-AA_INLINE R log2_of_ratio(R t) {
-    using T = Elem<R>;
-    const R t2 = t * t;
-    constexpr int terms = std::is_same_v<T, double> ? 10 : 4;
-    R sum(T(0));
-    for (int n = terms; n >= 0; n--) sum = sum * t2 + R(T(1) / T(2 * n + 1));
-    return t * sum * R(T(2.88539008177792681472));
-}
-// log2 of a positive normal number: exponent + log2 of the mantissa m in [sqrt 1/2, sqrt 2].
+// log2 of a normal x > 0: log(m) = 2 artanh(s), s = (m - 1) / (m + 1), |s| < 0.172, by its power series.
 template <class R>
 AA_INLINE R log2_positive(R x) {
     using T = Elem<R>;
-    const R one(T(1));
-    R exponent, m;
-    split_float(x, exponent, m);
-    const auto high = m > R(T(1.41421356237309515));
-    m = select(high, m * R(T(0.5)), m);
-    exponent = select(high, exponent + one, exponent);
-    return exponent + log2_of_ratio((m - one) / (m + one));
+    constexpr int kLast = std::is_same_v<T, double> ? 21 : 9;  // s^(kLast + 2) is below the precision
+    const Split<R> f = split_exponent(x);
+    const R s = (f.mantissa - R(T(1))) / (f.mantissa + R(T(1))), s2 = s * s;
+    R sum{T(1.0 / kLast)};
+    for (int k = kLast - 2; k >= 1; k -= 2) sum = sum * s2 + R(T(1.0 / k));
+    return f.exponent + s * sum * R(T(2.8853900817779268));  // 2 / ln 2
 }
-// x^y for positive normal x.
+// 2^x for x in [-126, 127] (clamped): whole part by the exponent's bits, the rest, |f| <= 1/2, by exp's power series.
+template <class R>
+AA_INLINE R exp2_clamped(R x) {
+    using T = Elem<R>;
+    constexpr int kLast = std::is_same_v<T, double> ? 13 : 7;
+    const R c = clamp(x, R(T(-126)), R(T(127))), n = min(floor(c + R(T(0.5))), R(T(127)));
+    const R f = (c - n) * R(T(0.69314718055994531));  // ln 2
+    R sum(T(1));
+    for (int k = kLast; k >= 1; k--) sum = sum * f * R(T(1.0 / k)) + R(T(1));
+    return sum * power_of_two(n);
+}
+// x^y for 0 <= x; 0 for x below 1e-30 (0^0 too).
 template <class R>
 AA_INLINE R pow_positive(R x, R y) {
-    return exp2_lanes(log2_positive(x) * y);
+    using T = Elem<R>;
+    const R tiny(T(1e-30));
+    return select(x < tiny, R(T(0)), exp2_clamped(y * log2_positive(max(x, tiny))));
 }
 
 }  // namespace AA_ARCH

@@ -6,7 +6,8 @@
 // The mean is a compensated pair of floats, so that 1e5 frames lose nothing (methods/08). Linear light.
 // Deviation: methods/06 B3 compares one depth. With jittered frames a silhouette pixel of a static scene shows now one
 // surface, now the other, and would be rejected every few frames; so `depthTest=window` accepts when any pixel of the
-// previous 3x3 around q is as far as this one, and ids are sought in that window. `depthTest=point` is the printed test.
+// previous 3x3 around q is as far as this one, and ids are sought in that window. `depthTest=point` is the printed
+// test.
 #pragma once
 #include "methods/method.h"
 

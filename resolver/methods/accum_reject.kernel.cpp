@@ -38,7 +38,8 @@ AA_INLINE void accumRejectPixel(const AccumRejectArgs& a, int x, int y) {
     if (a.depthTest == DepthTest::window)
         reject(disoccluded(expected, gather<R>(a.previousFarthest + o, nearest), false), Rejection::disoccluded);
     if (a.depthTest == DepthTest::point)
-        reject(disoccluded(expected, fetch_depth(in.history + 4 * o, in.stride, q), a.bothSides), Rejection::disoccluded);
+        reject(disoccluded(expected, fetch_depth(in.history + 4 * o, in.stride, q), a.bothSides),
+               Rejection::disoccluded);
     if (a.magnification) reject(magnified(in, o, q, 1.0f), Rejection::magnified);
     if (a.objectId) reject(id_lost<R>(a.objectId + o, a.previousId + o, in.stride, nearest), Rejection::otherObject);
     const auto valid = reason == zero;
@@ -60,7 +61,7 @@ AA_INLINE void accumRejectPixel(const AccumRejectArgs& a, int x, int y) {
     if (!in.debug.rejection) return;
     store_debug(in.debug, o, motion, valid, Box<R>{history, history}, vec3<R>(zero), one - one / count);
     store(reason, in.debug.rejection + o);
-    store(count, a.debugCount + o);
+    if (a.debugCount) store(count, a.debugCount + o);
 }
 template <class R>
 __attribute__((flatten)) void accumRejectRows(const AccumRejectArgs& a, int y0, int y1) {

@@ -4,10 +4,10 @@
 namespace aa {
 enum class DepthTest { window, point, off };
 struct AccumRejectArgs {
-    TemporalIn in;                  // history alpha = depth of the frame it came from
-    const float* residual;          // RGBA: low part of the mean, alpha = N
+    TemporalIn in;          // history alpha = depth of the frame it came from
+    const float* residual;  // RGBA: low part of the mean, alpha = N
     float* nextResidual;
-    const float* previousFarthest;  // 3x3 maximum of the previous depth
+    const float* previousFarthest;          // 3x3 maximum of the previous depth
     const uint32_t *objectId, *previousId;  // null: ids are not compared
     ExpectedDepth expected;
     DepthTest depthTest;

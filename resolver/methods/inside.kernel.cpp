@@ -33,13 +33,14 @@ AA_INLINE void insidePixel(const InsideArgs& a, int x, int y) {
     const auto luma = [&](vec3<R> c) __attribute__((always_inline)) { return a.ycocg ? c.x : luma709(c); };
     const vec3<R> currentRgb = fetch(a.unjitterColor, 0, 0), current = space(currentRgb);
 
-    const Motion<R> motion = a.unjitterReprojection
-                                 ? Motion<R>{unjittered(in.motionXPx + o, in.stride), unjittered(in.motionYPx + o, in.stride)}
-                                 : dilated_motion<R>(in, o);
+    const Motion<R> motion = a.unjitterReprojection ? Motion<R>{unjittered(in.motionXPx + o, in.stride),
+                                                                unjittered(in.motionYPx + o, in.stride)}
+                                                    : dilated_motion<R>(in, o);
     const Reprojection<R> q = reproject(in, motion, x, y);
     const vec3<R> past = fetch_history(in, x, y, q), history = space(past);
 
-    const auto at = [&](int i, int j) __attribute__((always_inline)) { return space(fetch(a.unjitterNeighbourhood, i, j)); };
+    const Window<R> at([&](int i, int j)
+                           __attribute__((always_inline)) { return space(fetch(a.unjitterNeighbourhood, i, j)); });
     Box<R> box;
     vec3<R> mean(zero);
     if (a.neighbourhood == InsideNeighbourhood::fourTapVarying) {

@@ -39,7 +39,7 @@ class Karis : public Method {
                 const double dx = i + frame.jitterPx.x, dy = j + frame.jitterPx.y;
                 args.filter[(j + 1) * 3 + i + 1] = float(std::exp(-2.29 * (dx * dx + dy * dy)));  // Karis 2014
             }
-        if (keepDebugLayers) args.in.debug = debug_.begin(frame.width, frame.height);
+        args.in.debug = debug_.begin(*this, frame.width, frame.height);
         runKernel(kernels.resolve, exec, args, frame.height);
         history_.end();
         if (pq_) {
@@ -48,11 +48,13 @@ class Karis : public Method {
         }
     }
     size_t stateBytes() const override { return history_.bytes() + encoded_.bytes(); }
+    const PlaneF* rejection() const override { return debug_.rejection(); }
     std::vector<DebugLayer> debugLayers() const override { return debug_.layers(); }
 
   private:
     const Rgb& encoded(const Frame& frame, const Exec& exec) {
-        if (encoded_.width() != frame.width || encoded_.height() != frame.height) encoded_ = Rgb(frame.width, frame.height);
+        if (encoded_.width() != frame.width || encoded_.height() != frame.height)
+            encoded_ = Rgb(frame.width, frame.height);
         const PqArgs args{view(frame.colorLinear), view(encoded_), encoded_.stride(), frame.width};
         runKernel(karisKernelsFor(exec.isa).pqEncode, exec, args, frame.height);
         encoded_.fillBorder();
@@ -97,9 +99,10 @@ MethodDescriptor descriptor(const Preset& d) {
                                  "Salvi 2016: 0.75 to 1.25", "box=variance|intersection"),
                        temporal::neighbourhoodParam("rounded", "Karis 2014"),
                        choiceParam("constraint", d.constraint, {"clipFiltered", "clipMean", "clamp"},
-                                   "history to the box: clipped toward the current colour or the mean, or clamped", d.source),
-                       choiceParam("antiFlicker", d.antiFlicker, {"none", "karis", "falcor"},
-                                   "rule that adapts alpha", "public UE4.x; Falcor"),
+                                   "history to the box: clipped toward the current colour or the mean, or clamped",
+                                   d.source),
+                       choiceParam("antiFlicker", d.antiFlicker, {"none", "karis", "falcor"}, "rule that adapts alpha",
+                                   "public UE4.x; Falcor"),
                        flag("inverseLuminance", d.inverseLuminance, "blend with weights 1/(1+Y)", d.source),
                        temporal::dilationParam(d.dilation, d.source), temporal::historyFilterParam(d.history, d.source),
                        temporal::warmupParam()},
@@ -110,19 +113,21 @@ MethodDescriptor descriptor(const Preset& d) {
 }  // namespace
 
 MethodDescriptor karisDescriptor() {
-    return descriptor({"karis", "UE4 TAA (Karis)", "Tone-weighted filter of the current frame, YCoCg clip, anti-flicker.",
-                       "Karis 2014; methods/06 s.6.6", "0.04", "Karis 2014: N_eff 49", "blackmanHarris", "inverse", "on",
-                       "minmax", "clipFiltered", "karis", "on", "closestX", "bilinear"});
+    return descriptor({"karis", "UE4 TAA (Karis)",
+                       "Tone-weighted filter of the current frame, YCoCg clip, anti-flicker.",
+                       "Karis 2014; methods/06 s.6.6", "0.04", "Karis 2014: N_eff 49", "blackmanHarris", "inverse",
+                       "on", "minmax", "clipFiltered", "karis", "on", "closestX", "bilinear"});
 }
 MethodDescriptor salviDescriptor() {
-    return descriptor({"salvi", "Variance clipping (Salvi)", "Karis's skeleton with a box of mean and standard deviation.",
-                       "Salvi 2016; methods/06 s.6.7", "0.1", "methods/06 s.6.7: N_eff 19", "blackmanHarris", "inverse",
-                       "off", "variance", "clipMean", "none", "on", "closest3x3", "bilinear"});
+    return descriptor({"salvi", "Variance clipping (Salvi)",
+                       "Karis's skeleton with a box of mean and standard deviation.", "Salvi 2016; methods/06 s.6.7",
+                       "0.1", "methods/06 s.6.7: N_eff 19", "blackmanHarris", "inverse", "off", "variance", "clipMean",
+                       "none", "on", "closest3x3", "bilinear"});
 }
 MethodDescriptor falcorDescriptor() {
     return descriptor({"falcor", "Falcor TAA", "Variance clamp in YCoCg, longest motion, Catmull-Rom history.",
-                       "Falcor TAA pass; methods/06 s.6.7", "0.1", "Falcor default", "none", "none", "on", "variance", "clamp",
-                       "falcor", "off", "longest3x3", "catmullRom5"});
+                       "Falcor TAA pass; methods/06 s.6.7", "0.1", "Falcor default", "none", "none", "on", "variance",
+                       "clamp", "falcor", "off", "longest3x3", "catmullRom5"});
 }
 MethodDescriptor donutDescriptor() {
     return descriptor({"donut", "Donut TAA", "PQ-encoded values clamped to mean and standard deviation.",

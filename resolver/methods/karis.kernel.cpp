@@ -1,5 +1,5 @@
+#include "kernels/pq.h"
 #include "methods/karis_kernels.h"
-#include "kernels/math.h"
 #include "methods/temporal_blocks.kernel.h"
 
 namespace AA_ARCH {
@@ -33,10 +33,10 @@ AA_INLINE void karisPixel(const KarisArgs& a, int x, int y) {
     const TemporalIn& in = a.in;
     const R zero(T(0)), one(T(1));
     const long o = long(y) * in.stride + x;
-    const auto at = [&](int i, int j) __attribute__((always_inline)) {
+    const Window<R> at([&](int i, int j) __attribute__((always_inline)) {
         const vec3<R> c = load3<R>(in.color.c, o + long(j) * in.stride + i);
         return a.ycocg ? to_ycocg(c) : c;
-    };
+    });
     const auto luma = [&](vec3<R> c) __attribute__((always_inline)) { return a.ycocg ? c.x : luma709(c); };
     const vec3<R> centre = at(0, 0);
 
@@ -107,34 +107,13 @@ __attribute__((flatten)) void karisRows(const KarisArgs& a, int y0, int y1) {
                 store_first<R>(a.in, x, y);
 }
 
-// SMPTE ST 2084 with 1.0 = 10000 nominal units, as Donut stores them.
-template <class R>
-AA_INLINE R pqEncode(R linear) {
-    using T = Elem<R>;
-    const R zero(T(0)), m1(T(0.1593017578125)), m2(T(78.84375));
-    const R power = pow_positive(max(linear * R(T(1e-4)), R(T(1e-30))), m1);
-    const R lm = select(linear > zero, power, zero);
-    // ((c1 + c2 lm) / (1 + c3 lm))^m2; the ratio is near 1 and its exponent 79, so its logarithm is taken from the exact
-    // difference of numerator and denominator, 0.1640625 (lm - 1).
-    const R numerator = R(T(0.8359375)) + lm * R(T(18.8515625)), denominator = R(T(1)) + lm * R(T(18.6875));
-    const R t = R(T(0.1640625)) * (lm - R(T(1))) / (numerator + denominator);
-    return exp2_lanes(log2_of_ratio(t) * m2);
-}
-template <class R>
-AA_INLINE R pqDecode(R encoded) {
-    using T = Elem<R>;
-    const R zero(T(0));
-    const R e = pow_positive(max(encoded, R(T(1e-30))), R(T(1) / T(78.84375)));
-    const R ratio = max(e - R(T(0.8359375)), zero) / max(R(T(18.8515625)) - e * R(T(18.6875)), R(T(1e-6)));
-    return select(ratio > zero, pow_positive(max(ratio, R(T(1e-30))), R(T(1) / T(0.1593017578125))), zero) * R(T(1e4));
-}
 template <class R>
 __attribute__((flatten)) void pqEncodeRows(const PqArgs& a, int y0, int y1) {
     for (int c = 0; c < 3; c++)
         for (int y = y0; y < y1; y++)
             for (int x = 0; x < a.width; x += N<R>) {
                 const long o = long(y) * a.stride + x;
-                store(pqEncode(load<R>(a.in.c[c] + o)), a.out.c[c] + o);
+                store(pq_encode(load<R>(a.in.c[c] + o)), a.out.c[c] + o);
             }
 }
 template <class R>
@@ -143,7 +122,7 @@ __attribute__((flatten)) void pqDecodeRows(const PqArgs& a, int y0, int y1) {
         for (int y = y0; y < y1; y++)
             for (int x = 0; x < a.width; x += N<R>) {
                 const long o = long(y) * a.stride + x;
-                store(pqDecode(load<R>(a.in.c[c] + o)), a.out.c[c] + o);
+                store(pq_decode(load<R>(a.in.c[c] + o)), a.out.c[c] + o);
             }
 }
 

@@ -7,8 +7,8 @@ enum class HistoryConstraint { clipFiltered, clipMean, clamp };
 enum class AntiFlicker { none, karis, falcor };
 struct KarisArgs {
     TemporalIn in;
-    float alpha;       // weight of the current colour
-    float filter[9];   // weights of the 3x3 current samples by distance, row-major; ignored without `filtered`
+    float alpha;      // weight of the current colour
+    float filter[9];  // weights of the 3x3 current samples by distance, row-major; ignored without `filtered`
     bool filtered, toneWeighted, hdr4, ycocg, inverseLuminance;
     BoxKind box;
     HistoryConstraint constraint;

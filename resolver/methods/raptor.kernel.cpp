@@ -10,11 +10,16 @@ AA_INLINE vec3<R> compressed(vec3<R> c) {
 template <class R>
 AA_INLINE vec3<R> constrained(const RaptorArgs& a, const Box<R>& bounds, const Box<R>& variance, vec3<R> h) {
     switch (a.constraint) {
-        case RaptorConstraint::none: return h;
-        case RaptorConstraint::clamp: return clamp3(h, bounds.lo, bounds.hi);
-        case RaptorConstraint::clip: return clip_to_centre(bounds, h);
-        case RaptorConstraint::varianceClip: return clip_to_centre(variance, h);
-        case RaptorConstraint::varianceClipClamp: break;
+        case RaptorConstraint::none:
+            return h;
+        case RaptorConstraint::clamp:
+            return clamp3(h, bounds.lo, bounds.hi);
+        case RaptorConstraint::clip:
+            return clip_to_centre(bounds, h);
+        case RaptorConstraint::varianceClip:
+            return clip_to_centre(variance, h);
+        case RaptorConstraint::varianceClipClamp:
+            break;
     }
     return clip_to_centre(variance, clamp3(h, bounds.lo, bounds.hi));
 }
@@ -25,10 +30,10 @@ AA_INLINE void raptorPixel(const RaptorArgs& a, int x, int y) {
     const TemporalIn& in = a.in;
     const R zero(T(0)), one(T(1));
     const long o = long(y) * in.stride + x;
-    const auto at = [&](int i, int j) __attribute__((always_inline)) {
+    const Window<R> at([&](int i, int j) __attribute__((always_inline)) {
         const vec3<R> c = load3<R>(in.color.c, o + long(j) * in.stride + i);
         return a.ycocg ? to_ycocg(c) : c;
-    };
+    });
     const auto luma = [&](vec3<R> c) __attribute__((always_inline)) { return a.ycocg ? c.x : luma709(c); };
     const auto toRgb = [&](vec3<R> c) __attribute__((always_inline)) {
         return max(a.ycocg ? from_ycocg(c) : c, vec3<R>(zero));
@@ -72,8 +77,7 @@ AA_INLINE void raptorPixel(const RaptorArgs& a, int x, int y) {
     // 7, 8: weight of history per channel
     vec3<R> k(R(T(0.9)));
     if (a.temporalFiltering) {
-        const vec3<R> contrast =
-            saturate(abs(bounds.hi - bounds.lo) / max(current, vec3<R>(R(T(1e-4)))));
+        const vec3<R> contrast = saturate(abs(bounds.hi - bounds.lo) / max(current, vec3<R>(R(T(1e-4)))));
         k = vec3<R>(R(T(0.25))) + contrast * R(T(0.6));
     }
     // 9, 10

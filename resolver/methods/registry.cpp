@@ -23,6 +23,8 @@
 #include "methods/inside.h"
 #include "methods/karis.h"
 #include "methods/raptor.h"
+#include "methods/t2msaa.h"
+#include "methods/asaa.h"
 
 namespace aa {
 
@@ -62,6 +64,8 @@ const std::vector<MethodDescriptor>& registry() {
         unchartedNormDescriptor(),
         unchartedNoSharpenDescriptor(),
         masterDescriptor(),
+        asaaDescriptor(),
+        t2msaaDescriptor(),
         accumRejectDescriptor(),
         raptorDescriptor(),
         donutDescriptor(),

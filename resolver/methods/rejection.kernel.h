@@ -35,7 +35,8 @@ template <class R>
 AA_INLINE Mask<R> magnified(const TemporalIn& in, long o, const Reprojection<R>& q, float scale) {
     using T = Elem<R>;
     const R one(T(1));
-    const Motion<R> m = load_motion<R>(in, o), right = load_motion<R>(in, o + 1), down = load_motion<R>(in, o + in.stride);
+    const Motion<R> m = load_motion<R>(in, o), right = load_motion<R>(in, o + 1),
+                    down = load_motion<R>(in, o + in.stride);
     const R footprintX = max(abs(one - (right.x - m.x)), abs(down.x - m.x)),
             footprintY = max(abs(right.y - m.y), abs(one - (down.y - m.y)));
     const R distanceX = min(q.fracX, one - q.fracX), distanceY = min(q.fracY, one - q.fracY);

@@ -44,7 +44,8 @@ float bilinear(const PlaneF& p, float x, float y) {
 }
 // Sums over rows in a fixed order, whatever the number of threads.
 template <size_t n>
-std::array<double, n> sumRows(const Exec& exec, int height, const std::function<void(int, std::array<double, n>&)>& row) {
+std::array<double, n> sumRows(const Exec& exec, int height,
+                              const std::function<void(int, std::array<double, n>&)>& row) {
     std::vector<std::array<double, n>> rows(static_cast<size_t>(height));
     forRows(exec, height, [&](int y0, int y1) {
         for (int y = y0; y < y1; y++) row(y, rows[size_t(y)] = {});
@@ -102,9 +103,11 @@ void TemporalScene::followSurfaces(const Frame& frame, const Exec& exec) {
     forRows(exec, height_, [&](int y0, int y1) {
         for (int y = y0; y < y1; y++)
             for (int x = 0; x < width_; x++) {
-                const float px = float(x) + 0.5f - frame.motionXPx.at(x, y), py = float(y) + 0.5f - frame.motionYPx.at(x, y);
+                const float px = float(x) + 0.5f - frame.motionXPx.at(x, y),
+                            py = float(y) + 0.5f - frame.motionYPx.at(x, y);
                 const bool inside = px >= 0 && px <= float(width_) && py >= 0 && py <= float(height_);
-                const int nx = inside ? std::min(int(px), width_ - 1) : 0, ny = inside ? std::min(int(py), height_ - 1) : 0;
+                const int nx = inside ? std::min(int(px), width_ - 1) : 0,
+                          ny = inside ? std::min(int(py), height_ - 1) : 0;
                 const float z = frame.depthView.at(x, y);
                 bool seen = false;
                 for (int j = -1; inside && j <= 1; j++)
@@ -170,20 +173,21 @@ void TemporalJudge::add(const TemporalScene& scene, const Rgb& encoded, const Ex
             motionSquares_ += sums[0], motionPixels_ += sums[1];
         }
         if (truth) {
-            const auto sums = sumRows<3 + 2 * kGhostAges>(exec, h, [&](int row, std::array<double, 3 + 2 * kGhostAges>& sum) {
-                for (int x = 0; x < w; x++) {
-                    const uint32_t age = scene.age().at(x, row);
-                    if (age == 0) continue;
-                    double squares = 0, along = 0, norm = 0;
-                    for (size_t c = 0; c < 3; c++) {
-                        const double r = double(truth->c[c].at(x, row)), e = double(encoded.c[c].at(x, row)) - r;
-                        const double o = double(scene.stale().c[c].at(x, row)) - r;
-                        squares += e * e, along += e * o, norm += o * o;
+            const auto sums =
+                sumRows<3 + 2 * kGhostAges>(exec, h, [&](int row, std::array<double, 3 + 2 * kGhostAges>& sum) {
+                    for (int x = 0; x < w; x++) {
+                        const uint32_t age = scene.age().at(x, row);
+                        if (age == 0) continue;
+                        double squares = 0, along = 0, norm = 0;
+                        for (size_t c = 0; c < 3; c++) {
+                            const double r = double(truth->c[c].at(x, row)), e = double(encoded.c[c].at(x, row)) - r;
+                            const double o = double(scene.stale().c[c].at(x, row)) - r;
+                            squares += e * e, along += e * o, norm += o * o;
+                        }
+                        sum[0] += squares, sum[1] += 3, sum[2] += 1;
+                        if (norm == norm) sum[2 + age] += along, sum[2 + kGhostAges + age] += norm;
                     }
-                    sum[0] += squares, sum[1] += 3, sum[2] += 1;
-                    if (norm == norm) sum[2 + age] += along, sum[2 + kGhostAges + age] += norm;
-                }
-            });
+                });
             ghostSquares_ += sums[0], ghostPixels_ += sums[1];
             trailPixels_ += sums[2], trailFrames_ += double(w) * h;
             for (size_t a = 0; a < kGhostAges; a++) along_[a] += sums[3 + a], norm_[a] += sums[3 + kGhostAges + a];

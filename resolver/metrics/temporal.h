@@ -41,14 +41,14 @@ class TemporalScene {
     int width() const { return width_; }
     int height() const { return height_; }
     int framesSinceReset() const { return frames_; }
-    bool alongMotion() const { return alongMotion_; }   // valid(), warp() and age() hold for this frame
-    const Rgb* truth() const { return truth_; }         // of this frame, or null
-    bool hasTruthStep() const { return truthStep_; }    // truthStep() holds
-    const PlaneF& qx() const { return qx_; }            // previous position, px; NaN where not valid
+    bool alongMotion() const { return alongMotion_; }  // valid(), warp() and age() hold for this frame
+    const Rgb* truth() const { return truth_; }        // of this frame, or null
+    bool hasTruthStep() const { return truthStep_; }   // truthStep() holds
+    const PlaneF& qx() const { return qx_; }           // previous position, px; NaN where not valid
     const PlaneF& qy() const { return qy_; }
-    const PlaneF& truthStep() const { return step_; }   // D_R
-    const PlaneU& age() const { return age_[current_]; }      // 1..16 on the trail, else 0
-    const Rgb& stale() const { return stale_[current_]; }     // O, where age() > 0; NaN when it is not known
+    const PlaneF& truthStep() const { return step_; }      // D_R
+    const PlaneU& age() const { return age_[current_]; }   // 1..16 on the trail, else 0
+    const Rgb& stale() const { return stale_[current_]; }  // O, where age() > 0; NaN when it is not known
 
   private:
     void followSurfaces(const Frame& frame, const Exec& exec);
@@ -65,8 +65,8 @@ class TemporalScene {
 };
 
 struct TemporalMetrics {
-    int warmup = 0;        // frames left out at the start
-    int frames = 0;        // frames that count
+    int warmup = 0;  // frames left out at the start
+    int frames = 0;  // frames that count
     std::optional<double> tPsnr, flickerStatic, flickerStep, flickerMoving;
     std::optional<double> ghostMse, ghostHalfLife;
     std::optional<double> ghostExcess;  // ghostMse over that of noaa in the same run; filled by the caller
