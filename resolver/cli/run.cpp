@@ -53,6 +53,43 @@ void printTable(const RunResults& r) {
             std::printf("replaced input values: %s %llu\n", what.c_str(), static_cast<unsigned long long>(count));
 }
 
+// Figures over time; only what the shot gives.
+void printTemporal(const RunResults& r) {
+    const auto has = [&](auto member) {
+        return std::any_of(r.methods.begin(), r.methods.end(),
+                           [&](const auto& m) { return m.temporal && (*m.temporal).*member; });
+    };
+    if (!has(&TemporalMetrics::flickerStatic) && !has(&TemporalMetrics::flickerMoving) &&
+        !has(&TemporalMetrics::ghostMse))
+        return;
+    size_t width = 6;
+    for (const auto& m : r.methods) width = std::max(width, m.text.size());
+    std::printf("%-*s %8s %10s %10s %10s %10s %9s %9s\n", int(width), "method", "tPSNR dB", "flicker", "along mv",
+                "ghost MSE", "vs noaa", "half-life", "converged");
+    const auto cell = [](const std::optional<double>& v, int w, const char* format) {
+        if (v)
+            std::printf(format, w, *v);
+        else
+            std::printf(" %*s", w, "-");
+    };
+    for (const auto& m : r.methods) {
+        if (!m.temporal) continue;
+        const TemporalMetrics& t = *m.temporal;
+        std::printf("%-*s", int(width), m.text.c_str());
+        cell(t.tPsnr, 8, " %*.3f"), cell(t.flickerStatic, 10, " %*.4f"), cell(t.flickerMoving, 10, " %*.4f");
+        cell(t.ghostMse, 10, " %*.4g"), cell(t.ghostExcess, 10, " %*.3f"), cell(t.ghostHalfLife, 9, " %*.2f");
+        cell(t.convergence ? std::optional<double>(*t.convergence) : std::nullopt, 9, " %*.0f");
+        std::printf("\n");
+    }
+    for (const auto& m : r.methods)
+        if (m.temporal) {
+            std::printf(
+                "over time: after %d warm-up frames; flicker in 8-bit units; half-life and convergence in frames\n",
+                m.temporal->warmup);
+            break;
+        }
+}
+
 void execute(const Options& o, Context& context) {
     RunOptions run;
     std::set<std::string> folders;
@@ -84,7 +121,7 @@ void execute(const Options& o, Context& context) {
     if (o.json)
         std::cout << toJsonText(results) << "\n";
     else
-        printTable(results);
+        printTable(results), printTemporal(results);
     if (!o.json) std::printf("results: %s\n", (run.out / "results.json").c_str());
 }
 

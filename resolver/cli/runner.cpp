@@ -10,6 +10,7 @@
 #include "cli/cli.h"
 #include "image/error.h"
 #include "image/io.h"
+#include "metrics/temporal.h"
 #include "shot/frame_stream.h"
 
 namespace aa {
@@ -36,6 +37,11 @@ void requirePasses(const ShotReader& shot, const std::vector<MethodSpec>& method
                              std::string(missing[0]) + "', which the shot does not have; export again with --for " +
                              all);
         }
+}
+
+// All of `asked`, or nothing: the figures along the motion need every one of them.
+PassSet passesThatAreThere(PassSet asked, PassSet offered) {
+    return asked.without(offered).empty() ? asked : PassSet{};
 }
 
 RunResults describeRun(const Manifest& m, const RunOptions& o) {
@@ -169,8 +175,13 @@ RunResults run(const ShotReader& shot, const RunOptions& o, Progress& progress) 
 
     // Methods that accumulate read the jittered frames, all others the centre-sampled ones where the shot has them.
     const bool split = shot.hasCentreFrames();
-    const PassSet wanted = split ? passesOf(o.methods, Sampling::jittered) : passesOf(o.methods);
+    PassSet wanted = split ? passesOf(o.methods, Sampling::jittered) : passesOf(o.methods);
     const PassSet wantedOfCentre = split ? passesOf(o.methods, Sampling::centre) : PassSet{};
+    // A sequence is also judged over time, along the motion where the shot knows it.
+    const bool judgeTime = o.frames.size() > 1 && !passesOf(o.methods, Sampling::jittered).empty();
+    if (judgeTime && !manifest.isStatic) wanted |= passesThatAreThere(temporalMetricPasses(), shot.offered());
+    TemporalScene scene(manifest.isStatic);
+    std::vector<TemporalJudge> judges(methods.size(), TemporalJudge(temporalWarmup(o.frames.size())));
     FrameStream stream(shot, o.frames, wanted, /*withTruth=*/true, wantedOfCentre);
     for (size_t i = 0; auto frame = stream.next(); i++) {
         if (i == 0) frame->reset = true;  // a sequence may start in the middle
@@ -189,6 +200,7 @@ RunResults run(const ShotReader& shot, const RunOptions& o, Progress& progress) 
             results.truthImages[frame->number] = file;
         }
         if (reference) noise += reference->noise, withTruth++;
+        if (judgeTime) scene.advance(*frame, reference ? &reference->encoded : nullptr, o.exec);
         // A static shot is judged at its last frame, as the published protocol does: there every history is longest.
         if (manifest.isStatic) errors.assign(methods.size(), {});
         for (size_t k = 0; k < methods.size(); k++) {
@@ -201,6 +213,7 @@ RunResults run(const ShotReader& shot, const RunOptions& o, Progress& progress) 
                 result.metrics = measure(methods[k].outEncoded, linear ? &methods[k].out : nullptr, *reference,
                                          o.measure, o.exec, errors[k]);
             }
+            if (judgeTime) judges[k].add(scene, methods[k].outEncoded, o.exec);
             if (write) result.image = writeImage(methods[k], frame->number, o);
             auto& done = results.methods[k].frames;
             if (manifest.isStatic && !done.empty()) done.back().judged = false;
@@ -216,6 +229,7 @@ RunResults run(const ShotReader& shot, const RunOptions& o, Progress& progress) 
             {"colourNan", n.colourNan}, {"colourInf", n.colourInf}, {"colourNegative", n.colourNegative},
             {"depth", n.depth},         {"normal", n.normal},       {"motion", n.motion},
             {"edges", n.edges}};
+    for (size_t k = 0; judgeTime && k < methods.size(); k++) results.methods[k].temporal = judges[k].result();
     finish(results, errors);
     writeResults(results, o.out);
     return results;

@@ -19,7 +19,7 @@ class Master : public Method {
         in.feedbackCeiling = temporal::feedbackCeiling(p, history_.framesSinceReset());
         in.dilation = temporal::dilation(p);
         in.filter = temporal::historyFilter(p);
-        if (keepDebugLayers) in.debug = debug_.begin(frame.width, frame.height);
+        in.debug = debug_.begin(*this, frame.width, frame.height);
         fit(frame.width, frame.height);
         const float farDepth = farDepthOf(frame);
         const MasterKernels& kernels = masterKernelsFor(exec.isa);
@@ -28,8 +28,12 @@ class Master : public Method {
         const bool sobel = p.flag("sobel");
         PlaneF* filtered = &sobel_;
         if (sobel) {
-            MasterLuminanceArgs l{view(frame.albedoLinear), view(frame.colorEncoded), past_.c[0].row(0),
-                                  past_.c[1].row(0),        in.stride,                in.width,
+            MasterLuminanceArgs l{view(frame.albedoLinear),
+                                  view(frame.colorEncoded),
+                                  past_.c[0].row(0),
+                                  past_.c[1].row(0),
+                                  in.stride,
+                                  in.width,
                                   bt601};
             runKernel(kernels.luminance, exec, l, in.height);
             for (size_t c = 0; c < 2; c++) past_.c[c].fillBorder();
@@ -88,6 +92,7 @@ class Master : public Method {
         return history_.bytes() + past_.bytes() + sobel_.bytes() + filtered_.bytes() + pastDepth_.bytes() +
                previousDepth_.bytes();
     }
+    const PlaneF* rejection() const override { return debug_.rejection(); }
     std::vector<DebugLayer> debugLayers() const override {
         std::vector<DebugLayer> layers = debug_.layers();
         const char* const names[] = {"aliasedValue", "sobelAverage", "modelAverage", "depthPseudoVariance",
@@ -131,25 +136,28 @@ MethodDescriptor masterDescriptor() {
         .id = "master",
         .title = "Sobel-improved TAA",
         .family = "temporal",
-        .summary = "Uncharted TAA whose colour box opens only where Sobel, depth and object ids say that a pixel is aliased.",
+        .summary =
+            "Uncharted TAA whose colour box opens only where Sobel, depth and object ids say that a pixel is aliased.",
         .source = "seed 000 s.4.3 (Oliveros 2018); methods/06 s.6.5",
         .passes = Pass::color | Pass::albedo | Pass::depth | Pass::object | Pass::motion,
         .input = Space::encoded,
         .output = Space::encoded,
         .temporal = true,
-        .params = {temporal::kMinParam("0.88", "methods/11 nr 5"), temporal::kMaxParam("0.97", "methods/11 nr 5"),
+        .params = {temporal::kMinParam("0.88", "methods/11 nr 5"),
+                   temporal::kMaxParam("0.97", "methods/11 nr 5"),
                    temporal::sharpenParam("norm", "seed 000 eq 4.17"),
                    flagParam("model", true, "use the share of neighbours with another object id", "seed 000 eq 4.1"),
                    flagParam("depth", true, "use the depth pseudo-variance", "seed 000 eq 4.5"),
                    flagParam("depthTemporal", true, "use the temporal depth pseudo-variance", "seed 000 eq 4.6"),
                    flagParam("sobel", true, "use the Sobel value", "seed 000 eq 4.10"),
                    flagParam("sobelTemporal", true, "filter the Sobel value over time", "seed 000 s.4.3.3", "sobel=on"),
-                   realParam("wU", "0.3", 0, 10, "weight of the albedo's Sobel magnitude", "seed 000 eq 4.9", "sobel=on"),
+                   realParam("wU", "0.3", 0, 10, "weight of the albedo's Sobel magnitude", "seed 000 eq 4.9",
+                             "sobel=on"),
                    realParam("wL", "0.7", 0, 10, "weight of the lit colour's Sobel magnitude", "seed 000 eq 4.9",
                              "sobel=on"),
                    choiceParam("sobelDepth", "zfar", {"zfar", "world"},
-                               "unit of the depth under Sobel: share of the far plane, or scene units", "methods/11 nr 9",
-                               "sobel=on"),
+                               "unit of the depth under Sobel: share of the far plane, or scene units",
+                               "methods/11 nr 9", "sobel=on"),
                    choiceParam("luminance", "bt709", {"bt709", "bt601"}, "luminance under Sobel, of encoded colour",
                                "methods/11 nr 9", "sobel=on"),
                    realParam("depthThreshold", "0.002", 0, 1e6, "least depth difference that is an edge, scene units",
@@ -164,11 +172,11 @@ MethodDescriptor masterDescriptor() {
                              "methods/06 s.6.5 (ours)"),
                    temporal::clipTargetParam("aabbCentre", "methods/11 nr 6"),
                    temporal::dilationParam("closest3x3", "seed 000 s.3.6.2"),
-                   temporal::historyFilterParam("bilinear", "methods/06 B1"), temporal::warmupParam()},
-        .create =
-            [](const Params& p, const ShotInfo&) {
-                temporal::requireOrdered("master", p);
-                return std::make_unique<Master>(p);
-            }};
+                   temporal::historyFilterParam("bilinear", "methods/06 B1"),
+                   temporal::warmupParam()},
+        .create = [](const Params& p, const ShotInfo&) {
+            temporal::requireOrdered("master", p);
+            return std::make_unique<Master>(p);
+        }};
 }
 }  // namespace aa

@@ -1,6 +1,6 @@
+#include "kernels/srgb.h"
 #include "methods/master_kernels.h"
 #include "methods/master_terms.kernel.h"
-#include "kernels/srgb.h"
 
 namespace AA_ARCH {
 
@@ -32,8 +32,8 @@ __attribute__((flatten)) void sobelRows(const MasterSobelArgs& a, int y0, int y1
             const R depth = sobel_magnitude<R>([&](int i, int j) __attribute__((always_inline)) {
                 return min(farDepth, load<R>(a.depthView + o + long(j) * a.stride + i));
             });
-            const R sum = window(a.luminanceAlbedo) * R(T(a.weightAlbedo)) + window(a.luminanceLit) * R(T(a.weightLit)) +
-                          depth * R(T(a.depthScale));
+            const R sum = window(a.luminanceAlbedo) * R(T(a.weightAlbedo)) +
+                          window(a.luminanceLit) * R(T(a.weightLit)) + depth * R(T(a.depthScale));
             store(sobel_curve(sum), a.sobel + o);
         }
 }
@@ -70,7 +70,7 @@ AA_INLINE void pastPixel(const MasterPastArgs& a, int x, int y) {
     store(depth, a.pastDepth + o);
     const vec3<R> color = in.filter == HistoryFilter::bilinear ? past.rgb : fetch_history(in, x, y, q);
     store3(color, a.pastColor, o);
-    if (in.debug.rejection) store(motion.x, in.debug.motionXPx + o), store(motion.y, in.debug.motionYPx + o);
+    if (in.debug.feedback) store(motion.x, in.debug.motionXPx + o), store(motion.y, in.debug.motionYPx + o);
 }
 template <class R>
 __attribute__((flatten)) void pastRows(const MasterPastArgs& a, int y0, int y1) {
@@ -121,20 +121,21 @@ AA_INLINE void masterPixel(const MasterArgs& a, int x, int y) {
     const R aliased = max(saturate(sobel + variance.depth + variance.depthTemporal + model), R(T(a.minAlias)));
 
     // The box: loose where aliased, the current colour alone where not (eqs 4.15, 4.16).
-    const Neighbours<R> window = neighbours<R>(
-        [&](int i, int j) __attribute__((always_inline)) { return load3<R>(in.color.c, at(i, j)); });
+    const Neighbours<R> window =
+        neighbours<R>([&](int i, int j) __attribute__((always_inline)) { return load3<R>(in.color.c, at(i, j)); });
     const vec3<R> low = mix(window.plus.lo, window.square.lo, aliased),
                   high = mix(window.plus.hi, window.square.hi, aliased),
                   mean = mix(window.meanPlus, window.meanSquare, aliased);
     const Box<R> box{mix(current, low, aliased), mix(current, high, aliased)};
     const vec3<R> clipped = constrain(box, a.clipTarget, mean, current, history);
 
-    const R k =
-        min(luminance_feedback(luma709(current), luma709(clipped), a.kMin, a.kMax), R(T(in.feedbackCeiling)));
+    const R k = min(luminance_feedback(luma709(current), luma709(clipped), a.kMin, a.kMax), R(T(in.feedbackCeiling)));
     const vec3<R> mixed = select(inside, blend(current, clipped, k), current);
 
     store_blend(in, x, y, sanitised(mixed, current, history), load<R>(a.sobelFiltered + o));
-    if (in.debug.rejection) {
+    if (!in.debug.feedback) {
+        store_debug(in.debug, o, Motion<R>{k, k}, inside, box, history, k);
+    } else {
         store_debug(in.debug, o, Motion<R>{load<R>(in.debug.motionXPx + o), load<R>(in.debug.motionYPx + o)}, inside,
                     box, clipped - history, k);
         store(aliased, a.debugAliased + o), store(sobel, a.debugSobel + o), store(model, a.debugModel + o);
@@ -153,5 +154,5 @@ __attribute__((flatten)) void masterRows(const MasterArgs& a, int y0, int y1) {
 
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::MasterKernels,
-                masterKernels) = {AA_ROWS(luminanceRows), AA_ROWS(sobelRows), AA_ROWS(pastRows), AA_ROWS(masterRows)};
+AA_DEFINE_TABLE(aa::MasterKernels, masterKernels) = {AA_ROWS(luminanceRows), AA_ROWS(sobelRows), AA_ROWS(pastRows),
+                                                     AA_ROWS(masterRows)};

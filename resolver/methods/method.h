@@ -39,6 +39,10 @@ class Method {
     virtual size_t stateBytes() const { return 0; }                     // history and scratch kept between frames
     virtual std::vector<DebugLayer> debugLayers() const { return {}; }  // of the last frame; empty when there are none
     bool keepDebugLayers = false;                                       // set by the driver before the first frame
+    // Where history was not used, 0 = it was, in the last frame (methods/temporal_kernels.h, Rejection); null unless
+    // the method is temporal and keepRejection was set before the first frame.
+    virtual const PlaneF* rejection() const { return nullptr; }
+    bool keepRejection = false;
 };
 
 struct MethodDescriptor {

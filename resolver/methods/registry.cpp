@@ -19,6 +19,12 @@
 #include "methods/ssaa.h"
 #include "methods/taa_simplest.h"
 #include "methods/uncharted.h"
+#include "methods/accum_reject.h"
+#include "methods/inside.h"
+#include "methods/karis.h"
+#include "methods/raptor.h"
+#include "methods/t2msaa.h"
+#include "methods/asaa.h"
 
 namespace aa {
 
@@ -58,6 +64,15 @@ const std::vector<MethodDescriptor>& registry() {
         unchartedNormDescriptor(),
         unchartedNoSharpenDescriptor(),
         masterDescriptor(),
+        asaaDescriptor(),
+        t2msaaDescriptor(),
+        accumRejectDescriptor(),
+        raptorDescriptor(),
+        donutDescriptor(),
+        falcorDescriptor(),
+        salviDescriptor(),
+        karisDescriptor(),
+        insideDescriptor(),
     };
     return methods;
 }

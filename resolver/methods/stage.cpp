@@ -1,6 +1,8 @@
 #include "methods/stage.h"
 
 #include "image/error.h"
+#include "methods/fill.h"
+#include "methods/motion_blur.h"
 #include "methods/sharpen.h"
 
 namespace aa {
@@ -36,6 +38,7 @@ class StagedMethod : public Method {
     StagedMethod(std::unique_ptr<Method> method, const MethodSpec& spec, const ShotInfo& shot)
         : method_(std::move(method)), space_(spec.outputSpace()) {
         for (const auto& s : spec.stages) stages_.push_back(s.stage->create(s.value, spec, shot));
+        for (const auto& stage : stages_) method_->keepRejection = method_->keepRejection || stage->needsRejection();
     }
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         method_->keepDebugLayers = keepDebugLayers;
@@ -63,6 +66,8 @@ class StagedMethod : public Method {
 const std::vector<StageDescriptor>& stages() {
     static const std::vector<StageDescriptor> all = {
         sharpenStage(),
+        fillStage(),
+        motionBlurStage(),
     };
     return all;
 }

@@ -14,6 +14,7 @@ class Stage {
     virtual ~Stage() = default;
     // Changes `image`, the output of `method` for `frame`. Its border is filled on entry and need not be on return.
     virtual void apply(const Frame& frame, const Method& method, Space space, const Exec& exec, Rgb& image) = 0;
+    virtual bool needsRejection() const { return false; }  // whether apply() reads method.rejection()
     virtual size_t stateBytes() const { return 0; }
 };
 

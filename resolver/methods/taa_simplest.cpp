@@ -17,11 +17,12 @@ class TaaSimplest : public Method {
         args.in.feedbackCeiling = temporal::feedbackCeiling(params_, history_.framesSinceReset());
         args.in.filter = temporal::historyFilter(params_);
         args.in.clampOutside = params_.choice("outside") == "clamp";
-        if (keepDebugLayers) args.in.debug = debug_.begin(frame.width, frame.height);
+        args.in.debug = debug_.begin(*this, frame.width, frame.height);
         runKernel(taaSimplestKernelsFor(exec.isa).resolve, exec, args, frame.height);
         history_.end();
     }
     size_t stateBytes() const override { return history_.bytes(); }
+    const PlaneF* rejection() const override { return debug_.rejection(); }
     std::vector<DebugLayer> debugLayers() const override { return debug_.layers(); }
 
   private:

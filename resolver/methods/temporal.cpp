@@ -99,34 +99,41 @@ float feedbackCeiling(const Params& p, int framesSinceReset) {
 
 }  // namespace temporal
 
-ExpectedDepth expectedDepth(const Frame& frame) {
-    ExpectedDepth e;
-    if (!frame.camera || !frame.previousCamera || frame.reset) return e;
-    const Camera &now = *frame.camera, &before = *frame.previousCamera;
+std::optional<ViewRays> viewRays(const Frame& frame) {
+    if (!frame.camera) return {};
+    const Camera& now = *frame.camera;
     const bool perspective = now.kind == "perspective";
-    if (now.kind != before.kind || (!perspective && now.kind != "orthographic")) return e;
-    // View position of the sample at pixel position p: clip x = P00 X + P20 Z + P30, and w = -Z or 1. The sample lies
-    // at p + jitter. Z = -depth.
+    if (!perspective && now.kind != "orthographic") return {};
+    // clip x = P00 X + P20 Z + P30 with Z = -depth, and w = depth or 1. The sample lies at p + jitter.
     const glm::dmat4& P = now.projection;
-    const glm::dmat4 toPrevious = before.view * glm::inverse(now.view);
-    const double ndc[2][3] = {{2.0 / frame.width, 0, 2.0 * frame.jitterPx.x / frame.width - 1},
-                              {0, -2.0 / frame.height, 1 - 2.0 * frame.jitterPx.y / frame.height}};
-    // Row vectors over (p.x, p.y, 1): X = depth * perDepth + constant.
-    glm::dvec3 perDepth[2], constant[2];
+    const glm::dvec3 ndc[2] = {{2.0 / frame.width, 0, 2.0 * frame.jitterPx.x / frame.width - 1},
+                               {0, -2.0 / frame.height, 1 - 2.0 * frame.jitterPx.y / frame.height}};
+    const glm::dvec3 unit(0, 0, 1);
+    ViewRays rays;
     for (int i = 0; i < 2; i++) {
-        const double scale = P[i][i];
-        if (scale == 0) return e;
-        const glm::dvec3 n(ndc[i][0], ndc[i][1], ndc[i][2]), unit(0, 0, 1);
-        perDepth[i] = (perspective ? n + unit * P[2][i] : unit * P[2][i]) / scale;
-        constant[i] = (perspective ? unit * -P[3][i] : n - unit * P[3][i]) / scale;
+        if (P[i][i] == 0) return {};
+        rays.perDepth[i] = (perspective ? ndc[i] + unit * P[2][i] : unit * P[2][i]) / P[i][i];
+        rays.constant[i] = (perspective ? unit * -P[3][i] : ndc[i] - unit * P[3][i]) / P[i][i];
     }
-    // Previous depth = -(row 2 of toPrevious) . (X, Y, -depth, 1).
+    return rays;
+}
+
+ExpectedDepth expectedDepth(const Frame& frame, const Camera& before) {
+    ExpectedDepth e;
+    const auto rays = viewRays(frame);
+    if (!rays || frame.camera->kind != before.kind) return e;
+    // Previous depth = -(row z of toPrevious) . (X, Y, -depth, 1).
+    const glm::dmat4 toPrevious = before.view * glm::inverse(frame.camera->view);
     const double rx = toPrevious[0][2], ry = toPrevious[1][2], rz = toPrevious[2][2], rw = toPrevious[3][2];
-    const glm::dvec3 d = -(rx * perDepth[0] + ry * perDepth[1]) + glm::dvec3(0, 0, rz);
-    const glm::dvec3 c = -(rx * constant[0] + ry * constant[1]) - glm::dvec3(0, 0, rw);
+    const glm::dvec3 d = -(rx * rays->perDepth[0] + ry * rays->perDepth[1]) + glm::dvec3(0, 0, rz);
+    const glm::dvec3 c = -(rx * rays->constant[0] + ry * rays->constant[1]) - glm::dvec3(0, 0, rw);
     e.known = true;
     for (int i = 0; i < 3; i++) e.perDepth[i] = float(d[i]), e.constant[i] = float(c[i]);
     return e;
+}
+ExpectedDepth expectedDepth(const Frame& frame) {
+    if (frame.reset || !frame.previousCamera) return {};
+    return expectedDepth(frame, *frame.previousCamera);
 }
 
 void sharpenEncoded(const RgbaPlane& blend, SharpenKernel kernel, const Exec& exec, Rgb& out) {
@@ -135,17 +142,18 @@ void sharpenEncoded(const RgbaPlane& blend, SharpenKernel kernel, const Exec& ex
     runKernel(temporalKernelsFor(exec.isa).sharpen, exec, args, blend.height());
 }
 
-TemporalDebug TemporalDebugLayers::begin(int width, int height) {
-    if (motionX_.width() != width || motionX_.height() != height) {
-        for (Rgb* image : {&boxLow_, &boxHigh_}) *image = Rgb(width, height);
-        for (PlaneF* plane : {&motionX_, &motionY_, &rejection_, &clipAmount_, &feedback_})
-            *plane = PlaneF(width, height);
-    }
+TemporalDebug TemporalDebugLayers::begin(const Method& method, int width, int height) {
     TemporalDebug d;
-    d.motionXPx = motionX_.row(0), d.motionYPx = motionY_.row(0);
-    d.rejection = rejection_.row(0);
-    for (size_t c = 0; c < 3; c++) d.boxLow[c] = boxLow_.c[c].row(0), d.boxHigh[c] = boxHigh_.c[c].row(0);
-    d.clipAmount = clipAmount_.row(0), d.feedback = feedback_.row(0);
+    if (!method.keepDebugLayers && !method.keepRejection) return d;
+    const auto fit = [&](PlaneF& plane) {
+        if (plane.width() != width || plane.height() != height) plane = PlaneF(width, height);
+        return plane.row(0);
+    };
+    d.rejection = fit(rejection_);
+    if (!method.keepDebugLayers) return d;
+    d.motionXPx = fit(motionX_), d.motionYPx = fit(motionY_);
+    for (size_t c = 0; c < 3; c++) d.boxLow[c] = fit(boxLow_.c[c]), d.boxHigh[c] = fit(boxHigh_.c[c]);
+    d.clipAmount = fit(clipAmount_), d.feedback = fit(feedback_);
     return d;
 }
 

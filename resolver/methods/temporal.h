@@ -4,6 +4,8 @@
 // The history holds the blend before sharpening (methods/06), RGBA float, two planes that swap roles. A frame with
 // `reset` set, and the first frame, drop it; a change of size without reset is an InputError (methods/08 s.8.3).
 #pragma once
+#include <glm/vec3.hpp>
+
 #include "methods/method.h"
 #include "methods/temporal_kernels.h"
 
@@ -55,6 +57,14 @@ float feedbackCeiling(const Params& p, int framesSinceReset);
 
 // From frame.camera and frame.previousCamera; unknown without both, after a reset, and for other projections.
 ExpectedDepth expectedDepth(const Frame& frame);
+// In any other camera.
+ExpectedDepth expectedDepth(const Frame& frame, const Camera& before);
+
+// View position of the sample at pixel position p and depth z: x and y = z * (perDepth . (p, 1)) + constant . (p, 1).
+struct ViewRays {
+    glm::dvec3 perDepth[2], constant[2];
+};
+std::optional<ViewRays> viewRays(const Frame& frame);  // nothing without a perspective or orthographic camera
 
 // Sharpened copy of a display-encoded blend (methods/06 s.6.10); never fed back. `kernel` is not none.
 void sharpenEncoded(const RgbaPlane& blend, SharpenKernel kernel, const Exec& exec, Rgb& out);
@@ -62,8 +72,10 @@ void sharpenEncoded(const RgbaPlane& blend, SharpenKernel kernel, const Exec& ex
 // Planes behind TemporalDebug and their names.
 class TemporalDebugLayers {
   public:
-    TemporalDebug begin(int width, int height);
+    // What `method` was asked to keep: everything, the rejection alone, or nothing.
+    TemporalDebug begin(const Method& method, int width, int height);
     std::vector<DebugLayer> layers() const;
+    const PlaneF* rejection() const { return rejection_.empty() ? nullptr : &rejection_; }
 
   private:
     Rgb boxLow_, boxHigh_;

@@ -271,8 +271,8 @@ struct UniformFetch {
 template <class R>
 AA_INLINE void nearest_offsets(const Reprojection<R>& q, int stride, int* k) {
     const R half(Elem<R>(0.5)), zero(Elem<R>(0)), one(Elem<R>(1));
-    const Reprojection<R> n{q.wholeX + select(q.fracX >= half, one, zero), q.wholeY + select(q.fracY >= half, one, zero),
-                            zero, zero, q.inside};
+    const Reprojection<R> n{q.wholeX + select(q.fracX >= half, one, zero),
+                            q.wholeY + select(q.fracY >= half, one, zero), zero, zero, q.inside};
     texel_offsets(n, stride, k);
 }
 template <class R>
@@ -285,7 +285,8 @@ AA_INLINE R gather(const float* p, const int* k) {
         return r;
     }
 }
-// Depth that the surface at (x, y) had in the previous camera, if it did not move by itself (TemporalIn::expectedDepth).
+// Depth that the surface at (x, y) had in the previous camera, if it did not move by itself
+// (TemporalIn::expectedDepth).
 template <class R>
 AA_INLINE R expected_previous_depth(const ExpectedDepth& e, R depthView, int x, int y) {
     using T = Elem<R>;
@@ -333,6 +334,18 @@ AA_INLINE Motion<R> dilated_motion(const TemporalIn& in, long o) {
     }
     return best;
 }
+
+// The nine colours around a pixel, loaded (and converted) once; at(i, j) as the functions below take it.
+template <class R>
+struct Window {
+    vec3<R> color[9];
+    template <class Load>
+    AA_INLINE explicit Window(const Load& load) {
+        for (int j = -1; j <= 1; j++)
+            for (int i = -1; i <= 1; i++) color[(j + 1) * 3 + i + 1] = load(i, j);
+    }
+    AA_INLINE vec3<R> operator()(int i, int j) const { return color[(j + 1) * 3 + i + 1]; }
+};
 
 // ---- B4 neighbourhoods ----------------------------------------------------------------------------------------------
 template <class R>
@@ -487,20 +500,23 @@ AA_INLINE void store_first(const TemporalIn& in, int x, int y, R alpha = R(Elem<
     const R zero(Elem<R>(0));
     const vec3<R> current = load3<R>(in.color.c, o);
     store_blend(in, x, y, sanitised(current, current, vec3<R>(zero)), alpha);
-    if (!in.debug.rejection) return;
+    const TemporalDebug& d = in.debug;
+    if (!d.rejection) return;
+    store(R(Elem<R>(int(Rejection::firstFrame))), d.rejection + o);
+    if (!d.feedback) return;
     const Motion<R> motion = load_motion<R>(in, o);
-    store(motion.x, in.debug.motionXPx + o), store(motion.y, in.debug.motionYPx + o);
-    store(R(Elem<R>(int(Rejection::firstFrame))), in.debug.rejection + o);
-    store3(current, in.debug.boxLow, o), store3(current, in.debug.boxHigh, o);
-    store(zero, in.debug.clipAmount + o), store(zero, in.debug.feedback + o);
+    store(motion.x, d.motionXPx + o), store(motion.y, d.motionYPx + o);
+    store3(current, d.boxLow, o), store3(current, d.boxHigh, o);
+    store(zero, d.clipAmount + o), store(zero, d.feedback + o);
 }
 template <class R>
 AA_INLINE void store_debug(const TemporalDebug& d, long o, Motion<R> motion, Mask<R> inside, const Box<R>& box,
                            vec3<R> moved, R k) {
     if (!d.rejection) return;
     using T = Elem<R>;
+    store(select(inside, R(T(0)), R(T(int(Rejection::outside)))), d.rejection + o);
+    if (!d.feedback) return;
     store(motion.x, d.motionXPx + o), store(motion.y, d.motionYPx + o);
-    store(select(inside, R(T(0)), R(T(1))), d.rejection + o);
     store3(box.lo, d.boxLow, o), store3(box.hi, d.boxHigh, o);
     store(max_component(abs(moved)), d.clipAmount + o);
     store(select(inside, k, R(T(0))), d.feedback + o);

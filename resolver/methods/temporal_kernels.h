@@ -20,10 +20,10 @@ struct ExpectedDepth {
     float perDepth[3] = {0, 0, 1}, constant[3] = {0, 0, 0};
 };
 
-// Intermediates for --debug-layers; null pointers are not written.
+// Intermediates for --debug-layers: all or none of them; the rejection may also be kept alone.
 struct TemporalDebug {
-    float *motionXPx = nullptr, *motionYPx = nullptr;  // after dilation
     float* rejection = nullptr;                        // Rejection as a number
+    float *motionXPx = nullptr, *motionYPx = nullptr;  // after dilation
     float *boxLow[3] = {}, *boxHigh[3] = {};           // the constraint's box, in the method's space
     float* clipAmount = nullptr;                       // largest channel distance that the constraint moved history
     float* feedback = nullptr;                         // weight of history in the blend

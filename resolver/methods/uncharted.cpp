@@ -19,12 +19,13 @@ class Uncharted : public Method {
         args.in.feedbackCeiling = temporal::feedbackCeiling(params_, history_.framesSinceReset());
         args.in.dilation = temporal::dilation(params_);
         args.in.filter = temporal::historyFilter(params_);
-        if (keepDebugLayers) args.in.debug = debug_.begin(frame.width, frame.height);
+        args.in.debug = debug_.begin(*this, frame.width, frame.height);
         runKernel(unchartedKernelsFor(exec.isa).resolve, exec, args, frame.height);
         history_.end();
         if (sharpen_ != SharpenKernel::none) sharpenEncoded(history_.latest(), sharpen_, exec, out);
     }
     size_t stateBytes() const override { return history_.bytes(); }
+    const PlaneF* rejection() const override { return debug_.rejection(); }
     std::vector<DebugLayer> debugLayers() const override { return debug_.layers(); }
 
   private:

@@ -104,6 +104,41 @@ PooledMetrics pooledMetrics(const json& j) {
     return p;
 }
 
+json toJson(const TemporalMetrics& t) {
+    json j = {{"warmupFrames", t.warmup}, {"frames", t.frames}};
+    const auto put = [&](const char* key, const std::optional<double>& v) {
+        if (v) j[key] = number(v);
+    };
+    put("tPsnr", t.tPsnr);
+    put("flickerStatic", t.flickerStatic);
+    put("flickerStep", t.flickerStep);
+    put("flickerMoving", t.flickerMoving);
+    put("ghostMse", t.ghostMse);
+    put("ghostExcess", t.ghostExcess);
+    put("ghostHalfLifeFrames", t.ghostHalfLife);
+    if (!t.ghostFraction.empty()) j["ghostFraction"] = t.ghostFraction, j["trailShare"] = t.trailShare;
+    if (t.convergence) j["convergenceFrames"] = *t.convergence;
+    return j;
+}
+TemporalMetrics temporalMetrics(const json& j) {
+    TemporalMetrics t;
+    t.warmup = j.at("warmupFrames").get<int>();
+    t.frames = j.at("frames").get<int>();
+    t.tPsnr = toOptional(j, "tPsnr");
+    t.flickerStatic = toOptional(j, "flickerStatic");
+    t.flickerStep = toOptional(j, "flickerStep");
+    t.flickerMoving = toOptional(j, "flickerMoving");
+    t.ghostMse = toOptional(j, "ghostMse");
+    t.ghostExcess = toOptional(j, "ghostExcess");
+    t.ghostHalfLife = toOptional(j, "ghostHalfLifeFrames");
+    if (j.contains("ghostFraction")) {
+        j.at("ghostFraction").get_to(t.ghostFraction);
+        t.trailShare = toNumber(j.at("trailShare"));
+    }
+    if (j.contains("convergenceFrames")) t.convergence = j.at("convergenceFrames").get<int>();
+    return t;
+}
+
 // Mean of a figure over the frames; absent unless every frame has it.
 template <class Get>
 std::optional<double> meanOf(const std::vector<const FrameMetrics*>& frames, Get get) {
@@ -169,6 +204,9 @@ void finish(RunResults& run, const std::vector<TileErrors>& errors) {
             if (m.pooled)
                 m.pooled->gainDb =
                     m.pooled->mean.mse == noaa->pooled->mean.mse ? 0 : m.pooled->mean.psnr - noaa->pooled->mean.psnr;
+    for (auto& m : run.methods)
+        if (noaa && noaa->temporal && noaa->temporal->ghostMse.value_or(0) > 0 && m.temporal && m.temporal->ghostMse)
+            m.temporal->ghostExcess = *m.temporal->ghostMse / *noaa->temporal->ghostMse;
     run.pairs.clear();
     for (size_t i = 0; i < errors.size(); i++)
         for (size_t k = i + 1; k < errors.size(); k++)
@@ -218,6 +256,7 @@ std::string toJsonText(const RunResults& run) {
                   {"nsPerPixel", m.nsPerPixel},
                   {"pooled", m.pooled ? toJson(*m.pooled) : json(nullptr)},
                   {"frames", json::array()}};
+        if (m.temporal) q["temporal"] = toJson(*m.temporal);
         for (const auto& f : m.frames) {
             json r = {{"frame", f.frame}, {"seconds", f.seconds}, {"judged", f.judged}};
             if (!f.image.empty()) r["image"] = f.image;
@@ -316,6 +355,7 @@ RunResults readResults(const fs::path& folder) {
             m.secondsMin = q.at("secondsMin").get<double>();
             m.nsPerPixel = q.at("nsPerPixel").get<double>();
             if (!q.at("pooled").is_null()) m.pooled = pooledMetrics(q.at("pooled"));
+            if (q.contains("temporal")) m.temporal = temporalMetrics(q.at("temporal"));
             for (const json& r : q.at("frames")) {
                 FrameResult f;
                 f.frame = r.at("frame").get<int>();

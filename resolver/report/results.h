@@ -10,6 +10,7 @@
 
 #include "metrics/error_bar.h"
 #include "metrics/measure.h"
+#include "metrics/temporal.h"
 
 namespace aa {
 
@@ -43,6 +44,7 @@ struct MethodResult {
     // Filled by finish():
     double secondsMedian = 0, secondsMin = 0, nsPerPixel = 0;  // per frame; ns/px from the median
     std::optional<PooledMetrics> pooled;
+    std::optional<TemporalMetrics> temporal;  // of a sequence
 };
 
 // A pair of methods, as indices into RunResults::methods.

@@ -1,0 +1,18 @@
+// asaa: amortized supersampling (Yang et al. 2009) as in seed 001 s.3.8 and 4.4.1; methods/06 s.6.8.
+//
+// Four sub-pixel buffers hold the image at the quadrant offsets (-+.25, -+.25); each frame updates the buffer of its
+// jitter's quadrant.
+//  1. s = the current sample   2. the surface point is followed into the frame of each buffer: by the two cameras, plus
+//     the object's own motion (motion less camera motion) times the buffer's age   3. tent-weighted sums over the four
+//     nearest samples of every buffer: b~ (radius half the footprint) and f~ (twice that)   4. rejection per buffer:
+//     border, depth 0.08, magnification   5. alpha = 1 / (N + 1), N capped at 4 in motion (thesis) or alpha bounded by
+//     eq 3.31   6. buffer = alpha s + (1 - alpha) b~, frame = alpha/4 s + (1 - alpha/4) f~   7. N + 1
+// Works with any jitter (the quadrant is taken from its sign, the buffers' ages are tracked); made for the sequence
+// "quadrants" with Gaussian sigma 0.2575. The output filter is a tent of radius 1 px: blurrier than a box truth.
+// Display-encoded, as the thesis's 8-bit buffers (methods/00 s.4). Depth of each buffer rides in its alpha.
+#pragma once
+#include "methods/method.h"
+
+namespace aa {
+MethodDescriptor asaaDescriptor();
+}

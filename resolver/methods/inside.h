@@ -1,0 +1,14 @@
+// inside: temporal reprojection of INSIDE (Pedersen 2016), methods/06 s.6.3.
+//
+//  1. current colour fetched at the pixel centre, jitter taken back (bilinear)   2. motion of the nearest pixel in 3x3
+//  3. colour box: mean of 3x3 and plus bounds; or the game's first form, four bilinear taps on the diagonals whose
+//     distance grows where nothing moves   4. YCoCg: chroma range from the luma range (not used in the shipped game)
+//  5. history clipped to the box   6. feedback 0.88 .. 0.97 by luminance difference   7. blend -> history
+// Input and output: display-encoded [0,1]; depth planar; motion in px. Outside the image the current colour is taken;
+// the original clamps (`outside=clamp`). Motion blur is a stage of its own (off for metrics).
+#pragma once
+#include "methods/method.h"
+
+namespace aa {
+MethodDescriptor insideDescriptor();
+}

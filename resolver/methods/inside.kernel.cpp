@@ -1,0 +1,84 @@
+#include "methods/inside_kernels.h"
+#include "methods/temporal_blocks.kernel.h"
+
+namespace AA_ARCH {
+
+// Four bilinear taps at (+-s, +-s); at(i, j) are the window's colours. s = 0.5 px under motion, up to 0.6666 at rest.
+template <class R, class At>
+AA_INLINE Box<R> four_tap_box(const At& at, R s, vec3<R>& mean) {
+    const vec3<R> c = at(0, 0);
+    const auto tap = [&](int i, int j) __attribute__((always_inline)) {
+        const vec3<R> near = mix(c, at(i, 0), s), far = mix(at(0, j), at(i, j), s);
+        return mix(near, far, s);
+    };
+    const vec3<R> a = tap(-1, -1), b = tap(1, -1), d = tap(-1, 1), e = tap(1, 1);
+    mean = a + ((b - a) + (d - a) + (e - a)) * R(Elem<R>(0.25));
+    return {min(min(a, b), min(d, e)), max(max(a, b), max(d, e))};
+}
+
+template <class R>
+AA_INLINE void insidePixel(const InsideArgs& a, int x, int y) {
+    using T = Elem<R>;
+    const TemporalIn& in = a.in;
+    const R zero(T(0));
+    const long o = long(y) * in.stride + x;
+    const UniformFetch<R> unjittered(-in.jitterXPx, -in.jitterYPx);
+    const auto fetch = [&](bool unjitter, int i, int j) __attribute__((always_inline)) {
+        const long n = o + long(j) * in.stride + i;
+        if (!unjitter) return load3<R>(in.color.c, n);
+        return vec3<R>{unjittered(in.color.c[0] + n, in.stride), unjittered(in.color.c[1] + n, in.stride),
+                       unjittered(in.color.c[2] + n, in.stride)};
+    };
+    const auto space = [&](vec3<R> c) __attribute__((always_inline)) { return a.ycocg ? to_ycocg(c) : c; };
+    const auto luma = [&](vec3<R> c) __attribute__((always_inline)) { return a.ycocg ? c.x : luma709(c); };
+    const vec3<R> currentRgb = fetch(a.unjitterColor, 0, 0), current = space(currentRgb);
+
+    const Motion<R> motion = a.unjitterReprojection ? Motion<R>{unjittered(in.motionXPx + o, in.stride),
+                                                                unjittered(in.motionYPx + o, in.stride)}
+                                                    : dilated_motion<R>(in, o);
+    const Reprojection<R> q = reproject(in, motion, x, y);
+    const vec3<R> past = fetch_history(in, x, y, q), history = space(past);
+
+    const Window<R> at([&](int i, int j)
+                           __attribute__((always_inline)) { return space(fetch(a.unjitterNeighbourhood, i, j)); });
+    Box<R> box;
+    vec3<R> mean(zero);
+    if (a.neighbourhood == InsideNeighbourhood::fourTapVarying) {
+        const R speed = sqrt(motion.x * motion.x + motion.y * motion.y);
+        const R depth = load<R>(in.depthView + o);
+        // 0 * 1e10 is 0, and a far surface at any speed counts as moving (methods/08 s.8.3).
+        const R still = saturate(R(T(0.5)) / max(speed * depth, R(T(1e-6))));
+        box = four_tap_box<R>(at, R(T(0.5)) + still * R(T(0.1666)), mean);
+    } else {
+        const Neighbourhood kind = Neighbourhood(int(a.neighbourhood));
+        const Neighbours<R> window = neighbours<R>(at);
+        box = box_of(window, kind);
+        mean = mean_of(window, kind);
+    }
+    if (a.ycocg) {
+        const R chroma = (box.hi.x - box.lo.x) * R(T(0.125));
+        box.lo = {box.lo.x, current.y - chroma, current.z - chroma};
+        box.hi = {box.hi.x, current.y + chroma, current.z + chroma};
+        mean = {mean.x, current.y, current.z};
+    }
+    const vec3<R> held = constrain(box, a.clipTarget, mean, current, history);
+    const R k = min(luminance_feedback(luma(current), luma(held), a.kMin, a.kMax), R(T(in.feedbackCeiling)));
+    const vec3<R> mixed = blend(current, held, k);
+    const vec3<R> rgb = a.ycocg ? saturate(from_ycocg(mixed)) : mixed;
+
+    store_blend(in, x, y, sanitised(select(q.inside, rgb, currentRgb), load3<R>(in.color.c, o), past), R(T(1)));
+    store_debug(in.debug, o, motion, q.inside, box, held - history, k);
+}
+template <class R>
+__attribute__((flatten)) void insideRows(const InsideArgs& a, int y0, int y1) {
+    for (int y = y0; y < y1; y++)
+        for (int x = 0; x < a.in.width; x += N<R>)
+            if (a.in.history)
+                insidePixel<R>(a, x, y);
+            else
+                store_first<R>(a.in, x, y);
+}
+
+}  // namespace AA_ARCH
+
+AA_DEFINE_TABLE(aa::InsideKernels, insideKernels) = {AA_ROWS(insideRows)};

@@ -1,0 +1,17 @@
+#pragma once
+#include "methods/temporal_kernels.h"
+
+namespace aa {
+enum class InsideNeighbourhood { rounded, box3x3, plus, fourTapVarying };
+struct InsideArgs {
+    TemporalIn in;
+    float kMin, kMax;
+    InsideNeighbourhood neighbourhood;
+    ClipTarget clipTarget;
+    bool unjitterColor, unjitterNeighbourhood, unjitterReprojection, ycocg;
+};
+struct InsideKernels {
+    RowKernel<InsideArgs> resolve;
+};
+}  // namespace aa
+AA_KERNEL_TABLE(aa::InsideKernels, insideKernels)

@@ -1,0 +1,26 @@
+#pragma once
+#include "methods/temporal_kernels.h"
+
+namespace aa {
+enum class RaptorConstraint { none, clamp, clip, varianceClip, varianceClipClamp };
+enum class LuminanceDifference { off, corrected, printed };
+struct RaptorArgs {
+    TemporalIn in;
+    float filter[9];  // weights of the 3x3 current samples, row-major; their sum may be 0: then the centre alone
+    RaptorConstraint constraint;
+    LuminanceDifference luminanceDifference;
+    bool temporalFiltering, inverseLuminance, ycocg;
+    float gamma, kMin, kMax;
+};
+struct LumaSharpenArgs {
+    RgbIn in;
+    RgbOut out;
+    int stride, width;
+    float amount;
+};
+struct RaptorKernels {
+    RowKernel<RaptorArgs> resolve;
+    RowKernel<LumaSharpenArgs> sharpen;
+};
+}  // namespace aa
+AA_KERNEL_TABLE(aa::RaptorKernels, raptorKernels)

@@ -1,0 +1,107 @@
+#include "methods/t2msaa.h"
+
+#include "image/error.h"
+#include "methods/t2msaa_kernels.h"
+#include "methods/temporal.h"
+
+namespace aa {
+namespace {
+
+class T2msaa : public Method {
+  public:
+    explicit T2msaa(const Params& params) : params_(params), offsetPx_(params.real("offset")) {}
+
+    void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
+        const Params& p = params_;
+        T2msaaArgs args{};
+        args.in = temporal::frameView(frame, frame.colorLinear);
+        args.in.out = view(out);
+        history_.begin(frame, "t2msaa", args.in);
+        const auto pair = samplesOf(frame, history_.framesSinceReset());
+        for (size_t i = 0; i < 2; i++) {
+            const SubSample& s = frame.subSamples[pair[i]];
+            encode(s.colorLinear, {}, exec, encoded_[i]);
+            args.sample[i] = view(std::as_const(p.choice("space") == "encoded" ? encoded_[i] : s.colorLinear));
+            args.sampleDepth[i] = s.depthView.row(0);
+        }
+        for (auto& c : count_)
+            if (c.width() != frame.width || c.height() != frame.height) c = PlaneF(frame.width, frame.height);
+        args.previousCount = count_[0].row(0);
+        args.nextCount = count_[1].row(0);
+        args.expected = expectedDepth(frame);
+        args.fractionalVelocity = p.choice("velocity") == "fractional";
+        args.bothSides = p.flag("bothSides");
+        args.in.debug = debug_.begin(*this, frame.width, frame.height);
+        runKernel(t2msaaKernelsFor(exec.isa).resolve, exec, args, frame.height);
+        history_.end();
+        std::swap(count_[0], count_[1]);
+        count_[0].fillBorder();
+    }
+    size_t stateBytes() const override {
+        return history_.bytes() + count_[0].bytes() + count_[1].bytes() + encoded_[0].bytes() + encoded_[1].bytes();
+    }
+    const PlaneF* rejection() const override { return debug_.rejection(); }
+    std::vector<DebugLayer> debugLayers() const override {
+        std::vector<DebugLayer> layers = debug_.layers();
+        if (!layers.empty()) layers.push_back({"sampleCount", {count_[0]}});
+        return layers;
+    }
+
+  private:
+    // The recorded sub-samples nearest to the thesis's two of this frame.
+    std::array<size_t, 2> samplesOf(const Frame& frame, int parity) const {
+        if (frame.subSamples.size() == 2) return {0, 1};
+        const double d = parity % 2 ? -offsetPx_ : offsetPx_;
+        std::array<size_t, 2> chosen{};
+        for (size_t i = 0; i < 2; i++) {
+            const glm::dvec2 base(i == 0 ? 0.25 : -0.25), wanted = base + glm::dvec2(d, -d);
+            double nearest = 1e9;
+            for (size_t k = 0; k < frame.subSamplePositionsPx.size(); k++) {
+                const glm::dvec2 e = frame.subSamplePositionsPx[k] - wanted;
+                const double distance = e.x * e.x + e.y * e.y;
+                if (distance < nearest && !(i == 1 && k == chosen[0])) nearest = distance, chosen[i] = k;
+            }
+        }
+        return chosen;
+    }
+
+    Params params_;
+    double offsetPx_;
+    ColourHistory history_;
+    PlaneF count_[2];
+    Rgb encoded_[2];
+    TemporalDebugLayers debug_;
+};
+
+MethodDescriptor t2msaa() {
+    MethodDescriptor d;
+    d.id = "t2msaa";
+    d.title = "Temporal 2x MSAA";
+    d.family = "temporal";
+    d.summary = "Two sub-samples a frame at alternating places, accumulated along the motion with rejection by depth.";
+    d.source = "seed 001 s.4.4.2; methods/06 s.6.9";
+    d.passes = Pass::color | Pass::motion | Pass::subsamples | Pass::subsampleColor;
+    d.output = Space::encoded;
+    d.outputSpace = [](const Params& p) { return p.choice("space") == "encoded" ? Space::encoded : Space::linear; };
+    d.temporal = true;
+    d.params = {
+        realParam("offset", "0.25", 0.0625, 0.375,
+                  "shift of the two samples between frames, px; the thesis has 0.25, 0.1875, 0.125",
+                  "seed 001 tables 5.17-5.20"),
+        choiceParam("velocity", "uv", {"uv", "fractional"},
+                    "velocity in the blur limit: in UV as listed, or the fraction of a pixel", "methods/11 nr 20"),
+        flagParam("bothSides", false, "reject nearer surfaces too, not only hidden ones", "methods/11 nr 19"),
+        choiceParam("space", "encoded", {"encoded", "linear"}, "space of the blend",
+                    "seed 001: 8-bit buffers; methods/00 s.4")};
+    d.create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
+        if (shot.subSamplePositionsPx.size() < 2)
+            throw InputError("t2msaa: expected at least 2 sub-samples a pixel, found " +
+                             std::to_string(shot.subSamplePositionsPx.size()) + "; export the shot with sub-samples");
+        return std::make_unique<T2msaa>(p);
+    };
+    return d;
+}
+}  // namespace
+
+MethodDescriptor t2msaaDescriptor() { return t2msaa(); }
+}  // namespace aa

@@ -1,0 +1,18 @@
+#pragma once
+#include "methods/temporal_kernels.h"
+
+namespace aa {
+struct T2msaaArgs {
+    TemporalIn in;  // color unused; history alpha = mean depth of the previous frame
+    RgbIn sample[2];
+    const float* sampleDepth[2];
+    const float* previousCount;
+    float* nextCount;
+    ExpectedDepth expected;
+    bool fractionalVelocity, bothSides;
+};
+struct T2msaaKernels {
+    RowKernel<T2msaaArgs> resolve;
+};
+}  // namespace aa
+AA_KERNEL_TABLE(aa::T2msaaKernels, t2msaaKernels)

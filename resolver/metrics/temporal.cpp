@@ -1,0 +1,242 @@
+#include "metrics/temporal.h"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "metrics/metrics.h"
+
+namespace aa {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kSameDepth = 0.02f;  // methods/07 s.5
+
+void fit(PlaneF& p, int w, int h) {
+    if (p.width() != w || p.height() != h) p = PlaneF(w, h);
+}
+void fit(PlaneU& p, int w, int h) {
+    if (p.width() != w || p.height() != h) p = PlaneU(w, h);
+}
+void fit(Rgb& p, int w, int h) {
+    if (p.width() != w || p.height() != h) p = Rgb(w, h);
+}
+void luma(const Rgb& encoded, const Exec& exec, PlaneF& out) {
+    fit(out, encoded.width(), encoded.height());
+    forRows(exec, encoded.height(), [&](int y0, int y1) {
+        for (int y = y0; y < y1; y++) {
+            const float *r = encoded.c[0].row(y), *g = encoded.c[1].row(y), *b = encoded.c[2].row(y);
+            float* o = out.row(y);
+            for (int x = 0; x < encoded.width(); x++) o[x] = 0.299f * r[x] + 0.587f * g[x] + 0.114f * b[x];
+        }
+    });
+    out.fillBorder();
+}
+// Position (x, y) in px inside [0, W] x [0, H]; the border is filled, so the taps need no clamp.
+float bilinear(const PlaneF& p, float x, float y) {
+    const float u = x - 0.5f, v = y - 0.5f, fu = std::floor(u), fv = std::floor(v), s = u - fu, t = v - fv;
+    const float* a = p.row(int(fv)) + int(fu);
+    const float* b = a + p.stride();
+    const float top = s == 0 ? a[0] : a[0] + (a[1] - a[0]) * s;
+    if (t == 0) return top;
+    const float bottom = s == 0 ? b[0] : b[0] + (b[1] - b[0]) * s;
+    return top + (bottom - top) * t;
+}
+// Sums over rows in a fixed order, whatever the number of threads.
+template <size_t n>
+std::array<double, n> sumRows(const Exec& exec, int height,
+                              const std::function<void(int, std::array<double, n>&)>& row) {
+    std::vector<std::array<double, n>> rows(static_cast<size_t>(height));
+    forRows(exec, height, [&](int y0, int y1) {
+        for (int y = y0; y < y1; y++) row(y, rows[size_t(y)] = {});
+    });
+    std::array<double, n> total{};
+    for (const auto& r : rows)
+        for (size_t i = 0; i < n; i++) total[i] += r[i];
+    return total;
+}
+
+}  // namespace
+
+void TemporalScene::advance(const Frame& frame, const Rgb* truthEncoded, const Exec& exec) {
+    const bool fresh = frame.reset || frames_ < 0 || frame.width != width_ || frame.height != height_;
+    width_ = frame.width, height_ = frame.height;
+    frames_ = fresh ? 0 : frames_ + 1;
+    const bool hadTruth = !fresh && truth_ != nullptr;
+    truth_ = truthEncoded;
+    truthStep_ = alongMotion_ = false;
+    if (static_) return;
+
+    std::swap(luma_, previousLuma_);
+    if (truth_) luma(*truth_, exec, luma_);
+    if (!hadTruth) previousTruth_ = Rgb();
+    if (frame.motionXPx.empty() || frame.depthView.empty() || frame.objectId.empty()) return;
+    current_ = 1 - current_;
+    for (auto& a : age_) fit(a, width_, height_);
+    for (auto& s : stale_) fit(s, width_, height_);
+    if (fresh)
+        age_[current_] = PlaneU(width_, height_);
+    else
+        followSurfaces(frame, exec);
+    alongMotion_ = !fresh;
+    if (alongMotion_ && truth_ && hadTruth) {
+        fit(step_, width_, height_);
+        forRows(exec, height_, [&](int y0, int y1) {
+            for (int y = y0; y < y1; y++)
+                for (int x = 0; x < width_; x++) {
+                    const float px = qx_.at(x, y);
+                    step_.at(x, y) = px == px ? luma_.at(x, y) - bilinear(previousLuma_, px, qy_.at(x, y)) : 0;
+                }
+        });
+        truthStep_ = true;
+    }
+    previousDepth_ = frame.depthView;
+    previousId_ = frame.objectId;
+    if (truth_) previousTruth_ = *truth_;
+}
+
+// Was the surface seen at (x, y) visible one frame ago, and since when is it?
+void TemporalScene::followSurfaces(const Frame& frame, const Exec& exec) {
+    fit(qx_, width_, height_), fit(qy_, width_, height_);
+    const PlaneU& oldAge = age_[1 - current_];
+    const Rgb& oldStale = stale_[1 - current_];
+    forRows(exec, height_, [&](int y0, int y1) {
+        for (int y = y0; y < y1; y++)
+            for (int x = 0; x < width_; x++) {
+                const float px = float(x) + 0.5f - frame.motionXPx.at(x, y),
+                            py = float(y) + 0.5f - frame.motionYPx.at(x, y);
+                const bool inside = px >= 0 && px <= float(width_) && py >= 0 && py <= float(height_);
+                const int nx = inside ? std::min(int(px), width_ - 1) : 0,
+                          ny = inside ? std::min(int(py), height_ - 1) : 0;
+                const float z = frame.depthView.at(x, y);
+                bool seen = false;
+                for (int j = -1; inside && j <= 1; j++)
+                    for (int i = -1; i <= 1; i++)
+                        seen = seen || (previousId_.at(nx + i, ny + j) == frame.objectId.at(x, y) &&
+                                        std::fabs(previousDepth_.at(nx + i, ny + j) - z) <= kSameDepth * z);
+                uint32_t age = 0;
+                std::array<float, 3> stale{kNan, kNan, kNan};
+                if (inside && !seen) {
+                    age = 1;
+                    if (!previousTruth_.empty())
+                        for (size_t c = 0; c < 3; c++) stale[c] = bilinear(previousTruth_.c[c], px, py);
+                } else if (seen && oldAge.at(nx, ny) > 0 && oldAge.at(nx, ny) < kGhostAges) {
+                    age = oldAge.at(nx, ny) + 1;
+                    for (size_t c = 0; c < 3; c++) stale[c] = oldStale.c[c].at(nx, ny);
+                }
+                age_[current_].at(x, y) = age;
+                for (size_t c = 0; c < 3; c++) stale_[current_].c[c].at(x, y) = stale[c];
+                qx_.at(x, y) = seen ? px : kNan;
+                qy_.at(x, y) = py;
+            }
+    });
+}
+
+void TemporalJudge::add(const TemporalScene& scene, const Rgb& encoded, const Exec& exec) {
+    const int w = scene.width(), h = scene.height();
+    const bool counts = seen_++ >= warmup_;
+    isStatic_ = scene.isStatic();
+    const Rgb* truth = scene.truth();
+    if (truth) {
+        const double mse = squaredError(encoded, *truth, exec).mse;
+        psnr_.push_back(psnr(mse));
+        if (counts) squaredError_ += mse, framesWithTruth_++;
+    }
+    PlaneF y;
+    luma(encoded, exec, y);
+    const bool hasPrevious = hasPrevious_ && scene.framesSinceReset() > 0;
+    if (scene.isStatic() && counts) {
+        fit(mean_, w, h), fit(spread_, w, h);
+        counted_++;
+        const float n = float(counted_);
+        const auto sums = sumRows<1>(exec, h, [&](int row, std::array<double, 1>& sum) {
+            for (int x = 0; x < w; x++) {  // Welford
+                const float v = y.at(x, row), d = v - mean_.at(x, row);
+                mean_.at(x, row) += d / n;
+                spread_.at(x, row) += d * (v - mean_.at(x, row));
+                if (hasPrevious) sum[0] += std::fabs(double(v) - double(previousLuma_.at(x, row)));
+            }
+        });
+        if (hasPrevious) stepSum_ += sums[0] / (double(w) * h), steps_++;
+    }
+    if (!scene.isStatic() && scene.alongMotion() && counts) {
+        if (scene.hasTruthStep() && hasPrevious) {
+            const auto sums = sumRows<2>(exec, h, [&](int row, std::array<double, 2>& sum) {
+                for (int x = 0; x < w; x++) {
+                    const float px = scene.qx().at(x, row);
+                    if (px != px) continue;
+                    const double step = double(y.at(x, row) - bilinear(previousLuma_, px, scene.qy().at(x, row)));
+                    const double d = step - double(scene.truthStep().at(x, row));
+                    sum[0] += d * d, sum[1] += 1;
+                }
+            });
+            motionSquares_ += sums[0], motionPixels_ += sums[1];
+        }
+        if (truth) {
+            const auto sums =
+                sumRows<3 + 2 * kGhostAges>(exec, h, [&](int row, std::array<double, 3 + 2 * kGhostAges>& sum) {
+                    for (int x = 0; x < w; x++) {
+                        const uint32_t age = scene.age().at(x, row);
+                        if (age == 0) continue;
+                        double squares = 0, along = 0, norm = 0;
+                        for (size_t c = 0; c < 3; c++) {
+                            const double r = double(truth->c[c].at(x, row)), e = double(encoded.c[c].at(x, row)) - r;
+                            const double o = double(scene.stale().c[c].at(x, row)) - r;
+                            squares += e * e, along += e * o, norm += o * o;
+                        }
+                        sum[0] += squares, sum[1] += 3, sum[2] += 1;
+                        if (norm == norm) sum[2 + age] += along, sum[2 + kGhostAges + age] += norm;
+                    }
+                });
+            ghostSquares_ += sums[0], ghostPixels_ += sums[1];
+            trailPixels_ += sums[2], trailFrames_ += double(w) * h;
+            for (size_t a = 0; a < kGhostAges; a++) along_[a] += sums[3 + a], norm_[a] += sums[3 + kGhostAges + a];
+        }
+    }
+    std::swap(previousLuma_, y);
+    hasPrevious_ = true;
+}
+
+TemporalMetrics TemporalJudge::result() const {
+    TemporalMetrics m;
+    m.warmup = warmup_;
+    m.frames = std::max(0, seen_ - warmup_);
+    if (framesWithTruth_ > 0) m.tPsnr = psnr(squaredError_ / framesWithTruth_);
+    if (counted_ > 1) {
+        double sum = 0;
+        for (int y = 0; y < spread_.height(); y++) {
+            double row = 0;
+            for (int x = 0; x < spread_.width(); x++)
+                row += std::sqrt(std::max(0.0, double(spread_.at(x, y))) / counted_);
+            sum += row;
+        }
+        m.flickerStatic = 255 * sum / (double(spread_.width()) * spread_.height());
+        if (steps_ > 0) m.flickerStep = 255 * stepSum_ / steps_;
+    }
+    if (motionPixels_ > 0) m.flickerMoving = 255 * std::sqrt(motionSquares_ / motionPixels_);
+    if (ghostPixels_ > 0) {
+        m.ghostMse = ghostSquares_ / ghostPixels_;
+        m.trailShare = trailPixels_ / trailFrames_;
+        for (size_t a = 0; a < kGhostAges; a++)
+            m.ghostFraction.push_back(norm_[a] > 0 ? std::clamp(along_[a] / norm_[a], -1.0, 1.0) : 0.0);
+        const double first = m.ghostFraction[0];
+        if (first <= 0.01) {
+            m.ghostHalfLife = 0;  // nothing stale to begin with
+        } else {
+            for (size_t a = 1; a < kGhostAges && !m.ghostHalfLife; a++)
+                if (norm_[a] > 0 && m.ghostFraction[a] <= first / 2) {
+                    const double before = m.ghostFraction[a - 1], after = m.ghostFraction[a];
+                    m.ghostHalfLife = double(a) + (before > after ? (before - first / 2) / (before - after) : 0.0);
+                }
+        }
+    }
+    if (isStatic_ && psnr_.size() > 1) {
+        const double last = psnr_.back();
+        size_t from = psnr_.size();
+        while (from > 0 && (psnr_[from - 1] == last || std::fabs(psnr_[from - 1] - last) <= 0.5)) from--;
+        m.convergence = int(from);
+    }
+    return m;
+}
+
+}  // namespace aa

@@ -1,0 +1,105 @@
+// Temporal metrics (methods/07 s.5), fed frame by frame; memory does not grow with the number of frames.
+//
+// All on display-encoded values. y = BT.601 luma; R = truth, T = the method's image. `q` = p - motion, the true
+// un-jittered motion.
+//  flickerStatic     255 * mean over pixels of the standard deviation of y_T over time (static shots; truth has 0)
+//  flickerStep       255 * mean |y_T(t) - y_T(t-1)| (static shots)
+//  flickerMoving     255 * rms over valid pixels of D_T - D_R, D = y(t, p) - B(y(t-1), q): what changes along the
+//                    motion beyond what the truth changes
+//  ghostMse          mean of (T-R)^2 over the trail: pixels whose surface came into view at most 16 frames ago
+//  ghostFraction[a]  share of the stale colour O left at age a: sum (T-R).(O-R) / sum |O-R|^2, clipped to [-1, 1];
+//                    O = the truth at q in the frame before the surface came into view, carried along the motion
+//  ghostHalfLife     age in frames at which ghostFraction has fallen to half of its value at age 1
+//  tPsnr             PSNR of the MSE pooled over the frames after the warm-up
+//  convergence       frames after the start from which the PSNR stays within 0.5 dB of its last value (static shots)
+// A pixel is valid, and its surface was visible before, when q is inside the image and the previous 3x3 around q has a
+// pixel of the same object whose depth differs by at most 2 %. The window is needed because jittered frames show, at a
+// silhouette, now one surface and now the other.
+#pragma once
+#include <array>
+#include <optional>
+
+#include "kernels/dispatch.h"
+#include "shot/frame.h"
+
+namespace aa {
+
+inline constexpr int kGhostAges = 16;
+// Frames left out at the start: 32 (methods/07 s.5), or a quarter of a shorter sequence.
+inline int temporalWarmup(size_t frames) { return int(std::min<size_t>(32, frames / 4)); }
+// What the scene must offer for the figures along the motion.
+inline PassSet temporalMetricPasses() { return Pass::motion | Pass::depth | Pass::object; }
+
+// What all methods are measured against, computed once per frame.
+class TemporalScene {
+  public:
+    explicit TemporalScene(bool isStatic) : static_(isStatic) {}
+    // `truthEncoded` is null for a frame without ground truth. The frame needs the passes above unless it is static.
+    void advance(const Frame& frame, const Rgb* truthEncoded, const Exec& exec);
+
+    bool isStatic() const { return static_; }
+    int width() const { return width_; }
+    int height() const { return height_; }
+    int framesSinceReset() const { return frames_; }
+    bool alongMotion() const { return alongMotion_; }  // valid(), warp() and age() hold for this frame
+    const Rgb* truth() const { return truth_; }        // of this frame, or null
+    bool hasTruthStep() const { return truthStep_; }   // truthStep() holds
+    const PlaneF& qx() const { return qx_; }           // previous position, px; NaN where not valid
+    const PlaneF& qy() const { return qy_; }
+    const PlaneF& truthStep() const { return step_; }      // D_R
+    const PlaneU& age() const { return age_[current_]; }   // 1..16 on the trail, else 0
+    const Rgb& stale() const { return stale_[current_]; }  // O, where age() > 0; NaN when it is not known
+
+  private:
+    void followSurfaces(const Frame& frame, const Exec& exec);
+
+    bool static_;
+    int width_ = 0, height_ = 0, frames_ = -1;
+    bool alongMotion_ = false, truthStep_ = false;
+    const Rgb* truth_ = nullptr;
+    Rgb previousTruth_;
+    PlaneF luma_, previousLuma_, qx_, qy_, step_, previousDepth_;
+    PlaneU previousId_, age_[2];
+    Rgb stale_[2];
+    size_t current_ = 0;
+};
+
+struct TemporalMetrics {
+    int warmup = 0;  // frames left out at the start
+    int frames = 0;  // frames that count
+    std::optional<double> tPsnr, flickerStatic, flickerStep, flickerMoving;
+    std::optional<double> ghostMse, ghostHalfLife;
+    std::optional<double> ghostExcess;  // ghostMse over that of noaa in the same run; filled by the caller
+    std::vector<double> ghostFraction;  // [a - 1] for age a; empty without a trail
+    double trailShare = 0;              // mean share of pixels on the trail
+    std::optional<int> convergence;
+};
+
+// One method's figures.
+class TemporalJudge {
+  public:
+    explicit TemporalJudge(int warmup) : warmup_(warmup) {}
+    // After scene.advance() for the same frame. `encoded` has a filled border.
+    void add(const TemporalScene& scene, const Rgb& encoded, const Exec& exec);
+    TemporalMetrics result() const;
+
+  private:
+    int warmup_;
+    int seen_ = 0;
+    double squaredError_ = 0, values_ = 0;
+    int framesWithTruth_ = 0;
+    // static: running mean and sum of squared deviations per pixel
+    PlaneF mean_, spread_;
+    int counted_ = 0;
+    double stepSum_ = 0;
+    int steps_ = 0;
+    // moving
+    PlaneF previousLuma_;
+    bool hasPrevious_ = false, isStatic_ = false;
+    double motionSquares_ = 0, motionPixels_ = 0;
+    double ghostSquares_ = 0, ghostPixels_ = 0, trailPixels_ = 0, trailFrames_ = 0;
+    std::array<double, kGhostAges> along_{}, norm_{};
+    std::vector<double> psnr_;  // per frame with truth
+};
+
+}  // namespace aa
