@@ -30,7 +30,9 @@ TEST(Donut, PqIsItsOwnInverse) {
     m.resolve(f, {}, {});
     for (int x = 0; x < 64; x++) {
         const double v = double(f.colorLinear.c[0].at(x, 0));
-        if (v <= 1e4) EXPECT_NEAR(m.out.c[0].at(x, 0), v, 4e-6 * v + 1e-7) << v;
+        if (v <= 1e4) {
+            EXPECT_NEAR(m.out.c[0].at(x, 0), v, 4e-6 * v + 1e-7) << v;
+        }
     }
 }
 

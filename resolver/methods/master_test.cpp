@@ -90,7 +90,9 @@ TEST(Master, NotAliasedMeansNoHistory) {
                 EXPECT_NEAR(m.out.c[1].at(x, y), f.colorEncoded.c[1].at(x, y), 3e-6);
                 difference += std::fabs(open.out.c[1].at(x, y) - f.colorEncoded.c[1].at(x, y));
             }
-        if (n > 0) EXPECT_GT(difference, 1.0);
+        if (n > 0) {
+            EXPECT_GT(difference, 1.0);
+        }
     }
 }
 // With everything aliased and its own sharpening off, master is the Uncharted baseline with a pure 3x3 box.

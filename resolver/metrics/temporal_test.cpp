@@ -95,7 +95,9 @@ TEST(TemporalMetrics, TrailIsWhatTheBarUncovers) {
             for (int f = 1; f <= n; f++)
                 if (x >= bar.left(f - 1) + 1 && x < bar.left(f)) age = uint32_t(n - f + 1);
             EXPECT_EQ(scene.age().at(x, 5), age) << "frame " << n << " x " << x;
-            if (age > 0) EXPECT_NEAR(scene.stale().c[1].at(x, 5), 0.8f, 1e-6);
+            if (age > 0) {
+                EXPECT_NEAR(scene.stale().c[1].at(x, 5), 0.8f, 1e-6);
+            }
         }
     }
 }
