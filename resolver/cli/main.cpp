@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
     app.option_defaults()->always_capture_default();
     aa::Context context;
     const auto commands = {
-        aa::addList,  aa::addPlan,   aa::addCheck,   aa::addRun,   aa::addFilter,     aa::addBench,
+        aa::addList,  aa::addPlan,   aa::addCheck,   aa::addRun,   aa::addFilter,    aa::addBench,
         aa::addSheet, aa::addReport, aa::addCompare, aa::addSynth, aa::addLearnRsaa,
     };
     for (const auto add : commands) add(app, context);

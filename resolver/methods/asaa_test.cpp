@@ -35,9 +35,10 @@ TEST(Asaa, BuffersFollowTheMotion) {
     RunningMethod m = running("asaa", 30, 20);
     const glm::dvec2 v(0.4, -0.3);
     for (int n = 0; n < 24; n++) m.resolve(rampFrame(n, v * double(n), v), {}, {});
-    // alpha = 1/5 of the current sample, a quarter of it in the frame: its jitter error is 0.05 * 0.0045 at most.
-    for (int x = 8; x < 22; x++)
-        EXPECT_NEAR(m.out.c[0].at(x, 10), 0.3 + 0.01 * (x - 0.4 * 23) + 0.008 * (10 + 0.3 * 23), 6e-4) << x;
+    // alpha = 1/5 of the current sample, a quarter of it in the frame: its jitter error is 0.05 * 0.0045 at most. The
+    // normalised tent weights are not exact for a ramp; together they stay below a tenth of a pixel of its slope.
+    for (int x = 14; x < 22; x++)  // farther left the history entered through the border
+        EXPECT_NEAR(m.out.c[0].at(x, 10), 0.3 + 0.01 * (x - 0.4 * 23) + 0.008 * (10 + 0.3 * 23), 1e-3) << x;
     RunningMethod flipped = running("asaa", 30, 20);
     for (int n = 0; n < 24; n++) flipped.resolve(rampFrame(n, v * double(n), -v), {}, {});
     EXPECT_GT(std::fabs(flipped.out.c[0].at(15, 10) - m.out.c[0].at(15, 10)), 5e-3f);

@@ -65,6 +65,7 @@ TEST(Master, TwoDepthLevelsAlwaysCountAsAliased) {
             m.fill(9);
             for (int i = 0; i < count; i++) m[size_t(i < 4 ? i : i + 1)] = 4;
             m[4] = nearCentre ? 4 : 9;
+            if (count == 8 && nearCentre) continue;  // one level only
             EXPECT_GE(variancesOf(m, m[4]).depth, 1 - 1e-9) << count << nearCentre;
         }
 }
