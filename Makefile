@@ -5,7 +5,7 @@ BLENDER ?= blender
 # A compiler cache is used where there is one.
 LAUNCHER := $(if $(shell command -v ccache 2>/dev/null),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache,)
 
-.PHONY: help deps build demo test sanitize bench addon docs reproduce fuzz format clean
+.PHONY: help deps configure build program demo test sanitize bench addon docs format clean
 help:
 	@echo "make demo       build, render two scenes in Blender, run the methods, make contact sheets and reports"
 	@echo "make test       build and run every test"
@@ -13,17 +13,21 @@ help:
 	@echo "make addon      the Blender add-on as one zip, at build/aa_resolve.zip"
 	@echo "make bench      speed of every method, ns per pixel"
 	@echo "make sanitize   unit and property tests under AddressSanitizer and UndefinedBehaviorSanitizer"
-	@echo "make fuzz       damaged manifests and EXR files against the reader"
-	@echo "make deps, reproduce, format, clean"
+	@echo "make deps, docs, format, clean"
 
 deps:
 	@.ci/bootstrap
 
-build: deps
+configure: deps
 	@cmake --preset release $(LAUNCHER) >build.log 2>&1 || { cat build.log; rm -f build.log; exit 1; }; mv build.log build/configure.log
+
+build: configure
 	@cmake --build --preset release -j $(JOBS)
 
-demo: build
+program: configure
+	@cmake --build --preset release -j $(JOBS) --target aaresolve
+
+demo: program
 	@bash scenes/demo.sh build/aaresolve build/demo
 
 test: build
@@ -42,17 +46,9 @@ addon:
 	@python3 blender_addon/make_zip.py build/aa_resolve.zip
 
 # Files generated from the registry of methods: the page of methods and the add-on's copy.
-docs: build
+docs: program
 	@build/aaresolve list --markdown > docs/methods.md
 	@build/aaresolve list --json > blender_addon/aa_resolve/methods.json
-
-reproduce: build
-	@bash scenes/reproduce.sh build/aaresolve build/reproduce
-
-fuzz: deps
-	@cmake --preset sanitize $(LAUNCHER) >/dev/null
-	@cmake --build --preset sanitize -j $(JOBS)
-	@ctest --test-dir build-sanitize -L fuzz --output-on-failure
 
 format:
 	@git ls-files 'resolver/*.cpp' 'resolver/*.h' 'tests/*.cpp' 'tests/*.h' | xargs clang-format -i
