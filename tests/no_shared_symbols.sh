@@ -7,3 +7,10 @@ if [ -n "$shared" ]; then
     echo "$shared" | sort -u | head -20
     exit 1
 fi
+# Two kernel files that name a function alike: the linker would keep one and run it for both.
+twice=$(nm -C --defined-only "$@" | grep -E " [WVu] ([a-z]+ )?${ARCH}::" | sed 's/^[0-9a-f]* //' | sort | uniq -d)
+if [ -n "$twice" ]; then
+    echo "functions of one name in two kernel files of ${ARCH}:"
+    echo "$twice" | head -20
+    exit 1
+fi

@@ -137,8 +137,8 @@ ExpectedDepth expectedDepth(const Frame& frame) {
 }
 
 void sharpenEncoded(const RgbaPlane& blend, SharpenKernel kernel, const Exec& exec, Rgb& out) {
-    const SharpenArgs args{blend.row(0), view(out), blend.stride(), blend.width(),
-                           kernel == SharpenKernel::xu ? 1.0f : 0.25f};
+    const SharpenHistoryArgs args{blend.row(0), view(out), blend.stride(), blend.width(),
+                                  kernel == SharpenKernel::xu ? 1.0f : 0.25f};
     runKernel(temporalKernelsFor(exec.isa).sharpen, exec, args, blend.height());
 }
 

@@ -12,7 +12,7 @@ AA_INLINE V sharpened(const float* p, long rowStep, float gain) {
     return saturate(centre + (centre * V(T(4)) - around) * V(T(gain)));
 }
 template <class R>
-__attribute__((flatten)) void sharpenRows(const SharpenArgs& a, int y0, int y1) {
+__attribute__((flatten)) void sharpenHistoryRows(const SharpenHistoryArgs& a, int y0, int y1) {
     const long rowStep = 4l * a.stride;
     for (int y = y0; y < y1; y++)
         for (int x = 0; x < a.width; x += N<R>) {
@@ -32,4 +32,4 @@ __attribute__((flatten)) void sharpenRows(const SharpenArgs& a, int y0, int y1) 
 
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::TemporalKernels, temporalKernels) = {AA_ROWS(sharpenRows)};
+AA_DEFINE_TABLE(aa::TemporalKernels, temporalKernels) = {AA_ROWS(sharpenHistoryRows)};

@@ -47,14 +47,14 @@ struct TemporalIn {
     TemporalDebug debug;
 };
 
-struct SharpenArgs {
+struct SharpenHistoryArgs {
     const float* rgba;  // interleaved, border filled
     RgbOut out;
     int stride, width;
     float gain;  // weight of each of the four neighbours: 1 (Xu), 1/4 (normalised)
 };
 struct TemporalKernels {
-    RowKernel<SharpenArgs> sharpen;
+    RowKernel<SharpenHistoryArgs> sharpen;
 };
 }  // namespace aa
 AA_KERNEL_TABLE(aa::TemporalKernels, temporalKernels)
