@@ -87,6 +87,7 @@ class Store:
         except OSError as error:
             raise SceneError(f"--out: '{self.folder}' cannot be made: {error.strerror}") from error
         with self.locked():
+            self._remove_leftovers()
             if not os.path.exists(settings):
                 write_json(settings, fingerprint)
                 return
@@ -96,6 +97,19 @@ class Store:
                 f"--out: '{self.folder}' holds an export with other settings: {changed}; "
                 "choose a new folder, or replace it with --overwrite"
             )
+
+    def _remove_leftovers(self) -> None:
+        """Half-written files of processes that died here; a file of another machine goes after the time-out."""
+        for path, _, names in os.walk(self.folder):
+            for name in names:
+                owner = name.split(".")[-2:-1]
+                if not name.endswith(".tmp") or not owner[0].isdigit():
+                    continue
+                leftover = os.path.join(path, name)
+                with contextlib.suppress(OSError):
+                    alive = os.path.exists(f"/proc/{owner[0]}") or not os.path.isdir("/proc")
+                    if not alive or time.time() - os.path.getmtime(leftover) > self._timeout:
+                        os.unlink(leftover)
 
     @contextlib.contextmanager
     def locked(self) -> Iterator[None]:

@@ -15,6 +15,9 @@ using OIIO::ImageOutput;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
+// OpenImageIO would stamp the time of day: the same image must give the same file.
+constexpr const char* kNoDate = "2000:01:01 00:00:00";
+
 fs::path temporaryName(const fs::path& file) {
     std::string name = ".";
     name += file.stem().string();
@@ -127,12 +130,14 @@ void writeLayers(const fs::path& file, const std::vector<NamedPlanes>& layers) {
     ImageSpec spec(w, h, n, TypeDesc::FLOAT);
     spec.channelnames = channels;
     spec.attribute("compression", "zip");
+    spec.attribute("DateTime", kNoDate);
     writePixels(file, spec, pixels.data());
 }
 
 void writeExr(const fs::path& file, const Rgb& linear, bool displayReferred) {
     ImageSpec spec(linear.width(), linear.height(), 3, TypeDesc::FLOAT);
     spec.attribute("compression", "zip");
+    spec.attribute("DateTime", kNoDate);
     spec.attribute("oiio:ColorSpace", "Linear");
     spec.attribute("aaresolve:displayReferred", displayReferred ? 1 : 0);
     writeRgb<float>(file, linear, spec, [](float v) { return v; });

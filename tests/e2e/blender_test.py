@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import subprocess
 
 from program import ROOT, ProgramTest, main
@@ -11,7 +12,10 @@ from program import ROOT, ProgramTest, main
 
 class FromBlender(ProgramTest):
     def blender(self, *arguments: object) -> None:
-        done = subprocess.run(["blender", "-b", *map(str, arguments)], capture_output=True, text=True, timeout=600)
+        # Blender's Python finds its modules by the python3 of PATH: another one of the same version would mislead it.
+        path = ":".join(p for p in os.environ["PATH"].split(":") if not os.path.exists(os.path.join(p, "python3")) or p == "/usr/bin")
+        command = ["blender", "-b", *map(str, arguments)]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=600, env={**os.environ, "PATH": path})
         self.assertEqual(done.returncode, 0, done.stdout[-2000:] + done.stderr[-2000:])
 
     def test_hard_edges(self) -> None:
