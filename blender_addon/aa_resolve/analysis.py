@@ -50,6 +50,7 @@ class FrameState:
     camera_name: str
     hidden: frozenset[str] = frozenset()
     vertices: dict[str, int] = field(default_factory=dict)
+    instances: frozenset[tuple[str, int]] = frozenset()  # source and random id
 
 
 def refuse_unsuitable(
@@ -213,7 +214,7 @@ def _reads_time(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
 def _picture_digest(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> bytes:
     """Digest of every place and every vertex of the evaluated scene."""
     digest = hashlib.sha256()
-    shapes: dict[str, bytes] = {}
+    shapes: dict[tuple[str, int], bytes] = {}
     for instance in depsgraph.object_instances:
         item = instance.object
         if item.type not in _GEOMETRY_TYPES and item.type not in ("LIGHT", "CAMERA", "EMPTY"):
@@ -222,9 +223,10 @@ def _picture_digest(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> b
         digest.update(np.array(instance.matrix_world, np.float32).tobytes())
         digest.update(bytes([item.hide_render]))
         if item.type in _GEOMETRY_TYPES:
-            if item.name_full not in shapes:
-                shapes[item.name_full] = _shape_digest(item)
-            digest.update(shapes[item.name_full])
+            key = (item.name_full, item.data.as_pointer() if item.data else 0)
+            if key not in shapes:
+                shapes[key] = _shape_digest(item)
+            digest.update(shapes[key])
     return digest.digest()
 
 
@@ -246,7 +248,8 @@ def _shape_digest(item: bpy.types.Object) -> bytes:
 def frame_state(
     scene: bpy.types.Scene, frame_number: int, frame: cam.Frame, cuts: cam.CameraCuts, details: bool
 ) -> FrameState:
-    """Evaluates a frame. ``details`` adds hidden objects and vertex counts, by which wrong motion is found."""
+    """Evaluates a frame. ``details`` adds hidden objects, vertex counts and instances, by which wrong motion is
+    found."""
     chosen = cuts.at(frame_number)
     scene.frame_set(frame_number)
     depsgraph = bpy.context.evaluated_depsgraph_get()
@@ -260,6 +263,11 @@ def frame_state(
             for item in scene.objects
             if item.type == "MESH" and (item.modifiers or item.data.shape_keys)
         }
+        state.instances = frozenset(
+            (instance.object.original.name_full, instance.random_id & 0xFFFFFFFF)
+            for instance in depsgraph.object_instances
+            if instance.is_instance and instance.object
+        )
     return state
 
 
@@ -328,6 +336,42 @@ def _is_see_through(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
         ):
             return True
     return False
+
+
+def notes_on_edges() -> list[str]:
+    """Sentences about surfaces whose edges are not those of a mesh."""
+    notes = []
+    hairy = [
+        item.name
+        for item in bpy.data.objects
+        if not item.hide_render
+        and (
+            item.type == "CURVES"
+            or any(
+                system.settings.type == "HAIR" and system.settings.render_type == "PATH"
+                for system in item.particle_systems
+            )
+        )
+    ]
+    if hairy:
+        notes.append(f"strands of {', '.join(hairy)} have no edges: they are no triangles")
+    displaced = [
+        material.name
+        for material in bpy.data.materials
+        if material.users
+        and material.use_nodes
+        and material.node_tree
+        and material.cycles.displacement_method != "BUMP"
+        and any(
+            node.bl_idname == "ShaderNodeOutputMaterial" and node.inputs["Displacement"].is_linked
+            for node in material.node_tree.nodes
+        )
+    ]
+    if displaced:
+        notes.append(
+            f"edges of {', '.join(displaced)} are those before displacement, which only the renderer knows"
+        )
+    return notes
 
 
 def semi_transparent_note() -> list[str]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cameras: the shift that jitters a picture, matrices without jitter, and exact motion.
+"""Cameras: the shift that jitters a picture, and matrices without jitter.
 
 Positions are pixels of the exported picture, x right, y **down**, origin at the top-left corner. Matrices are
 row-major for column vectors: world -> view (the camera looks along -z) and view -> clip (OpenGL, z in -w..w).
@@ -7,7 +7,6 @@ row-major for column vectors: world -> view (the camera looks along -z) and view
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import bpy
@@ -16,9 +15,6 @@ import numpy as np
 from . import compat
 from .errors import SceneError
 
-# Motion of a pixel whose surface had no place in the previous picture: far outside, so that every temporal
-# method takes it for a disocclusion instead of fetching somebody else's colour.
-NO_PREVIOUS_POSITION_PX = 1.0e6
 BACKGROUND_DEPTH = 1.0e9  # anything at or beyond it is background (Cycles writes 1e10)
 
 
@@ -234,68 +230,6 @@ def sample_positions(
     return x, y
 
 
-def motion_from_vector(
-    vector: np.ndarray,
-    depth: np.ndarray,
-    frame: Frame,
-    jitter: tuple[float, float],
-    now: CameraState,
-    before: CameraState,
-) -> np.ndarray:
-    """Motion current - previous (H x W x 2, pixels, y down) from Blender's Vector pass.
-
-    Vector.XY is previous - current with y up, both seen through the *current* projection: a change of lens, of
-    orthographic scale or of shift is missing and comes in here, where the previous position is taken back to a
-    direction and projected with the previous camera's own matrix. Background has no vector; it is a direction at
-    infinity that only the rotation moves (0 for an orthographic camera, whose background shows one direction).
-    """
-    x, y = sample_positions(frame, *jitter)
-    vector_x, vector_y = vector[:, :, 0].astype(np.float64), vector[:, :, 1].astype(np.float64)
-    motion = np.empty((frame.height, frame.width, 2), np.float64)
-    if np.array_equal(now.projection, before.projection):
-        motion[:, :, 0], motion[:, :, 1] = -vector_x, vector_y
-    else:
-        previous_x, previous_y = x + vector_x, y - vector_y
-        ndc_x, ndc_y = 2.0 * previous_x / frame.width - 1.0, 1.0 - 2.0 * previous_y / frame.height
-        a, b = now.projection, before.projection
-        column = 2 if now.kind == "perspective" else 3
-        sign = 1.0 if now.kind == "perspective" else -1.0
-        ndc_x = (ndc_x + sign * a[0, column]) / a[0, 0] * b[0, 0] - sign * b[0, column]
-        ndc_y = (ndc_y + sign * a[1, column]) / a[1, 1] * b[1, 1] - sign * b[1, column]
-        motion[:, :, 0] = x - (ndc_x + 1.0) * 0.5 * frame.width
-        motion[:, :, 1] = y - (1.0 - ndc_y) * 0.5 * frame.height
-    background = depth >= BACKGROUND_DEPTH
-    if background.any():
-        motion[background] = background_motion(frame, jitter, now, before)[background]
-    return motion.astype(np.float32) + np.float32(0.0)  # no negative zeros
-
-
-def background_motion(
-    frame: Frame, jitter: tuple[float, float], now: CameraState, before: CameraState
-) -> np.ndarray:
-    """Motion (H x W x 2, pixels, y down) of what lies infinitely far away."""
-    motion = np.zeros((frame.height, frame.width, 2), np.float64)
-    if now.kind != "perspective" or before.kind != "perspective" or same_camera(now, before):
-        return motion
-    x, y = sample_positions(frame, *jitter)
-    direction = np.empty((frame.height, frame.width, 3), np.float64)
-    direction[:, :, 0] = (2.0 * x / frame.width - 1.0 + now.projection[0, 2]) / now.projection[0, 0]
-    direction[:, :, 1] = (1.0 - 2.0 * y / frame.height + now.projection[1, 2]) / now.projection[
-        1, 1
-    ]
-    direction[:, :, 2] = -1.0
-    turned = direction @ (before.view[:3, :3] @ now.view[:3, :3].T).T
-    ahead = -turned[:, :, 2]
-    visible = ahead > 1e-9
-    safe = np.where(visible, ahead, 1.0)
-    ndc_x = turned[:, :, 0] / safe * before.projection[0, 0] - before.projection[0, 2]
-    ndc_y = turned[:, :, 1] / safe * before.projection[1, 1] - before.projection[1, 2]
-    motion[:, :, 0] = x - (ndc_x + 1.0) * 0.5 * frame.width
-    motion[:, :, 1] = y - (1.0 - ndc_y) * 0.5 * frame.height
-    motion[~visible] = NO_PREVIOUS_POSITION_PX
-    return motion
-
-
 def unproject(
     x: np.ndarray, y: np.ndarray, depth: np.ndarray, frame: Frame, camera: CameraState
 ) -> np.ndarray:
@@ -311,17 +245,3 @@ def unproject(
         points[..., 1] = (ndc_y - p[1, 3]) / p[1, 1] * np.ones_like(depth)
     points[..., 2] = -depth
     return points
-
-
-def cut_between(now: CameraState, before: CameraState) -> bool:
-    """True when the camera jumps: it turns by more than half its field of view or changes its kind.
-
-    Within one camera; a change of the camera object is a cut in any case."""
-    if now.kind != before.kind:
-        return True
-    turn = now.view[:3, :3] @ before.view[:3, :3].T
-    angle = math.acos(max(-1.0, min(1.0, (np.trace(turn) - 1.0) / 2.0)))
-    if now.kind != "perspective":
-        return angle > math.radians(30.0)
-    field = 2.0 * math.atan(1.0 / min(now.projection[0, 0], now.projection[1, 1]))
-    return angle > field / 2.0

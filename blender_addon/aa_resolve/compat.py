@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+
 import bpy
 
 VERSION: tuple[int, int, int] = bpy.app.version
@@ -81,6 +83,13 @@ def remove_curve(animation_data, curve) -> None:
             if bag and curve in list(bag.fcurves):
                 bag.fcurves.remove(curve)
                 return
+
+
+def shading_limits(mesh: bpy.types.Mesh) -> tuple[bool, float]:
+    """Whether edges marked sharp break smooth shading, and the angle between faces (radians) beyond which all do."""
+    if hasattr(mesh, "use_auto_smooth"):  # before 4.1
+        return mesh.use_auto_smooth, mesh.auto_smooth_angle if mesh.use_auto_smooth else math.pi
+    return True, math.pi  # there a modifier turns the angle into marks
 
 
 def is_cycles_available() -> bool:

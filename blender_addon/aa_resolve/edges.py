@@ -20,6 +20,7 @@ import bpy
 import numpy as np
 
 from . import camera as cam
+from . import shapes
 
 _PAIRS_PER_BLOCK = 1 << 20
 _COPLANAR = 0.99999  # cosine of the angle between two faces
@@ -40,16 +41,8 @@ class Triangles:
 
 def mesh_triangles(mesh: bpy.types.Mesh) -> Triangles:
     """Triangles of a mesh and their sides that are visible edges."""
-    mesh.calc_loop_triangles()
-    count = len(mesh.loop_triangles)
-    vertices = np.empty(len(mesh.vertices) * 3, np.float32)
-    mesh.vertices.foreach_get("co", vertices)
-    indices = np.empty(count * 3, np.int32)
-    mesh.loop_triangles.foreach_get("vertices", indices)
-    polygon = np.empty(count, np.int32)
-    mesh.loop_triangles.foreach_get("polygon_index", polygon)
-    indices = indices.reshape(count, 3)
-    corners = vertices.reshape(-1, 3)[indices].astype(np.float64)
+    places, indices, polygon = shapes.triangles_of(mesh)
+    corners = places[indices].astype(np.float64)
     return Triangles(corners, _visible_sides(mesh, indices, polygon))
 
 
@@ -236,25 +229,7 @@ def _axis_distances(
     return result
 
 
-_SURFACES = ("MESH", "CURVE", "SURFACE", "META", "FONT")
-
-
-def collect(finder: EdgeFinder, depsgraph: bpy.types.Depsgraph, identify, shown: set[int]) -> None:
-    """Adds everything of the evaluated scene that has triangles and whose id is among ``shown``.
-
-    ``identify(instance)`` gives the id of an entry of the depsgraph."""
-    meshes: dict[str, Triangles] = {}
-    for instance in depsgraph.object_instances:
-        item = instance.object
-        if item is None or item.type not in _SURFACES:
-            continue
-        identity = identify(instance)
-        if identity not in shown:
-            continue
-        if item.name_full not in meshes:
-            mesh = item.to_mesh()
-            if mesh is None:
-                continue
-            meshes[item.name_full] = mesh_triangles(mesh)
-            item.to_mesh_clear()
-        finder.add(meshes[item.name_full], np.array(instance.matrix_world, np.float64), identity)
+def collect(finder: EdgeFinder, depsgraph: bpy.types.Depsgraph, ids, shown: set[int]) -> None:
+    """Adds everything of the evaluated scene that has triangles and whose id (of ObjectIds ``ids``) is ``shown``."""
+    for triangles, matrix, identity in shapes.visible_shapes(depsgraph, ids, shown, mesh_triangles):
+        finder.add(triangles, matrix, identity)

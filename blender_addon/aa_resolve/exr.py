@@ -36,13 +36,20 @@ _ZLIB_LEVEL = 4  # what OpenEXR and OpenImageIO use: level 9 takes four times as
 class Part:
     """One part of a file: its name, channel names, one type per channel (half|float|uint) and the pixels.
 
-    ``pixels`` is one H x W x C array, or a list of H x W planes where the types differ."""
+    ``pixels`` is one H x W x C array, or a list of H x W planes where the types differ. Their size is the part's data
+    window; the display window of every part is the size of the file's first one."""
 
     name: str
     channels: tuple[str, ...]
     types: tuple[str, ...]
     pixels: np.ndarray | list[np.ndarray]
     compression: str = "zip"
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Height and width of the data window."""
+        first = self.pixels[0] if isinstance(self.pixels, list) else self.pixels
+        return first.shape[0], first.shape[1]
 
     def planes(self) -> list[np.ndarray]:
         """One H x W plane per channel, in the channel's type."""
@@ -56,7 +63,12 @@ def _attribute(name: str, kind: str, value: bytes) -> bytes:
     return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
 
 
-def _header(part: Part, width: int, height: int, order: list[int], blocks: int) -> bytes:
+def _window(shape: tuple[int, int]) -> bytes:
+    """A box2i from the origin, of H x W pixels; the format counts its last pixel in."""
+    return struct.pack("<iiii", 0, 0, shape[1] - 1, shape[0] - 1)
+
+
+def _header(part: Part, display: tuple[int, int], order: list[int], blocks: int) -> bytes:
     """Header of one part; ``order`` lists its channels by name, as the format demands."""
     channels = b"".join(
         part.channels[index].encode()
@@ -64,13 +76,12 @@ def _header(part: Part, width: int, height: int, order: list[int], blocks: int) 
         + struct.pack("<iBxxxii", _TYPES[part.types[index]][0], 0, 1, 1)
         for index in order
     )
-    window = struct.pack("<iiii", 0, 0, width - 1, height - 1)
     return (
         _attribute("channels", "chlist", channels + b"\0")
         + _attribute("chunkCount", "int", struct.pack("<i", blocks))
         + _attribute("compression", "compression", bytes([COMPRESSIONS[part.compression][0]]))
-        + _attribute("dataWindow", "box2i", window)
-        + _attribute("displayWindow", "box2i", window)
+        + _attribute("dataWindow", "box2i", _window(part.shape))
+        + _attribute("displayWindow", "box2i", _window(display))
         + _attribute("lineOrder", "lineOrder", b"\0")
         + _attribute("name", "string", part.name.encode())
         + _attribute("pixelAspectRatio", "float", struct.pack("<f", 1.0))
@@ -106,9 +117,9 @@ def _unpack(stored: bytes, size: int) -> bytes:
     return data.tobytes()
 
 
-def _blocks_of(part: Part, order: list[int], width: int, height: int) -> list[bytes]:
+def _blocks_of(part: Part, order: list[int]) -> list[bytes]:
     """Uncompressed blocks: line by line, in each line channel by channel."""
-    planes = part.planes()
+    planes, height = part.planes(), part.shape[0]
     lines = np.concatenate(
         [planes[index].view(np.uint8).reshape(height, -1) for index in order], axis=1
     )
@@ -121,21 +132,16 @@ def write_parts(path: str, parts: list[Part]) -> dict[str, int]:
 
     On failure nothing is left under that name. Raises SceneError with what the system says."""
     many = len(parts) > 1
-    assert (
-        len({part.planes()[0].shape for part in parts}) == 1
-    ), "parts of one file share one window"
     headers, stored, lines = [], [], []
     with ThreadPoolExecutor(
         max_workers=os.cpu_count() or 1
     ) as pool:  # deflate runs outside Python's lock
         for part in parts:
-            first = part.pixels[0] if isinstance(part.pixels, list) else part.pixels[:, :, 0]
-            height, width = first.shape
             order = sorted(
                 range(len(part.channels)), key=lambda index: part.channels[index].encode()
             )
-            blocks = _blocks_of(part, order, width, height)
-            headers.append(_header(part, width, height, order, len(blocks)))
+            blocks = _blocks_of(part, order)
+            headers.append(_header(part, parts[0].shape, order, len(blocks)))
             stored.append(
                 list(pool.map(lambda raw, kind=part.compression: _pack(raw, kind), blocks))
             )

@@ -201,7 +201,7 @@ def settings_from(arguments: argparse.Namespace, scene: bpy.types.Scene) -> Sett
     if arguments.ambient and arguments.lighting == "as-is":
         raise UsageError("--ambient: has no effect with --lighting as-is; leave one of them out")
     both = passes | centre_passes
-    pattern = arguments.subsamples or registry.pattern_from(choices, both) or "d3d8"
+    pattern = registry.pattern_from(choices, arguments.subsamples) or "d3d8"
     try:
         jitter.pattern_positions(pattern)
     except ValueError:
@@ -332,6 +332,13 @@ def run(argv: list[str]) -> int:
         elsewhere = (
             f", {summary.elsewhere} are being made by other processes" if summary.elsewhere else ""
         )
+        for name, cost in summary.costs.items():
+            size = f", {cost.bytes / 1e6:.2f} MB" if cost.bytes else ""
+            reporter.say(
+                "cost",
+                f"{name}: {cost.seconds:.2f} s{size}",
+                **{"pass": name, "seconds": round(cost.seconds, 3), "bytes": cost.bytes},
+            )
         reporter.say(
             "done",
             f"{os.path.join(settings.out, 'shot.json')}: {summary.rendered} pictures in {seconds:.1f} s"

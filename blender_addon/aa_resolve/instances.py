@@ -87,14 +87,23 @@ class ObjectIds:
             self._instances[indices[source]] = values, np.array(ids, np.uint32)
         self._names.update(taken)
 
-    def identify(self, instance: bpy.types.DepsgraphObjectInstance) -> int:
-        """Id of an entry of the depsgraph that ``look`` has seen."""
+    def identify(
+        self, instance: bpy.types.DepsgraphObjectInstance, shown: set[int]
+    ) -> int | None:
+        """Id among ``shown`` of an entry of the depsgraph that ``look`` has seen: its own, or its source's where
+        instances are not told apart. None where neither is shown."""
         name = instance.object.original.name_full
+        own = None
         if instance.is_instance:
-            identity = self._by_random.get((name, instance.random_id & 0xFFFFFFFF))
-            if identity is not None:
+            own = self._by_random.get((name, instance.random_id & 0xFFFFFFFF))
+        for identity in (own, self._indices.get(name)):
+            if identity in shown and identity:
                 return identity
-        return self._indices.get(name, 0)
+        return None
+
+    def of_instances(self, keys) -> list[int]:
+        """Ids of instances by (source, random id); those that are not told apart have none."""
+        return [self._by_random[key] for key in keys if key in self._by_random]
 
     def resolve(self, layers: rendering.Layers, view: str = "") -> np.ndarray:
         """Ids (H x W uint32) of a render."""

@@ -114,7 +114,20 @@ SEQUENCES: dict[str, str] = {
     "insideRotated4": "rotated grid of four",
     "msaa8": "the Direct3D 8x pattern in turn",
     "smaaT2x": "(+.25, +.25) and (-.25, -.25) in turn",
+    "smaa4x": "(+.125, -.125) and (-.125, +.125) in turn, for sub-samples d3d2",
+    "t2msaa": "(+.25, -.25) and (-.25, +.25) in turn, for sub-samples d3d2",
 }
+# Two places in turn: SMAA's (methods/03 s.3.3 and 3.5, published with y up) and those of seed 001 s.4.4.2.
+_PAIRS: dict[str, tuple[Offset, Offset]] = {
+    "smaaT2x": ((0.25, 0.25), (-0.25, -0.25)),
+    "smaa4x": ((0.125, -0.125), (-0.125, 0.125)),
+    "t2msaa": ((0.25, -0.25), (-0.25, 0.25)),
+}
+
+
+def start_of(sequence: str) -> int:
+    """Index of a sequence's first point, for shot.json."""
+    return 1 if sequence == "halton23" else 0
 
 
 def _raw(sequence: str, index: int, period: int) -> Offset:
@@ -122,7 +135,7 @@ def _raw(sequence: str, index: int, period: int) -> Offset:
     if sequence == "none":
         return 0.0, 0.0
     if sequence in ("halton23", "halton23zero"):
-        m = n + (1 if sequence == "halton23" else 0)
+        m = n + start_of(sequence)
         return radical_inverse(2, m) - 0.5, radical_inverse(3, m) - 0.5
     if sequence == "thesis":
         return radical_inverse(2, n) - 0.5, radical_inverse(3, n, (0, 2, 1)) - 0.5
@@ -145,8 +158,8 @@ def _raw(sequence: str, index: int, period: int) -> Offset:
         return tables[sequence][n % 4]
     if sequence == "msaa8":
         return pattern_positions("d3d8")[n % 8]
-    if sequence == "smaaT2x":
-        return ((0.25, 0.25), (-0.25, -0.25))[n % 2]
+    if sequence in _PAIRS:
+        return _PAIRS[sequence][n % 2]
     raise ValueError(sequence)
 
 

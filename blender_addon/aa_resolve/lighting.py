@@ -35,6 +35,7 @@ class LightPlan:
     lights: list[bpy.types.Object] = field(default_factory=list)
     ambient: tuple[float, float, float] = (0.0, 0.0, 0.0)
     notes: list[str] = field(default_factory=list)
+    empty_passes: set[str] = field(default_factory=set)  # of Cycles, known to be 0 everywhere
 
     @property
     def passes(self) -> set[str]:
@@ -44,7 +45,22 @@ class LightPlan:
             needed.add("DiffCol")
         if len(self.lights) > 1:
             needed |= {"Emit", "Env"}
-        return needed
+        return needed - self.empty_passes
+
+    @property
+    def further_passes(self) -> set[str]:
+        """Those that it reads of the second and further lights."""
+        return {"Combined", "Emit", "Env"} - self.empty_passes
+
+    def left_out(self, wants_albedo: bool) -> list[str]:
+        """Passes of Cycles that are not rendered, each with its reason."""
+        if len(self.lights) < 2 and not wants_albedo:
+            return []  # nothing would read them
+        reasons = {
+            "Emit": "emission (no material emits)",
+            "Env": "background (the scene has no world)",
+        }
+        return [text for name, text in reasons.items() if name in self.empty_passes]
 
 
 def lights_of(scene: bpy.types.Scene) -> list[bpy.types.Object]:
@@ -84,7 +100,7 @@ def _emits(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
         return False
     seen.add(tree.name)
     for node in tree.nodes:
-        if node.bl_idname == "ShaderNodeEmission":
+        if node.bl_idname in ("ShaderNodeEmission", "ShaderNodeVolumePrincipled"):
             return True
         if node.bl_idname == "ShaderNodeBsdfPrincipled":
             socket = node.inputs.get("Emission") or node.inputs.get("Emission Color")
@@ -166,15 +182,19 @@ def set_up(
     """Brings the open scene (in memory) to the light model and says what had to change.
 
     ``ambient`` None: the mean colour of the world, where it lights surfaces at all."""
+    plan = LightPlan(model)
+    emissive = emissive_materials()
+    if not emissive:
+        plan.empty_passes.add("Emit")
+    if scene.world is None:
+        plan.empty_passes.add("Env")
     if model == "as-is":
-        plan = LightPlan(model)
         causes = noise_causes(scene, 1)
         if causes:
             plan.notes.append(
                 f"light as it is; noisy at few samples because of {', '.join(causes)}"
             )
         return plan
-    plan = LightPlan(model)
     cycles = scene.cycles
     changes = []
     if cycles.max_bounces > 0:
@@ -205,7 +225,6 @@ def set_up(
         )
     plan.lights = lights_of(scene)
     changes += [change for change in map(_make_delta, plan.lights) if change]
-    emissive = emissive_materials()
     for material in emissive:
         compat.set_no_light_sampling(material)
     if emissive:
@@ -303,8 +322,9 @@ def compose(plan: LightPlan, renders: list[rendering.Layers], view: str = "") ->
     first = renders[0].get("Combined", view)
     color = first.astype(np.float64)
     for further in renders[1:]:
-        unlit = further.get("Emit", view) + further.get("Env", view)
-        color[:, :, :3] += further.get("Combined", view)[:, :, :3].astype(np.float64) - unlit
+        color[:, :, :3] += further.get("Combined", view)[:, :, :3].astype(np.float64)
+        for name in {"Emit", "Env"} - plan.empty_passes:
+            color[:, :, :3] -= further.get(name, view)
     if any(plan.ambient):
         color[:, :, :3] += renders[0].get("DiffCol", view) * np.asarray(plan.ambient)
     return color.astype(np.float32)

@@ -20,6 +20,7 @@ PASSES = (
     "subsamples",
     "subsampleColor",
     "edges",
+    "segments",
 )
 
 
@@ -82,23 +83,34 @@ def required_passes(choices: list[MethodChoice], sampling: str | None = None) ->
     return needed & set(PASSES)
 
 
-def pattern_from(choices: list[MethodChoice], passes: set[str]) -> str | None:
-    """Sub-sample pattern that the methods' own parameters ask for (``S=8``, ``samples=4``, ``N=4``), if any.
+def patterns_of(choice: MethodChoice) -> list[str]:
+    """Sub-sample patterns that serve a method, the best first; empty where any does, or where it reads none."""
+    method = load_methods()[choice.id]
+    if not {"subsamples", "subsampleColor"} & set(method["passes"]):
+        return []
+    for key in ("S", "samples"):
+        if key in choice.parameters:
+            return [f"d3d{choice.parameters[key]}"]
+    if "N" in choice.parameters:
+        return [f"grid{choice.parameters['N']}"]
+    return method.get("patterns", [])
 
-    Raises UsageError when two of them ask for different ones."""
-    known = load_methods()
-    wishes: dict[str, str] = {}
-    for choice in choices:
-        if not {"subsamples", "subsampleColor"} & set(known[choice.id]["passes"]):
-            continue
-        for key in ("S", "samples"):
-            if key in choice.parameters:
-                wishes[choice.id] = f"d3d{choice.parameters[key]}"
-        if "N" in choice.parameters:
-            wishes[choice.id] = f"grid{choice.parameters['N']}"
-    if len(set(wishes.values())) > 1:
-        listed = ", ".join(f"{name} wants {pattern}" for name, pattern in sorted(wishes.items()))
+
+def pattern_from(choices: list[MethodChoice], asked: str | None = None) -> str | None:
+    """Sub-sample pattern that serves all methods, ``asked`` if that does; None where any pattern would.
+
+    Raises UsageError when there is none."""
+    wishes = {choice.id: patterns_of(choice) for choice in choices if patterns_of(choice)}
+    common = [asked] if asked else next(iter(wishes.values()), None)
+    for known in wishes.values():
+        common = [pattern for pattern in common if pattern in known]
+    if common == []:
+        listed = ", ".join(
+            f"{name} wants {' or '.join(known)}" for name, known in sorted(wishes.items())
+        )
+        if asked:
+            raise UsageError(f"--subsamples: found '{asked}', but {listed}")
         raise UsageError(
             f"--for: one shot holds one sub-sample pattern, but {listed}; export them as two shots"
         )
-    return next(iter(wishes.values()), None) if passes else None
+    return common[0] if common else None

@@ -25,6 +25,10 @@ class Layers:
     passes: dict[tuple[str, str], np.ndarray]
     seconds: float
 
+    def has(self, name: str) -> bool:
+        """True when the pass was rendered (without views)."""
+        return any((candidate, "") in self.passes for candidate in compat.PASS_NAMES[name])
+
     def get(self, name: str, view: str = "") -> np.ndarray:
         """The pass as H x W x C float32 under this package's own name."""
         for candidate in compat.PASS_NAMES.get(name, (name,)):
@@ -190,24 +194,24 @@ def sample_pixel_area(scene: bpy.types.Scene, samples: int, seed: int) -> None:
     cycles.sample_offset = samples
 
 
-def unlit_albedo(layers: Layers, view: str = "") -> np.ndarray:
+def unlit_albedo(layers: Layers) -> np.ndarray:
     """Base colour without light (H x W x 3): the denoising albedo less the emission that it contains.
 
     The sum of the colour passes is no albedo (a Principled shader's glossy colour is white); it only serves where
     the denoising albedo is empty although a surface was hit (mirrors and clear glass). What only emits keeps its
     emission as its colour."""
-    albedo = layers.get("Denoising Albedo", view)
-    emission = layers.get("Emit", view)
-    background = layers.get("Depth", view)[:, :, :1] >= 1.0e9
+    albedo = layers.get("Denoising Albedo")
+    nothing = np.zeros_like(albedo)  # passes that are known to be 0 are not rendered
+    emission = layers.get("Emit") if layers.has("Emit") else nothing
+    sky = layers.get("Env") if layers.has("Env") else nothing
+    background = layers.get("Depth")[:, :, :1] >= 1.0e9
     base = np.maximum(albedo - emission, 0.0)
     reflects = base.max(axis=-1, keepdims=True) > 1.0e-5
     colour = np.where(reflects, base, emission)
-    colours = (
-        layers.get("DiffCol", view) + layers.get("TransCol", view) + layers.get("GlossCol", view)
-    )
+    colours = layers.get("DiffCol") + layers.get("TransCol") + layers.get("GlossCol")
     empty = ~background & (colour.max(axis=-1, keepdims=True) <= 0.0)
     colour = np.where(empty, np.minimum(colours, 1.0), colour)
-    return np.where(background, layers.get("Env", view), colour).astype(np.float32)
+    return np.where(background, sky, colour).astype(np.float32)
 
 
 ALBEDO_PASSES = {"Denoising Albedo", "Emit", "DiffCol", "GlossCol", "TransCol", "Env", "Depth"}

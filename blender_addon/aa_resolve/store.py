@@ -206,6 +206,8 @@ class Store:
                 if truth_frame == number:
                     spent = sum(centre["render_seconds"].values())
                     entry["render_seconds"] = {**entry["render_seconds"], "centre": round(spent, 4)}
+                    size = sum(centre["bytes"].values())
+                    entry["bytes"] = {**entry["bytes"], "centre": size}
             truth = self.record("truth", truth_frame)
             if truth is not None:
                 entry["truth"] = self.picture("truth", truth_frame)

@@ -33,17 +33,16 @@ class ViewSet:
             camera.object.name = f"{_PREFIX} {source.name[:20]}.{name}"
             self.cameras.append(camera)
 
-    def render(
-        self,
-        view_layer: bpy.types.ViewLayer,
-        frame: cam.Frame,
-        depsgraph: bpy.types.Depsgraph,
-        folder: str,
-    ) -> rendering.Layers:
+    def aim(
+        self, frame: cam.Frame, depsgraph: bpy.types.Depsgraph, jitter: tuple[float, float]
+    ) -> None:
+        """Places all sub-samples of the current frame: each at its position beside the jitter."""
+        for camera, (x, y) in zip(self.cameras, self.positions):
+            camera.aim(frame, depsgraph, jitter[0] + x, jitter[1] + y)
+
+    def render(self, view_layer: bpy.types.ViewLayer, folder: str) -> rendering.Layers:
         """Renders all views with the current passes, lights and materials."""
         render = self.scene.render
-        for camera, (x, y) in zip(self.cameras, self.positions):
-            camera.aim(frame, depsgraph, x, y)
         previous = self.scene.camera
         render.use_multiview = True
         render.views_format = "MULTIVIEW"
@@ -137,8 +136,8 @@ def surface_mask(
     centre_point, centre_normal = placed(centre, jitter)
     centre_empty = centre["depth"] >= cam.BACKGROUND_DEPTH
     distances = np.empty((len(samples), *centre["depth"].shape), np.float64)
-    for index, (sample, position) in enumerate(zip(samples, positions)):
-        point, normal = placed(sample, position)
+    for index, (sample, (x, y)) in enumerate(zip(samples, positions)):
+        point, normal = placed(sample, (jitter[0] + x, jitter[1] + y))
         apart = geometry_dissimilarity(centre_point, centre_normal, point, normal, centre["depth"])
         empty = sample["depth"] >= cam.BACKGROUND_DEPTH
         apart = np.where(empty & centre_empty, 0.0, np.where(empty | centre_empty, 2.0, apart))

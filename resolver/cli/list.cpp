@@ -124,10 +124,12 @@ nlohmann::ordered_json describe(const MethodDescriptor& m) {
     j["passesWhen"] = nlohmann::ordered_json::object();
     for (const auto& p : m.params)
         for (const auto& value : p.choices) try {
-                const PassSet more = passesWith(m, {{std::string(p.name), std::string(value)}}).without(passesAtDefaults(m));
+                const PassSet more =
+                    passesWith(m, {{std::string(p.name), std::string(value)}}).without(passesAtDefaults(m));
                 if (!more.empty()) j["passesWhen"][std::string(p.name) + "=" + std::string(value)] = names(more);
             } catch (const UsageError&) {  // a choice that has no effect at the defaults
             }
+    if (!m.patterns.empty()) j["patterns"] = m.patterns;
     j["parameters"] = nlohmann::ordered_json::array();
     for (const auto& p : m.params) {
         nlohmann::ordered_json q = {{"name", p.name}, {"type", name(p.type)}};

@@ -1,5 +1,6 @@
 #include "shot/synth.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "cli/cli.h"
@@ -27,6 +28,22 @@ void printScenes() {
         std::printf("%-16s %s\n", std::string(s.name).c_str(), std::string(s.meaning).c_str());
 }
 
+// The first sub-sample pattern that serves all of them.
+std::string patternFor(const std::vector<MethodSpec>& jittered, const std::vector<MethodSpec>& centre) {
+    std::vector<std::string_view> common;
+    for (const auto* methods : {&jittered, &centre})
+        for (const auto& m : *methods) {
+            const auto& own = m.method->patterns;
+            if (own.empty()) continue;
+            if (common.empty()) common = own;
+            std::erase_if(common, [&](auto p) { return std::find(own.begin(), own.end(), p) == own.end(); });
+            if (common.empty())
+                throw UsageError("synth: no sub-sample pattern serves '" + m.text +
+                                 "' and the methods before it; make two shots");
+        }
+    return std::string(common.empty() ? "d3d8" : common[0]);
+}
+
 // The passes that these methods read, from jittered and from centre-sampled frames.
 void planFor(const std::vector<std::string>& methods, SynthOptions& o) {
     std::vector<MethodSpec> jittered, centre;
@@ -38,7 +55,7 @@ void planFor(const std::vector<std::string>& methods, SynthOptions& o) {
     o.centreWanted = passesOf(centre);
     const PassSet all = *o.wanted | *o.centreWanted;
     const bool colour = all.has(Pass::subsampleColor);
-    if ((colour || all.has(Pass::subsamples)) && o.subsamples.empty()) o.subsamples = "d3d8";
+    if ((colour || all.has(Pass::subsamples)) && o.subsamples.empty()) o.subsamples = patternFor(jittered, centre);
     o.subsampleColor = o.subsampleColor || colour;
 }
 

@@ -78,6 +78,26 @@ TEST(T2msaa, StaticMeanOfBothFrames) {
     EXPECT_NEAR(m.out.c[0].at(5, 4), 0.5 * 0.3 / 0.299, 1e-6);
     EXPECT_NEAR(m.out.c[1].at(5, 4), 0.5 * 0.3 / 0.587, 1e-6);
 }
+// Of more than two sub-samples the frame shows the two that lie, jitter and position together, where the thesis
+// samples.
+TEST(T2msaa, ChoosesSamplesByJitterAndPosition) {
+    const std::vector<glm::dvec2> positions = {{0.0625, -0.1875}, {0.25, 0.25}, {-0.25, -0.25}, {-0.5, 0.0}};
+    for (const double jitter : {0.0, 0.25}) {
+        RunningMethod m(parseMethod("t2msaa:space=linear"),
+                        {.width = 12, .height = 8, .frameCount = 1, .subSamplePositionsPx = positions});
+        Frame f = temporalFrame(0, 12, 8, [](int, int, int) { return 0.0f; });
+        f.jitterPx = {jitter, -jitter};
+        f.subSamplePositionsPx = positions;
+        f.subSamples.resize(4);
+        for (size_t k = 0; k < 4; k++) {
+            f.subSamples[k].depthView = f.depthView;
+            f.subSamples[k].colorLinear = Rgb(12, 8, float(1 << k));
+        }
+        m.resolve(f, {}, {});
+        // The thesis samples frame 0 at (.5, 0) and (0, -.5).
+        EXPECT_EQ(m.out.c[0].at(5, 4), jitter == 0 ? (2 + 1) / 2.0f : (2 + 4) / 2.0f);
+    }
+}
 
 }  // namespace
 }  // namespace aa

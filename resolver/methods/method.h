@@ -23,7 +23,7 @@ struct ShotInfo {
     bool isStatic = false;
     size_t frameCount = 1;
     std::vector<glm::dvec2> subSamplePositionsPx =
-        {};  // offsets from the pixel centre, y down; empty without sub-samples
+        {};  // offsets from pixel centre + jitter, y down; empty without sub-samples
 };
 
 // An intermediate image for --debug-layers: 1 or 3 planes, any range.
@@ -62,6 +62,8 @@ struct MethodDescriptor {
     std::function<Space(const Params&)> outputSpace = {};
     // Largest distance in px at which a pixel may influence another in one frame; 0 = unlimited or not meaningful.
     int reachPx = 0;
+    // Sub-sample patterns (shot/patterns.h) that serve the method, the best first; empty: any.
+    std::vector<std::string_view> patterns = {};
 };
 
 // All methods, in the order of the documentation.

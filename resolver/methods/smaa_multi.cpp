@@ -1,3 +1,4 @@
+#include <optional>
 #include <utility>
 
 #include "image/error.h"
@@ -7,29 +8,42 @@
 namespace aa {
 namespace {
 
-// Index of the shot's sub-sample at a position. Throws InputError when there is none.
-size_t subSampleAt(const ShotInfo& shot, glm::dvec2 positionPx, const std::string& method, const char* pattern) {
-    for (size_t k = 0; k < shot.subSamplePositionsPx.size(); k++) {
-        const glm::dvec2 d = shot.subSamplePositionsPx[k] - positionPx;
-        if (d.x * d.x + d.y * d.y < 1e-8) return k;
+using SamplePair = std::array<size_t, 2>;
+// Indices of the shot's sub-samples at a position and at its opposite; nothing when one of them is not there.
+std::optional<SamplePair> opposites(const ShotInfo& shot, glm::dvec2 positionPx) {
+    SamplePair found{};
+    for (size_t i = 0; i < 2; i++) {
+        const glm::dvec2 wanted = i == 0 ? positionPx : -positionPx;
+        size_t k = 0;
+        for (; k < shot.subSamplePositionsPx.size(); k++) {
+            const glm::dvec2 d = shot.subSamplePositionsPx[k] - wanted;
+            if (d.x * d.x + d.y * d.y < 1e-8) break;
+        }
+        if (k == shot.subSamplePositionsPx.size()) return {};
+        found[i] = k;
     }
-    throw InputError(method + ": needs sub-samples at the " + pattern +
+    return found;
+}
+[[noreturn]] void refuse(const ShotInfo& shot, const std::string& method, const std::string& patterns) {
+    throw InputError(method + ": needs sub-samples at the " + patterns +
                      " standard positions; the shot's manifest lists " +
                      (shot.subSamplePositionsPx.empty() ? "none" : "others") + "; export the shot with that pattern");
 }
+constexpr glm::dvec2 kTwo{0.25, 0.25};                                  // d3d2
+constexpr glm::dvec2 kFourEven{0.375, -0.125}, kFourOdd{0.125, 0.375};  // d3d4
 // Two sub-samples of a frame, each through SMAA 1x with its edges moved back, averaged.
 class TwoSamples {
   public:
     explicit TwoSamples(const Params& p) : linear_(p.choice("blendSpace") == "linear"), smaa_(p) {}
     // Averages into `out` and, when asked, the motion blended with the same weights into `velocity`.
-    void resolve(const Frame& frame, const ShotInfo& shot, std::array<size_t, 2> samples, bool debug, const Exec& exec,
-                 Rgb& out, Rgb* velocity) {
+    void resolve(const Frame& frame, const ShotInfo& shot, SamplePair samples, bool debug, const Exec& exec, Rgb& out,
+                 Rgb* velocity) {
         debugLayers_.clear();
         smaa_.keepDebugLayers = debug;
         for (size_t k = 0; k < 2; k++) {
             const Rgb& color = frame.subSamples[samples[k]].colorLinear;
             encode(color, {}, exec, encoded_);
-            smaa_.findWeights(frame, encoded_, shot.subSamplePositionsPx[samples[k]], exec);
+            smaa_.findWeights(frame, encoded_, frame.jitterPx + shot.subSamplePositionsPx[samples[k]], exec);
             smaa_.blend(linear_ ? color : encoded_, k == 0 ? out : sized(second_, frame), exec);
             if (velocity) blendMotion(frame, k == 0 ? *velocity : sized(secondVelocity_, frame), exec);
             for (auto& layer : smaa_.debugLayers()) {
@@ -71,11 +85,12 @@ class TwoSamples {
 
 class SmaaS2x : public Method {
   public:
-    SmaaS2x(const Params& p, const ShotInfo& shot)
-        : shot_(shot),
-          samples_{subSampleAt(shot, {0.25, 0.25}, "smaaS2x", "2x"),
-                   subSampleAt(shot, {-0.25, -0.25}, "smaaS2x", "2x")},
-          two_(p) {}
+    SmaaS2x(const Params& p, const ShotInfo& shot) : shot_(shot), two_(p) {
+        if (const auto pair = opposites(shot, kTwo))
+            samples_ = *pair;
+        else
+            refuse(shot, "smaaS2x", "2x");
+    }
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         two_.resolve(frame, shot_, samples_, keepDebugLayers, exec, out, nullptr);
     }
@@ -84,7 +99,7 @@ class SmaaS2x : public Method {
 
   private:
     ShotInfo shot_;
-    std::array<size_t, 2> samples_;
+    SamplePair samples_{};
     TwoSamples two_;
 };
 
@@ -160,15 +175,18 @@ class SmaaT2x : public Method {
     VelocityWeightedPair pair_;
 };
 
-// Frames alternate between two opposite sub-samples of the four.
+// As published: two sub-samples (2x) in frames whose jitter alternates (sequence `smaa4x`). From a shot with the 4x
+// pattern frames alternate between two opposite ones of the four, which are nearly the same places without jitter.
 class Smaa4x : public Method {
   public:
-    Smaa4x(const Params& p, const ShotInfo& shot)
-        : shot_(shot),
-          even_{at(0.375, -0.125), at(-0.375, 0.125)},
-          odd_{at(-0.125, -0.375), at(0.125, 0.375)},
-          two_(p),
-          pair_(p) {}
+    Smaa4x(const Params& p, const ShotInfo& shot) : shot_(shot), two_(p), pair_(p) {
+        if (const auto even = opposites(shot, kFourEven), odd = opposites(shot, kFourOdd); even && odd)
+            even_ = *even, odd_ = *odd;
+        else if (const auto both = opposites(shot, kTwo))
+            even_ = odd_ = *both;
+        else
+            refuse(shot, "smaa4x", "2x or 4x");
+    }
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         two_.resolve(frame, shot_, frame.number % 2 == 0 ? even_ : odd_, keepDebugLayers, exec, pair_.current(frame),
                      &pair_.velocity(frame));
@@ -183,9 +201,8 @@ class Smaa4x : public Method {
     }
 
   private:
-    size_t at(double x, double y) const { return subSampleAt(shot_, {x, y}, "smaa4x", "4x"); }
     ShotInfo shot_;
-    std::array<size_t, 2> even_, odd_;
+    SamplePair even_{}, odd_{};
     TwoSamples two_;
     VelocityWeightedPair pair_;
 };
@@ -216,7 +233,8 @@ MethodDescriptor smaaS2xDescriptor() {
             .create = [](const Params& p, const ShotInfo& shot) { return std::make_unique<SmaaS2x>(p, shot); },
             .morePasses = smaaPasses,
             .outputSpace = outputSpaceOf,
-            .reachPx = 66};
+            .reachPx = 66,
+            .patterns = {"d3d2"}};
 }
 
 MethodDescriptor smaaT2xDescriptor() {
@@ -246,7 +264,8 @@ MethodDescriptor smaa4xDescriptor() {
         .params = temporalParams(),
         .create = [](const Params& p, const ShotInfo& shot) { return std::make_unique<Smaa4x>(p, shot); },
         .morePasses = smaaPasses,
-        .outputSpace = outputSpaceOf};
+        .outputSpace = outputSpaceOf,
+        .patterns = {"d3d4", "d3d2"}};
 }
 
 }  // namespace aa

@@ -154,6 +154,7 @@ AA_INLINE void ortho_pixel(const SmaaWeightArgs& a, const Line& line, int x, int
     const int left = crossing_code(a, o - leftPx), right = crossing_code(a, o + rightPx + 1);
     Pair<T> w = a.orthoTable ? table_area<T>(a.orthoTable, left, right, leftPx, rightPx)
                              : ortho_area<T>(left, right, leftPx, rightPx, T(a.offset));
+    w = {min(w.own, T(1)), min(w.opposite, T(1))};  // samples beyond their pixel (jitter + position) lift lines over it
     if (a.cornerRounding >= 0) w = rounded_corners(a, w, o - leftPx, o + rightPx, leftPx, rightPx);
     write_weights(a, x, y, w);
     if (a.lengths) {

@@ -57,7 +57,7 @@ class T2msaa : public Method {
             const glm::dvec2 base(i == 0 ? 0.25 : -0.25), wanted = base + glm::dvec2(d, -d);
             double nearest = 1e9;
             for (size_t k = 0; k < frame.subSamplePositionsPx.size(); k++) {
-                const glm::dvec2 e = frame.subSamplePositionsPx[k] - wanted;
+                const glm::dvec2 e = frame.jitterPx + frame.subSamplePositionsPx[k] - wanted;
                 const double distance = e.x * e.x + e.y * e.y;
                 if (distance < nearest && !(i == 1 && k == chosen[0])) nearest = distance, chosen[i] = k;
             }

@@ -5,9 +5,10 @@
 //  5. a = 1 / (N + 1), under motion at least 0.25 + blur term (listing 4.19); blend with weights 1 / (1 + luma601);
 //     N grows only while a is above that limit
 // Display-encoded by default, as the thesis's 8-bit buffers; the mean of the samples is taken there, too.
-// The thesis moves the geometry by (-d, +d) and (+d, -d) px in alternate frames. A shot with exactly two sub-samples is
-// taken as rendered. From a shot with more, each frame takes the two recorded sub-samples that lie nearest to where the
-// thesis samples: (.25, .25) and (-.25, -.25), plus (+d, -d) in even and (-d, +d) in odd frames.
+// The thesis moves the geometry by (-d, +d) and (+d, -d) px in alternate frames: the jitter `t2msaa`, with d = 0.25. A
+// shot with exactly two sub-samples is taken as rendered. From a shot with more, each frame takes the two recorded
+// sub-samples (jitter + position) that lie nearest to where the thesis samples: (.25, .25) and (-.25, -.25), plus
+// (+d, -d) in even and (-d, +d) in odd frames.
 #pragma once
 #include "methods/method.h"
 

@@ -39,7 +39,7 @@ struct Frame {
     PlaneU objectId;              // 0 = background
     PlaneF motionXPx, motionYPx;  // current - previous, y down. In a static shot: zeros
     std::vector<SubSample> subSamples;
-    std::vector<glm::dvec2> subSamplePositionsPx;  // offsets from the pixel centre, y down
+    std::vector<glm::dvec2> subSamplePositionsPx;  // offsets from pixel centre + jitterPx, y down
     PlaneU subSampleMask;                          // bit k: sub-sample k lies on the centre sample's surface
     PlaneF edgeXPx, edgeYPx;
 };

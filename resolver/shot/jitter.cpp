@@ -57,7 +57,9 @@ constexpr glm::dvec2 kQuadrants[] = {{-0.25, -0.25}, {-0.25, 0.25}, {0.25, -0.25
 constexpr glm::dvec2 kUniform4[] = {{-0.25, 0.25}, {0.25, -0.25}, {0.25, 0.25}, {-0.25, -0.25}};
 constexpr glm::dvec2 kRotated4[] = {{-0.125, 0.375}, {0.375, 0.125}, {0.125, -0.375}, {-0.375, -0.125}};
 constexpr glm::dvec2 kSmaaT2x[] = {{0.25, 0.25}, {-0.25, -0.25}};
-constexpr uint32_t kReverseRadix3[] = {0, 2, 1};  // MATLAB's RR2 in base 3; the identity in base 2
+constexpr glm::dvec2 kSmaa4x[] = {{0.125, -0.125}, {-0.125, 0.125}};  // methods/03 s.3.5, published with y up
+constexpr glm::dvec2 kT2msaa[] = {{0.25, -0.25}, {-0.25, 0.25}};      // seed 001 s.4.4.2 with d = 0.25
+constexpr uint32_t kReverseRadix3[] = {0, 2, 1};                      // MATLAB's RR2 in base 3; the identity in base 2
 
 glm::dvec2 point(std::string_view sequence, uint64_t start, uint64_t n, uint64_t period) {
     const auto fromUnit = [](double u, double v) { return glm::dvec2(u - 0.5, v - 0.5); };
@@ -79,6 +81,8 @@ glm::dvec2 point(std::string_view sequence, uint64_t start, uint64_t n, uint64_t
     if (sequence == "insideUniform4") return kUniform4[n % 4];
     if (sequence == "insideRotated4") return kRotated4[n % 4];
     if (sequence == "msaa8") return glm::dvec2(kD3d8[n % 8].x, kD3d8[n % 8].y) / 16.0;
+    if (sequence == "smaa4x") return kSmaa4x[n % 2];
+    if (sequence == "t2msaa") return kT2msaa[n % 2];
     return kSmaaT2x[n % 2];
 }
 }  // namespace
@@ -109,6 +113,8 @@ const std::vector<JitterInfo>& jitterSequences() {
         {"insideRotated4", "rotated grid of four", 0, 4},
         {"msaa8", "the Direct3D 8x pattern in turn", 0, 8},
         {"smaaT2x", "(+.25, +.25) and (-.25, -.25) in turn", 0, 2},
+        {"smaa4x", "(+.125, -.125) and (-.125, +.125) in turn, for sub-samples d3d2", 0, 2},
+        {"t2msaa", "(+.25, -.25) and (-.25, +.25) in turn, for sub-samples d3d2", 0, 2},
     };
     return table;
 }

@@ -42,7 +42,7 @@ struct Manifest {
     int jitterStart = 1, jitterPeriod = 1;
     bool isStatic = false;  // camera and every object at rest
     std::string subsamplePattern;
-    std::vector<glm::dvec2> subsamplePositionsPx;  // offsets from the pixel centre, y down
+    std::vector<glm::dvec2> subsamplePositionsPx;  // offsets from pixel centre + jitter, y down
     std::map<uint32_t, std::string> objects;
     int truthSamplesPerHalf = 0;
     std::string truthFilter = "box";

@@ -39,37 +39,85 @@ def exported(*options: str) -> tuple[dict, dict[str, np.ndarray], str]:
     return shot, t.read_part(path, "subsamples"), path
 
 
-def test_views_equal_separate_renders() -> None:
-    scene_with_edges()
-    shot, samples, _ = exported("--passes", "subsamples,subsampleColor", "--subsamples", "d3d4")
-    assert shot["subsamples"]["pattern"] == "d3d4"
-    assert shot["subsamples"]["positions"] == [
-        list(pair) for pair in jitter.pattern_positions("d3d4")
-    ]
-    for index, (x, y) in enumerate(shot["subsamples"]["positions"]):
-        scene_with_edges()
-        from aa_resolve import export as module
+def rendered_at(offset: tuple[float, float]) -> str:
+    """Path of a plain frame of the same scene, one sample per pixel at ``offset``."""
+    from aa_resolve import picture
 
-        original = module.jitter.jitter_at
-        module.jitter.jitter_at = lambda *_args, x=x, y=y: (x, y)
-        try:
-            out = os.path.join(t.temporary_folder(), "single")
-            t.export(
-                out, "--frames", "1", "--truth-frames", "none", "--passes", "depth,normal,object"
-            )
-        finally:
-            module.jitter.jitter_at = original
-        path = os.path.join(out, "frames/000001.exr")
-        view = f"s{index:02d}"
-        pairs = [
-            (samples[f"{view}.Z"], t.read_part(path, "depth")["Z"]),
-            (samples[f"{view}.id"], t.read_part(path, "object")["id"]),
+    scene_with_edges()
+    original = picture.jitter.jitter_at
+    picture.jitter.jitter_at = lambda *_arguments: offset
+    try:
+        out = os.path.join(t.temporary_folder(), "single")
+        t.export(out, "--frames", "1", "--truth-frames", "none", "--passes", "depth,normal,object")
+    finally:
+        picture.jitter.jitter_at = original
+    return os.path.join(out, "frames/000001.exr")
+
+
+def test_views_equal_separate_renders() -> None:
+    """Sub-sample k of a frame is the frame rendered at jitter + position k, to the bit; at the centres jitter is 0."""
+    for sequence in ("none", "halton23"):
+        scene_with_edges()
+        shot, samples, _ = exported(
+            "--passes", "subsamples,subsampleColor", "--subsamples", "d3d4", "--jitter", sequence
+        )
+        assert shot["subsamples"]["pattern"] == "d3d4"
+        assert shot["subsamples"]["positions"] == [
+            list(pair) for pair in jitter.pattern_positions("d3d4")
         ]
-        normal, color = t.read_part(path, "normal"), t.read_part(path, "color")
-        pairs += [(samples[f"{view}.{axis}"], normal[axis]) for axis in ("N.X", "N.Y", "N.Z")]
-        pairs += [(samples[f"{view}.{axis}"], color[axis]) for axis in "RGB"]
-        for one, other in pairs:
-            assert one.dtype == other.dtype and np.array_equal(one, other), view
+        jitter_x, jitter_y = shot["frames"][0]["jitter"]
+        assert (sequence == "none") == (jitter_x == jitter_y == 0.0)
+        for index, (x, y) in enumerate(shot["subsamples"]["positions"]):
+            path = rendered_at((jitter_x + x, jitter_y + y))
+            view = f"s{index:02d}"
+            pairs = [
+                (samples[f"{view}.Z"], t.read_part(path, "depth")["Z"]),
+                (samples[f"{view}.id"], t.read_part(path, "object")["id"]),
+            ]
+            normal, color = t.read_part(path, "normal"), t.read_part(path, "color")
+            pairs += [(samples[f"{view}.{axis}"], normal[axis]) for axis in ("N.X", "N.Y", "N.Z")]
+            pairs += [(samples[f"{view}.{axis}"], color[axis]) for axis in "RGB"]
+            for one, other in pairs:
+                assert one.dtype == other.dtype and np.array_equal(one, other), (sequence, view)
+    wrong = rendered_at(tuple(shot["subsamples"]["positions"][0]))
+    assert not np.array_equal(samples["s00.id"], t.read_part(wrong, "object")["id"]), "can fail"
+
+
+def test_jittered_and_centre_frames() -> None:
+    """One shot for both kinds of methods: sub-samples of the centre frame lie at the positions themselves."""
+    scene_with_edges()
+    out = os.path.join(t.temporary_folder(), "shot")
+    shot = t.export(out, "--frames", "1-2", "--truth-frames", "none", "--for", "t2msaa,ssaa")
+    assert shot["subsamples"]["pattern"] == "d3d8" and shot["static"]
+    entry = shot["frames"][1]
+    assert entry["jitter"] != [0.0, 0.0] and entry["centre"] == "centre/000001.exr"
+    x, y = shot["subsamples"]["positions"][5]
+    for file, offset in (
+        (entry["centre"], (x, y)),
+        (entry["file"], (entry["jitter"][0] + x, entry["jitter"][1] + y)),
+    ):
+        color = t.read_part(rendered_at(offset), "color")
+        samples = t.read_part(os.path.join(out, file), "subsamples")
+        assert np.array_equal(samples["s05.R"], color["R"]), file
+
+
+def test_methods_choose_the_pattern() -> None:
+    from aa_resolve import registry
+    from aa_resolve.errors import UsageError
+
+    def chosen(text: str, asked: str | None = None) -> str | None:
+        return registry.pattern_from(registry.parse_choices([text]), asked)
+
+    assert chosen("smaaS2x") == "d3d2" and chosen("smaa4x") == "d3d4"
+    assert chosen("smaa4x,smaaS2x") == "d3d2", "which serves both"
+    assert chosen("rsaa") is None and chosen("rsaa", "d3d16") == "d3d16"
+    assert chosen("rsaa:S=4,smaa4x") == "d3d4"
+    for text, asked in (("smaaS2x,rsaa:S=8", None), ("smaaS2x", "d3d8")):
+        try:
+            chosen(text, asked)
+            raise SystemExit(f"{text} {asked} must be refused")
+        except UsageError as error:
+            assert "smaaS2x wants d3d2" in str(error), error
 
 
 def test_override_keeps_the_geometry() -> None:
@@ -151,7 +199,8 @@ def test_mask() -> None:
                 row, column, jittered, depth[row, column], normal[row, column], ids[row, column]
             )
             others = []
-            for k, offset in enumerate(shot["subsamples"]["positions"]):
+            for k, position in enumerate(shot["subsamples"]["positions"]):
+                offset = (jittered[0] + position[0], jittered[1] + position[1])
                 n = np.array([samples[f"s{k:02d}.N.{axis}"][row, column] for axis in "XYZ"])
                 others.append(
                     record(
@@ -254,6 +303,8 @@ if __name__ == "__main__":
     t.main(
         test_uint_channels_are_exact,
         test_views_equal_separate_renders,
+        test_jittered_and_centre_frames,
+        test_methods_choose_the_pattern,
         test_override_keeps_the_geometry,
         test_mask,
         test_cutouts_use_real_materials,
