@@ -88,7 +88,7 @@ def refuse_unsuitable(
         notes.append("motion blur is switched off: a shot holds sharp frames and their motion")
     if compat.compositor_in_use(scene):
         notes.append("the compositor is switched off: a shot holds the picture before it")
-    if render.use_sequencer and scene.sequence_editor and len(scene.sequence_editor.sequences_all):
+    if render.use_sequencer and compat.strips(scene):
         notes.append("the sequencer is switched off: a shot shows the 3D scene")
     if scene.cycles.use_denoising:
         notes.append("the denoiser is switched off")

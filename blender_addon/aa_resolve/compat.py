@@ -42,6 +42,30 @@ def set_no_light_sampling(material: bpy.types.Material) -> None:
         set_if_present(cycles, "sample_as_light", False)
 
 
+def emission_color(node: bpy.types.Node) -> bpy.types.NodeSocket | None:
+    """The socket of a Principled BSDF that colours its emission."""
+    return node.inputs.get("Emission") or node.inputs.get("Emission Color")  # the latter since 4.0
+
+
+def panorama_settings(camera: bpy.types.Camera):
+    """Owner of ``panorama_type``: Cycles' own settings before 4.4, the camera since."""
+    return camera if hasattr(camera, "panorama_type") else camera.cycles
+
+
+def name_aov_output(node: bpy.types.Node, name: str) -> None:
+    """Connects an AOV Output node to the AOV of that name."""
+    if not set_if_present(node, "aov_name", name):  # since 4.2 the label and the output's name are apart
+        node.name = name
+
+
+def strips(scene: bpy.types.Scene) -> list:
+    """Strips of the sequencer."""
+    editor = scene.sequence_editor
+    if editor is None:
+        return []
+    return list(getattr(editor, "strips_all", None) or getattr(editor, "sequences_all", []))
+
+
 def set_compositing(scene: bpy.types.Scene, enabled: bool) -> None:
     """Compositor and sequencer on or off for renders."""
     scene.render.use_compositing = enabled

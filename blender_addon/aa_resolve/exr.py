@@ -229,9 +229,10 @@ def _text(content: memoryview, position: int) -> tuple[str, int]:
 
 
 def read_channels(path: str) -> dict[str, np.ndarray]:
-    """Every channel of a file as H x W float32; those of further parts carry ``part/`` before their names.
+    """Every channel of a file as H x W in its stored type; those of further parts carry ``part/`` before their names.
 
-    Reads scanline files without compression, ZIPS or ZIP."""
+    Reads scanline files without compression, ZIPS or ZIP. Without compression the arrays are views of the file's
+    bytes: a channel that nobody looks at costs nothing."""
     try:
         with open(path, "rb") as file:
             content = memoryview(file.read())
@@ -258,22 +259,30 @@ def _read(content: memoryview) -> dict[str, np.ndarray]:
     for number, header in enumerate(headers):
         offsets = struct.unpack_from(f"<{header.blocks}Q", content, position)
         position += 8 * header.blocks
-        stride = sum(dtype.itemsize for _, dtype in header.channels) * header.width
-        lines = np.empty((header.height, stride), np.uint8)
-        step = _LINES[header.compression]
-        for offset in offsets:
-            offset += 4 if many else 0
-            row, size = struct.unpack_from("<ii", content, offset)
-            row -= header.top
-            count = min(step, header.height - row)
-            block = bytes(content[offset + 8 : offset + 8 + size])
-            if header.compression:
-                block = _unpack(block, count * stride)
-            lines[row : row + count] = np.frombuffer(block, np.uint8).reshape(count, stride)
-        column = 0
+        row_bytes = sum(dtype.itemsize for _, dtype in header.channels) * header.width
+        label = 12 if many else 8  # bytes before each block: part, row and size
+        pixels, start, step = content, offsets[0] + label, row_bytes + label
+        if header.compression or np.any(np.diff(np.array(offsets, np.int64)) != step):
+            pixels, start, step = _unpacked(content, header, offsets, row_bytes, label), 0, row_bytes
         for name, dtype in header.channels:
-            width = dtype.itemsize * header.width
-            plane = np.ascontiguousarray(lines[:, column : column + width]).view(dtype)
-            channels[f"{header.name}/{name}" if number else name] = plane.astype(np.float32)
-            column += width
+            channels[f"{header.name}/{name}" if number else name] = np.ndarray(
+                (header.height, header.width), dtype, pixels, start, (step, dtype.itemsize)
+            )
+            start += dtype.itemsize * header.width
     return channels
+
+
+def _unpacked(
+    content: memoryview, header: _Header, offsets: tuple[int, ...], row_bytes: int, label: int
+) -> np.ndarray:
+    """All rows of one part, one after the other."""
+    rows = np.empty((header.height, row_bytes), np.uint8)
+    for offset in offsets:
+        first, size = struct.unpack_from("<ii", content, offset + label - 8)
+        first -= header.top
+        count = min(_LINES[header.compression], header.height - first)
+        block = bytes(content[offset + label : offset + label + size])
+        if header.compression:
+            block = _unpack(block, count * row_bytes)
+        rows[first : first + count] = np.frombuffer(block, np.uint8).reshape(count, row_bytes)
+    return rows

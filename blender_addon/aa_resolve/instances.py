@@ -16,7 +16,7 @@ import zlib
 import bpy
 import numpy as np
 
-from . import rendering, subsamples
+from . import compat, rendering, subsamples
 from .errors import SceneError
 
 CHANNEL = "AA Instance"
@@ -204,10 +204,7 @@ def _add_output(material: bpy.types.Material) -> bool:
     product = _product(tree, random, opacity)
     aov = tree.nodes.new("ShaderNodeOutputAOV")
     aov.name = aov.label = CHANNEL
-    if hasattr(aov, "aov_name"):  # since 4.2 the label and the output's name are apart
-        aov.aov_name = CHANNEL
-    else:
-        aov.name = CHANNEL
+    compat.name_aov_output(aov, CHANNEL)
     if isinstance(product, float):
         aov.inputs["Value"].default_value = product
     else:
@@ -259,7 +256,7 @@ def _opacity(tree: bpy.types.NodeTree, socket: bpy.types.NodeSocket):
             return 1.0
         if node.bl_idname == "ShaderNodeAddShader":
             return _math(tree, "MAXIMUM", *parts)
-        factor = node.inputs["Fac"]
+        factor = node.inputs[0]
         weight = factor.links[0].from_socket if factor.is_linked else float(factor.default_value)
         first = _math(tree, "MULTIPLY", parts[0], _math(tree, "SUBTRACT", 1.0, weight))
         return _math(tree, "MULTIPLY_ADD", parts[1], weight, first)

@@ -103,7 +103,7 @@ def _emits(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
         if node.bl_idname in ("ShaderNodeEmission", "ShaderNodeVolumePrincipled"):
             return True
         if node.bl_idname == "ShaderNodeBsdfPrincipled":
-            socket = node.inputs.get("Emission") or node.inputs.get("Emission Color")
+            socket = compat.emission_color(node)
             strength = node.inputs.get("Emission Strength")
             if socket and (strength is None or strength.is_linked or strength.default_value > 0.0):
                 if socket.is_linked or max(socket.default_value[:3]) > 0.0:
@@ -116,31 +116,36 @@ def _emits(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
 def noise_causes(scene: bpy.types.Scene, samples: int) -> list[str]:
     """Why this scene's own light is noisy at few samples, one clause per cause."""
     causes = []
+    if not compat.is_cycles_available():
+        return causes
     lights = lights_of(scene)
     if len(lights) > 1:
-        causes.append(f"{len(lights)} lights (each sample picks one at random)")
+        names = ", ".join(f"'{item.name}'" for item in lights)
+        causes.append(f"{len(lights)} lights (each sample picks one of {names} at random)")
     for item in lights:
         light = item.data
         if light.type == "AREA":
-            causes.append(f"area light '{item.name}'")
+            causes.append(f"area light '{item.name}' (each sample sees one point of it)")
         elif light.type == "SUN" and light.angle > 0.0:
             causes.append(
-                f"sun '{item.name}' with an angle of {math.degrees(light.angle):.2g} degrees"
+                f"sun '{item.name}' with an angle of {math.degrees(light.angle):.2g} degrees (soft shadows)"
             )
         elif light.type in ("POINT", "SPOT") and light.shadow_soft_size > 0.0:
             causes.append(
-                f"{light.type.lower()} light '{item.name}' with a radius of {light.shadow_soft_size:.2g} m"
+                f"{light.type.lower()} light '{item.name}' with a radius of {light.shadow_soft_size:.2g} m "
+                "(soft shadows)"
             )
     world = scene.world
     if world and world.cycles_visibility.diffuse:
-        causes.append("light from the world")
+        causes.append("light from the world (each sample sees one direction of it)")
     if (
         scene.cycles.max_bounces > 0
         and scene.cycles.diffuse_bounces + scene.cycles.glossy_bounces > 0
     ):
-        causes.append("indirect light")
-    if emissive_materials():
-        causes.append("meshes that emit light")
+        causes.append("indirect light (each sample follows one path)")
+    emitters = [material.name for material in emissive_materials() if material.users]
+    if emitters:
+        causes.append(f"meshes that emit light ({', '.join(emitters)})")
     return causes if samples < 64 else []
 
 
@@ -154,8 +159,7 @@ def mean_world_radiance(scene: bpy.types.Scene, folder: str) -> tuple[float, flo
         empty.world = world
         data = bpy.data.cameras.new("AA Resolve Panorama")
         data.type = "PANO"
-        panorama = data if hasattr(data, "panorama_type") else data.cycles
-        panorama.panorama_type = "EQUIRECTANGULAR"
+        compat.panorama_settings(data).panorama_type = "EQUIRECTANGULAR"
         camera = bpy.data.objects.new("AA Resolve Panorama", data)
         camera.rotation_euler = (math.pi / 2.0, 0.0, 0.0)
         empty.collection.objects.link(camera)

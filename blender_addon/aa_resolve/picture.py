@@ -51,7 +51,7 @@ class Pictures:
             state = analysis.frame_state(
                 plan.scene, number, plan.frame, plan.cuts, "motion" in plan.passes
             )
-            self._states = {key: value for key, value in self._states.items() if key == number - 1}
+            self._states = {key: value for key, value in self._states.items() if key > number - 3}
             self._states[number] = state
         return self._states[number]
 
@@ -96,12 +96,14 @@ class Pictures:
             )
         before = None if plan.static else self._state(number - 1)
         now = self._state(settings.frames[0] if plan.static else number)
+        apart = "motion" in passes and self._instances_change(number)
         self._go_to(number)
         self._aim(number, offset)
         rendering.sample_points(plan.scene, settings.samples)
         watch = _Stopwatch()
         with watch.of("color"):
-            renders = self._render_lights(plan.cycles_passes(passes))
+            cycles_passes = plan.cycles_passes(passes)
+            renders = self._render_lights(cycles_passes - {"Vector"} if apart else cycles_passes)
             color = lighting.compose(plan.light, renders)
         main = renders[0]
         parts = [self._part("color", "RGBA", settings.color_type, color)]
@@ -130,7 +132,12 @@ class Pictures:
         if "motion" in passes:
             with watch.of("motion"):
                 vectors = motion.motion_from_vector(
-                    main.get("Vector"), depth, plan.frame, offset, now.camera, before.camera
+                    self._vectors_apart(main) if apart else main.get("Vector"),
+                    depth,
+                    plan.frame,
+                    offset,
+                    now.camera,
+                    before.camera,
                 )
         entry["reset"] = self._is_reset(number, now, before, depth, vectors, offset)
         if vectors is not None:
@@ -191,6 +198,25 @@ class Pictures:
                 renders.append(rendering.render(plan.scene, plan.view_layer, plan.folder))
         return renders
 
+    def _instances_change(self, number: int) -> bool:
+        """True when an instance of the frame is missing in the one before or after: with motion vectors Cycles shows
+        only instances that exist in all three."""
+        now = self._state(number).instances
+        return bool(now) and not (
+            now <= self._state(number - 1).instances and now <= self._state(number + 1).instances
+        )
+
+    def _vectors_apart(self, main: rendering.Layers) -> np.ndarray:
+        """Vector pass of a render of its own; no place in the picture where that shows something else."""
+        plan = self.plan
+        rendering.request_passes(plan.view_layer, {"Vector", "Depth", "IndexOB"})
+        with subsamples.no_lights(plan.light, plan.scene):
+            layers = rendering.render(plan.scene, plan.view_layer, plan.folder)
+        same = (layers.get("IndexOB") == main.get("IndexOB")) & (
+            layers.get("Depth") == main.get("Depth")
+        )
+        return np.where(same, layers.get("Vector"), motion.NO_PREVIOUS_POSITION_PX)
+
     def _part(self, name: str, channels, kind: str, pixels: np.ndarray) -> exr.Part:
         if kind == "half" and np.abs(pixels[np.isfinite(pixels)]).max(initial=0.0) > 65504.0:
             raise SceneError(
@@ -244,7 +270,7 @@ class Pictures:
         indices = [index for index, name in table.items() if name in names]
         pixels = np.isin(np.rint(main.get("IndexOB")[:, :, 0]).astype(np.int64), indices)
         new = self.plan.ids.of_instances(now.instances - before.instances)
-        pixels |= np.isin(ids, new)
+        pixels |= np.isin(ids, new) | (np.abs(vectors) > motion.NO_PREVIOUS_POSITION_PX / 2.0).any(-1)
         if not pixels.any():
             return None
         vectors[pixels] = motion.NO_PREVIOUS_POSITION_PX

@@ -8,7 +8,6 @@ File Output node drops the fourth component of the motion vectors.
 from __future__ import annotations
 
 import os
-import time
 from dataclasses import dataclass
 
 import bpy
@@ -22,19 +21,24 @@ from .errors import Cancelled, SceneError
 class Layers:
     """Passes of one render: ``get("Depth")`` is H x W x 1, ``get("Combined", "k03")`` that of a view."""
 
-    passes: dict[tuple[str, str], np.ndarray]
-    seconds: float
+    planes: dict[tuple[str, str], list[np.ndarray]]  # by pass and view, components in order; views of the file
+
+    def __post_init__(self) -> None:
+        self._stacked: dict[tuple[str, str], np.ndarray] = {}
 
     def has(self, name: str) -> bool:
         """True when the pass was rendered (without views)."""
-        return any((candidate, "") in self.passes for candidate in compat.PASS_NAMES[name])
+        return any((candidate, "") in self.planes for candidate in compat.PASS_NAMES[name])
 
     def get(self, name: str, view: str = "") -> np.ndarray:
         """The pass as H x W x C float32 under this package's own name."""
         for candidate in compat.PASS_NAMES.get(name, (name,)):
-            if (candidate, view) in self.passes:
-                return self.passes[candidate, view]
-        found = ", ".join(sorted({key[0] for key in self.passes}))
+            key = candidate, view
+            if key in self.planes:
+                if key not in self._stacked:
+                    self._stacked[key] = np.stack(self.planes[key], axis=-1).astype(np.float32)
+                return self._stacked[key]
+        found = ", ".join(sorted({key[0] for key in self.planes}))
         raise SceneError(
             f"Cycles delivered no pass '{name}' (found: {found}); is this Blender version supported?"
         )
@@ -45,7 +49,7 @@ _ORDER = {"R": 0, "G": 1, "B": 2, "A": 3, "X": 0, "Y": 1, "Z": 2, "W": 3, "V": 0
 
 def _group(
     channels: dict[str, np.ndarray], layer: str, views: tuple[str, ...]
-) -> dict[tuple[str, str], np.ndarray]:
+) -> dict[tuple[str, str], list[np.ndarray]]:
     """Gathers ``Layer.Pass[.view].C`` channels to passes."""
     groups: dict[tuple[str, str], dict[str, np.ndarray]] = {}
     for name, pixels in channels.items():
@@ -62,7 +66,7 @@ def _group(
         ordered = sorted(components, key=lambda component: _ORDER.get(component.upper(), 9))
         if key[0] == "Depth":
             ordered = ordered[:1]
-        result[key] = np.stack([components[component] for component in ordered], axis=-1)
+        result[key] = [components[component] for component in ordered]
     return result
 
 
@@ -80,7 +84,6 @@ def render(
     def note_cancel(*_scene) -> None:
         cancelled.append(True)
 
-    started = time.perf_counter()
     bpy.app.handlers.render_cancel.append(note_cancel)
     try:
         bpy.ops.render.render(write_still=True, scene=scene.name)
@@ -98,8 +101,7 @@ def render(
         )
     channels = exr.read_channels(path)
     os.unlink(path)
-    passes = _group(channels, view_layer.name, views)
-    return Layers(passes, time.perf_counter() - started)
+    return Layers(_group(channels, view_layer.name, views))
 
 
 def prepare(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> None:

@@ -40,8 +40,13 @@ class ViewSet:
         for camera, (x, y) in zip(self.cameras, self.positions):
             camera.aim(frame, depsgraph, jitter[0] + x, jitter[1] + y)
 
-    def render(self, view_layer: bpy.types.ViewLayer, folder: str) -> rendering.Layers:
-        """Renders all views with the current passes, lights and materials."""
+    def render(
+        self, view_layer: bpy.types.ViewLayer, folder: str, wants_color: bool = True
+    ) -> rendering.Layers:
+        """Renders all views with the current passes, lights and materials.
+
+        Without ``wants_color`` Cycles' colour passes, which cannot be left out, are written in half the bytes; data
+        passes are floats either way."""
         render = self.scene.render
         previous = self.scene.camera
         render.use_multiview = True
@@ -54,6 +59,7 @@ class ViewSet:
             view = render.views.new(name)
             view.camera_suffix = f".{name}"
             added.append(view)
+        render.image_settings.color_depth = "32" if wants_color else "16"
         try:
             self.scene.camera = self.cameras[0].object
             return rendering.render(self.scene, view_layer, folder, self.names)
@@ -64,6 +70,7 @@ class ViewSet:
             for view in render.views:
                 view.use = True
             render.use_multiview = False
+            render.image_settings.color_depth = "32"
             render.image_settings.views_format = "INDIVIDUAL"
 
 

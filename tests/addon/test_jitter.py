@@ -145,6 +145,46 @@ def test_sequences() -> None:
         assert np.allclose(
             jitter.jitter_at("thesis", index, 16), (u - 0.5, v - 0.5), atol=1e-12
         ), index
+    # methods/00-conventions.md s.6, y down: published lists with y up are turned over.
+    lists = {
+        "none": [(0, 0)],
+        "halton23zero": [(-1 / 2, -1 / 2), (0, -1 / 6), (-1 / 4, 1 / 6)],
+        "hammersley": [(-1 / 2, -1 / 2), (1 / 16 - 1 / 2, 0), (2 / 16 - 1 / 2, -1 / 4)],
+        "quadrant": [(-0.25, -0.25), (-0.25, 0.25), (0.25, -0.25), (0.25, 0.25), (-0.25, -0.25)],
+        "insideUniform4": [(-0.25, 0.25), (0.25, -0.25), (0.25, 0.25), (-0.25, -0.25)],
+        "insideRotated4": [(-0.125, 0.375), (0.375, 0.125), (0.125, -0.375), (-0.375, -0.125)],
+        "msaa8": [
+            (x / 16, y / 16)
+            for x, y in ((1, -3), (-1, 3), (5, 1), (-3, -5), (-5, 5), (-7, -1), (3, 7), (7, -7))
+        ],
+        "smaaT2x": [(0.25, 0.25), (-0.25, -0.25), (0.25, 0.25)],
+        "smaa4x": [(0.125, -0.125), (-0.125, 0.125), (0.125, -0.125)],
+        "t2msaa": [(0.25, -0.25), (-0.25, 0.25), (0.25, -0.25)],
+        "r2": [
+            ((0.5 + n * a) % 1 - 0.5, (0.5 + n * b) % 1 - 0.5)
+            for a, b in ((0.7548776662466927, 0.5698402909980532),)
+            for n in range(16)
+        ],
+        "ign": [
+            tuple(
+                (52.9829189 * ((0.06711056 * (1 + 5.588238 * n) + 0.00583715 * (y + 5.588238 * n)) % 1))
+                % 1
+                - 0.5
+                for y in (1, 2)
+            )
+            for n in range(16)
+        ],
+    }
+    for name, points in lists.items():
+        for index, pair in enumerate(points):
+            assert np.allclose(jitter.jitter_at(name, index, 16), pair, atol=1e-12), (name, index)
+    normal = np.array([jitter.jitter_at("gaussian", index, 4096) for index in range(4096)])
+    assert (np.abs(normal.mean(axis=0)) < 0.015).all() and np.allclose(normal.std(0), 0.25, atol=0.01)
+    for index in range(64):  # quarter points in turn plus the same normal numbers, kept within the pixel
+        place = np.array(lists["quadrant"][index % 4]) + jitter.jitter_at("gaussian", index, 64)
+        both = jitter.jitter_at("quadrantGaussian", index, 64)
+        assert np.allclose(both, np.clip(place, -0.5, 0.5), atol=1e-12), index
+    assert {*lists, "halton23", "thesis", "gaussian", "quadrantGaussian"} == set(jitter.SEQUENCES)
     mean = np.mean([jitter.jitter_at("halton23", index, 16) for index in range(16)], axis=0)
     assert np.allclose(mean, (-0.0293, -0.0370), atol=5e-5), mean
     for name in jitter.SEQUENCES:

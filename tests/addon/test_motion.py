@@ -401,6 +401,85 @@ def test_cuts() -> None:
     ], "a gap drops the history"
 
 
+def resets(make, frames: str = "3-6") -> list[bool]:
+    scene, camera = stage()
+    make(scene, camera)
+    out = os.path.join(t.temporary_folder(), "s")
+    shot = t.export(out, "--frames", frames, "--for", "taaSimplest", "--truth-frames", "none")
+    return [entry["reset"] for entry in shot["frames"]]
+
+
+def test_jumps_of_the_camera() -> None:
+    """A jump aside and a jump ahead drop the history; a fast pan does not, nor does following something fast."""
+
+    def jump(target):
+        def make(scene, camera):
+            t.add_object(scene, "Wall", None, (0, 9, 0), (0, 0, 0), (90, 1, 90))
+            camera.rotation_euler = (1.5, 0, 0)
+            t.key(camera, "location", {4: (0, -8, 1), 5: target})
+            for curve in camera.animation_data.action.fcurves:
+                curve.extrapolation = "CONSTANT"
+
+        return make
+
+    assert resets(jump((25, -8, 1))) == [True, False, True, False], "aside"
+    assert resets(jump((-1.4, -1.2, 0.7))) == [True, False, True, False], "ahead"
+    assert resets(jump((1.0, -7.0, 1))) == [True, False, False, False], "a step is no jump"
+
+    def follow(scene, camera):
+        t.add_object(scene, "Car", None, (0, -2, 1), (0, 0, 0), (9, 1, 6)).parent = camera
+        camera.rotation_euler = (1.5708, 0, 0)
+        scene.objects["Car"].location = (0, 0, -6)
+        t.key(camera, "location", {1: (0, -8, 1), 11: (300, -8, 1)})
+
+    assert resets(follow) == [True, False, False, False], "what it follows stands still in the picture"
+
+
+def test_new_instances_are_invalid() -> None:
+    """Particles that are born in a frame have no motion there; those that were there before have."""
+    scene, _ = stage()
+    source = t.add_object(scene, "Grain", t.cube_mesh("Grain", 1.0), (0, -40, 0))
+    mesh = bpy.data.meshes.new("Emitter")
+    mesh.from_pydata([(-2, -1, 0), (2, -1, 0), (2, -1, 2.4), (-2, -1, 2.4)], [], [(0, 1, 2, 3)])
+    emitter = t.add_object(scene, "Emitter", mesh)
+    emitter.modifiers.new("Particles", "PARTICLE_SYSTEM")
+    settings = emitter.particle_systems[0].settings
+    settings.count, settings.frame_start, settings.frame_end = 24, 1, 9
+    settings.lifetime, settings.physics_type = 1000, "NEWTON"
+    settings.normal_factor, settings.effector_weights.gravity = 0.0, 0.0
+    settings.render_type, settings.instance_object, settings.particle_size = "OBJECT", source, 0.4
+    emitter.show_instancer_for_render = False
+    for frame in range(1, FRAME + 2):
+        scene.frame_set(frame)
+    numbers = {}
+    for frame in (FRAME - 1, FRAME):
+        scene.frame_set(frame)
+        numbers[frame] = set(instances_of("Grain"))
+    born = numbers[FRAME] - numbers[FRAME - 1]
+    assert born and numbers[FRAME - 1], numbers
+    out = os.path.join(t.temporary_folder(), "shot")
+    shot = t.export(
+        out, "--frames", f"{FRAME - 1}-{FRAME}", "--for", "taaSimplest", "--passes", "object",
+        "--truth-frames", "none",
+    )  # fmt: skip
+    entry = shot["frames"][1]
+    path = os.path.join(out, entry["file"])
+    ids, motion = t.read_part(path, "object")["id"], t.read_part(path, "motion")["motion.X"]
+    new = old = 0
+    for identity in set(np.unique(ids)) - {0}:
+        name = shot["objects"][str(identity)]
+        if not name.startswith("Grain #"):
+            continue
+        pixels = motion[ids == identity]
+        if name.split(" #")[1].split(" of ")[0] in born:
+            new += 1
+            assert (pixels == 1e6).all() and name in entry["motion_invalid"]["objects"], name
+        else:
+            old += 1
+            assert (np.abs(pixels) < 1e3).all(), name
+    assert new >= 2 and old >= 4, (new, old, numbers, shot["objects"])
+
+
 if __name__ == "__main__":
     t.main(
         test_camera,
@@ -415,4 +494,6 @@ if __name__ == "__main__":
         test_hidden_before_is_invalid,
         test_changing_topology_is_invalid,
         test_cuts,
+        test_jumps_of_the_camera,
+        test_new_instances_are_invalid,
     )
