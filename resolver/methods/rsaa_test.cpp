@@ -4,6 +4,8 @@
 
 #include "image/error.h"
 #include "methods/geometry_test_frames.h"
+#include "methods/rsaa_lut_data.h"
+#include "shot/synth.h"
 
 namespace aa {
 namespace {
@@ -118,6 +120,21 @@ TEST(Rsaa, GeometryFindsTheMasksOfTheMaskPass) {
         }
     }
 }
+// The mask pass of a shot, jittered or not, is what its geometry says: whole pictures, several surfaces in a pixel.
+TEST(Rsaa, GeometryFindsTheMasksOfAnalyticShots) {
+    for (const char* scene : {"half_planes", "two_planes", "moving", "thin_lines", "circles", "thin_motion"})
+        for (const char* pattern : {"d3d4", "d3d8", "d3d16"}) {
+            SynthOptions o;
+            o.scene = scene, o.subsamples = pattern;
+            o.width = 121, o.height = 77, o.frames = 3;
+            const SynthShot shot(o);
+            for (const Sampling sampling : {Sampling::centre, Sampling::jittered}) {
+                const Frame f = shot.frame(2, sampling);
+                expectSameMasks(f, "rsaa");
+                EXPECT_TRUE(resolved("rsaa:mask=pass", f).samePixels(resolved("rsaa", f))) << scene << pattern;
+            }
+        }
+}
 // The centre sample is where the jitter put it: the vectors between points must know.
 TEST(Rsaa, JitteredFramesGiveTheMasksOfTheirCentreSample) {
     for (const glm::dvec2 jitterPx : {glm::dvec2(0.375, -0.277), glm::dvec2(-0.4375, 0.389)}) {
@@ -230,6 +247,20 @@ TEST(Rsaa, DegenerateGeometryKeepsTheColour) {
         f = renderPlanes(wall, 9, 5, same);
         EXPECT_TRUE(resolved(method, f).samePixels(f.colorLinear)) << measure;
     }
+}
+// Their masks are all ones, and no offset of any table leaves the neighbouring pixels (methods/08 s.8.3).
+TEST(Rsaa, DegenerateMasksAreAllOnesAndOffsetsStayWithinAPixel) {
+    const TestScene empty{{}, [](double, double) { return -1; }, glm::vec3(0.3f)};
+    const TestScene wall{{{{0, 0, 1}, -4, glm::vec3(0.3f), 1}}, [](double, double) { return 0; }};
+    std::vector<DebugLayer> layers;
+    for (const Frame& f : {renderPlanes(empty, 9, 5, d3dPattern(8)),
+                           renderPlanes(wall, 9, 5, std::vector<glm::dvec2>(8, glm::dvec2(0)))}) {
+        resolved("rsaa", f, {}, &layers);
+        for (int y = 0; y < 5; y++)
+            for (int x = 0; x < 9; x++) EXPECT_EQ(layer(layers, "mask").at(x, y), 255.0f);
+    }
+    for (const size_t samples : {4u, 8u, 16u})
+        for (const float v : rsaaTable(samples, shippedRsaaEntries(samples))) ASSERT_LE(std::abs(v), 1.0f) << samples;
 }
 TEST(Rsaa, NanAndZeroNormalsStayInTheirPixel) {
     for (const float bad : {0.0f, NAN}) {
