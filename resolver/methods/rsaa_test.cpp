@@ -130,10 +130,26 @@ TEST(Rsaa, GeometryFindsTheMasksOfAnalyticShots) {
             const SynthShot shot(o);
             for (const Sampling sampling : {Sampling::centre, Sampling::jittered}) {
                 const Frame f = shot.frame(2, sampling);
-                expectSameMasks(f, "rsaa");
-                EXPECT_TRUE(resolved("rsaa:mask=pass", f).samePixels(resolved("rsaa", f))) << scene << pattern;
+                expectSameMasks(f, "rsaa:mask=geometry");
+                EXPECT_TRUE(resolved("rsaa:mask=pass", f).samePixels(resolved("rsaa:mask=geometry", f))) << scene << pattern;
             }
         }
+}
+// The pass is read where it was made by the same parameters, and only there.
+TEST(Rsaa, AutoMasksAreThePassOfTheDefaults) {
+    Frame f = renderPlanes(parallelPlanes(kLine), 48, 31, d3dPattern(8));
+    for (int y = 0; y < 31; y++)
+        for (int x = 0; x < 48; x++) f.subSampleMask.at(x, y) ^= 1;  // nothing that geometry would give
+    const auto same = [&](const std::string& a, const std::string& b) {
+        return resolved("rsaa:" + a, f).samePixels(resolved("rsaa:" + b, f));
+    };
+    EXPECT_TRUE(same("tuning=off", "tuning=off,mask=pass"));
+    EXPECT_TRUE(same("tuning=off,training=halfPlanes", "tuning=off,training=halfPlanes,mask=pass"));
+    EXPECT_FALSE(same("tuning=off", "tuning=off,mask=geometry"));
+    for (const char* other : {"measure=depth", "measure=normal", "ids=off", "clustering=threshold", "sadpFloor=0.3"}) {
+        const std::string o = std::string("tuning=off,") + other;
+        EXPECT_TRUE(same(o, o + ",mask=geometry")) << other;
+    }
 }
 // The centre sample is where the jitter put it: the vectors between points must know.
 TEST(Rsaa, JitteredFramesGiveTheMasksOfTheirCentreSample) {
@@ -164,7 +180,7 @@ TEST(Rsaa, FarSurfacesKeepTheirMasks) {
 TEST(Rsaa, ObjectsOnOnePlaneDifferByTheirIds) {
     const TestScene decal{{{{0, 0, 1}, -4, glm::vec3(1.0f), 1}, {{0, 0, 1}, -4, glm::vec3(0.0f), 2}}, kLine.visible()};
     const Frame f = renderPlanes(decal, 48, 31, d3dPattern(8));
-    expectSameMasks(f, "rsaa");
+    expectSameMasks(f, "rsaa:mask=geometry");
     EXPECT_TRUE(resolved(geometryOnly(), f).samePixels(f.colorLinear));  // the talk's measure cannot see it
 }
 
@@ -255,7 +271,7 @@ TEST(Rsaa, DegenerateMasksAreAllOnesAndOffsetsStayWithinAPixel) {
     std::vector<DebugLayer> layers;
     for (const Frame& f : {renderPlanes(empty, 9, 5, d3dPattern(8)),
                            renderPlanes(wall, 9, 5, std::vector<glm::dvec2>(8, glm::dvec2(0)))}) {
-        resolved("rsaa", f, {}, &layers);
+        resolved("rsaa:mask=geometry", f, {}, &layers);
         for (int y = 0; y < 5; y++)
             for (int x = 0; x < 9; x++) EXPECT_EQ(layer(layers, "mask").at(x, y), 255.0f);
     }
@@ -267,8 +283,8 @@ TEST(Rsaa, NanAndZeroNormalsStayInTheirPixel) {
         Frame f = renderPlanes(parallelPlanes(kLine), 48, 31, d3dPattern(8));
         for (auto& p : f.subSamples[3].normalWorld.c) p.at(5, 5) = bad;
         for (auto& p : f.normalWorld.c) p.at(9, 20) = bad;
-        const Rgb good = resolved("rsaa", renderPlanes(parallelPlanes(kLine), 48, 31, d3dPattern(8)));
-        const Rgb out = resolved("rsaa", f);
+        const Rgb good = resolved("rsaa:mask=geometry", renderPlanes(parallelPlanes(kLine), 48, 31, d3dPattern(8)));
+        const Rgb out = resolved("rsaa:mask=geometry", f);
         for (int y = 0; y < 31; y++)
             for (int x = 0; x < 48; x++) {
                 ASSERT_TRUE(std::isfinite(out.c[0].at(x, y)));
@@ -312,6 +328,8 @@ TEST(Rsaa, AsksForWhatItReads) {
     EXPECT_EQ(passes("rsaa"), base | Pass::depth | Pass::normal | Pass::object);
     EXPECT_EQ(passes("rsaa:ids=off,measure=depth"), base | Pass::depth);
     EXPECT_EQ(passes("rsaa:mask=pass,tuning=off"), base);
+    EXPECT_EQ(passes("rsaa:tuning=off"), base);
+    EXPECT_EQ(passes("rsaa:mask=geometry,tuning=off"), base | Pass::depth | Pass::normal | Pass::object);
     EXPECT_EQ(passes("rsaa:mask=pass"), base | Pass::depth | Pass::normal | Pass::object);
 }
 
