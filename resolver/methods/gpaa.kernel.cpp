@@ -52,7 +52,7 @@ struct Gpaa {
         const T s = line.distance(x), covered = T(0.5) - abs(s), t = line.along(x);
         if (!(covered > T(0)) || !line.reaches(t)) return;
         const long o = long(y) * a.stride + x;
-        const bool after = s > T(-1e-3);  // to the right of or below the centre; on it: the same side
+        const bool after = s >= T(0);  // to the right of or below the centre, or on it
         if (hidden(line, t, after, o)) return;
         // What stands there comes from an earlier segment: its shift is the larger, the nearer it passes.
         if (a.keepNearest && !(covered > max(abs(T(a.shiftXPx[o])), abs(T(a.shiftYPx[o]))))) return;

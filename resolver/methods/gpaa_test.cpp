@@ -77,9 +77,8 @@ TEST(Gpaa, AnEdgeBlendsTheAreaBeyondIt) {
     expectShift(shiftAt("gpaa", ramp({{4.7f, 12, 5, 4.7f, -3, 5}})), 0.3f, 0);  // whichever end comes first
     expectShift(shiftAt("gpaa", ramp({vertical(5)})), 0, 0);                    // on the border: nothing beyond
     expectShift(shiftAt("gpaa", ramp({vertical(5)}), 5), 0, 0);
-    expectShift(shiftAt("gpaa", ramp({vertical(4.5f)})), 0.5f, 0);       // through the centre: toward +
-    expectShift(shiftAt("gpaa", ramp({vertical(4.4995f)})), 0.4995f, 0);  // as good as through it
-    expectShift(shiftAt("gpaa", ramp({vertical(4.498f)})), -0.498f, 0);
+    expectShift(shiftAt("gpaa", ramp({vertical(4.5f)})), 0.5f, 0);  // through the centre: toward +
+    expectShift(shiftAt("gpaa", ramp({vertical(4.4995f)})), -0.4995f, 0);
     // A slope of 1/4: s is measured along y at the pixel's own column.
     expectShift(shiftAt("gpaa", ramp({{0.5f, 3.7f, 5, 8.5f, 5.7f, 5}})), 0, 0.3f);
     expectShift(shiftAt("gpaa", ramp({{0.5f, 3.7f, 5, 8.5f, 5.7f, 5}}), 5), 0, 0.05f);
@@ -119,15 +118,15 @@ TEST(Gpaa, SegmentsEndHalfAPixelBeyondTheirEnds) {
         for (int y = 0; y < 9; y++) rows += shiftAt("gpaa", f, 4, y).x > 0 ? 'x' : '.';
         return rows;
     };
-    EXPECT_EQ(touchedRows(3.5f, 5.5f), "..xxxxx..");  // centres 3.5, 4.5, 5.5 lie on it, 2.5 and 6.5 ... half beyond
+    EXPECT_EQ(touchedRows(3.4f, 5.6f), "...xxx...");  // rows 3 to 5, whose centres lie on it
     EXPECT_EQ(touchedRows(3.1f, 5.9f), "...xxx...");
-    EXPECT_EQ(touchedRows(2.9f, 5.1f), "..xxx....");
+    EXPECT_EQ(touchedRows(2.9f, 5.1f), "..xxxx...");  // rows 2 and 5: 0.4 px beyond its ends
 }
 // The list is of the un-jittered picture; in a jittered frame everything is displaced by -jitter.
 TEST(Gpaa, JitteredFramesMoveTheList) {
     Frame f = ramp({vertical(4.7f)});
     f.jitterPx = {0.3, -0.2};
-    expectShift(shiftAt("gpaa", f), -0.4f + 0.3f, 0);
+    expectShift(shiftAt("gpaa", f), -0.4f, 0);  // from 0.2 right of the centre to 0.1 left of it
     f.segments = {horizontal(4.6f)};
     expectShift(shiftAt("gpaa", f), 0, 0.2f);
 }
