@@ -228,7 +228,7 @@ RunResults run(const ShotReader& shot, const RunOptions& o, Progress& progress) 
         results.sanitised = {
             {"colourNan", n.colourNan}, {"colourInf", n.colourInf}, {"colourNegative", n.colourNegative},
             {"depth", n.depth},         {"normal", n.normal},       {"motion", n.motion},
-            {"edges", n.edges}};
+            {"edges", n.edges},         {"segments", n.segments}};
     for (size_t k = 0; judgeTime && k < methods.size(); k++) results.methods[k].temporal = judges[k].result();
     finish(results, errors);
     writeResults(results, o.out);

@@ -99,7 +99,7 @@ void addSynth(CLI::App& app, Context& context) {
     c->add_option("--period", o->synth.period, "frames after which the jitter repeats")->check(CLI::Range(1, 1 << 20));
     c->add_flag("--centre", o->synth.centred, "subtract the mean of one period from the jitter");
     c->add_option("--subsamples", o->synth.subsamples,
-                  "pattern: d3d1, d3d2, d3d4, d3d8, d3d16, grid1..grid8; empty = none");
+                  "pattern: d3d1, d3d2, d3d4, d3d8, d3d16, quincunx, grid1..grid8; empty = none");
     c->add_flag("--subsample-color", o->synth.subsampleColor, "colour at the sub-samples, too");
     c->add_option("--inject-nan", o->nanPixel, "x and y of a NaN in the colour of every frame")->expected(2);
     c->add_option("--seed", o->synth.seed, "of the colours");

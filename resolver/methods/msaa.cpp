@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "image/error.h"
 #include "methods/msaa_kernels.h"
+#include "methods/resolve_filters.h"
 #include "methods/subsample_geometry.h"
 
 namespace aa {
@@ -44,6 +46,12 @@ class MsaaMethod : public Method {
           inverseLuminance_(p.choice("resolve") == "inverseLuminance"),
           order_(positionsPx.size()) {
         const auto position = [&](int k) { return positionsPx[size_t(slotsFirst_[size_t(k)])]; };
+        if (p.choice("filter") != "box") {
+            ResolveShape shape{.filter = ResolveFilter(p.choiceIndex("filter")), .diameterPx = p.real("diameter")};
+            taps_ = resolveTaps(withOwnDiameter(shape), positionsPx, id);
+            for (auto& tap : taps_)
+                tap.sample = int(std::find(slotsFirst_.begin(), slotsFirst_.end(), tap.sample) - slotsFirst_.begin());
+        }
         std::iota(order_.begin(), order_.end(), 0);
         nearestSlot_ = order_;
         for (int& nearest : nearestSlot_) {
@@ -63,8 +71,28 @@ class MsaaMethod : public Method {
         std::vector<SubSampleArgs> samples;
         for (const int k : slotsFirst_) samples.push_back(geometry.args().sample[k]);
         permuted.sample = samples.data();
-        MsaaArgs a{view(frame.colorLinear), view(out),   &permuted, kSameSurface,      slots_,  order_.data(),
-                   nearestSlot_.data(),     byGeometry_, centroid_, inverseLuminance_, nullptr, nullptr};
+        MsaaArgs a{.color = view(frame.colorLinear),
+                   .out = view(out),
+                   .geometry = &permuted,
+                   .rule = kSameSurface,
+                   .slots = slots_,
+                   .order = order_.data(),
+                   .nearestSlot = nearestSlot_.data(),
+                   .byGeometry = byGeometry_,
+                   .centroid = centroid_,
+                   .inverseLuminance = inverseLuminance_,
+                   .sampleColors = nullptr,
+                   .surfacesLayer = nullptr,
+                   .coverageLayer = nullptr};
+        std::vector<RgbOut> sampleColors;
+        if (!taps_.empty()) {
+            sampleColors_.resize(samples.size());
+            for (Rgb& c : sampleColors_) {
+                if (c.width() != frame.width || c.height() != frame.height) c = Rgb(frame.width, frame.height);
+                sampleColors.push_back(view(c));
+            }
+            a.sampleColors = sampleColors.data();
+        }
         layers_.clear();
         if (keepDebugLayers) {
             for (const char* layer : {"surfaces", "centreCoverage"})
@@ -72,15 +100,41 @@ class MsaaMethod : public Method {
             a.surfacesLayer = layers_[0].planes[0].row(0), a.coverageLayer = layers_[1].planes[0].row(0);
         }
         runKernel(msaaKernelsFor(exec.isa).resolve, exec, a, frame.height);
+        if (!taps_.empty()) filter(exec, out);
+    }
+    size_t stateBytes() const override {
+        size_t bytes = 0;
+        for (const Rgb& c : sampleColors_) bytes += c.bytes();
+        return bytes;
     }
     std::vector<DebugLayer> debugLayers() const override { return layers_; }
 
   private:
+    void filter(const Exec& exec, Rgb& out) {
+        std::vector<RgbIn> samples;
+        for (Rgb& c : sampleColors_) {
+            c.fillBorder();
+            samples.push_back(view(std::as_const(c)));
+        }
+        const ResolveArgs args{.samples = samples.data(),
+                               .sampleCount = int(samples.size()),
+                               .taps = taps_.data(),
+                               .tapCount = int(taps_.size()),
+                               .inverseLuminance = false,
+                               .luminanceScale = 1,
+                               .out = view(out),
+                               .stride = out.stride(),
+                               .width = out.width()};
+        runKernel(resolveKernelsFor(exec.isa).resolve, exec, args, out.height());
+    }
+
     std::string id_;
     std::vector<int> slotsFirst_;
     int slots_;
     bool byGeometry_, centroid_, inverseLuminance_;
     std::vector<int> order_, nearestSlot_;
+    std::vector<ResolveTap> taps_;   // of another filter than the box over the pixel
+    std::vector<Rgb> sampleColors_;  // what it filters: the colour of every sub-sample's surface
     std::vector<DebugLayer> layers_;
 };
 
@@ -89,8 +143,11 @@ std::vector<ParamSpec> surfaceParams() {
                         "methods/01 s.1.4"),
             choiceParam("shadingPosition", "centre", {"centre", "centroid"},
                         "where a partly covered surface is shaded when it covers the centre", "methods/01 s.1.4"),
+            filterParam("methods/01 s.1.4, 1.8"),
+            realParam("diameter", "0", 0, 8, "of the filter, px; 0: its own (lanczos 4, others 2)", "MSAAFilter",
+                      "filter=tent|gaussian|smoothstep|bspline|mitchell|catmullRom|cubic|blackmanHarris|sinc|lanczos"),
             choiceParam("resolve", "linear", {"linear", "inverseLuminance"},
-                        "weights of the colours: 1, or 1 / (1 + luminance)", "methods/01 s.1.4")};
+                        "weights of the colours: 1, or 1 / (1 + luminance)", "methods/01 s.1.4", "filter=box")};
 }
 PassSet surfacePasses(const Params& p) { return p.choice("key") == "surface" ? Pass::depth | Pass::normal : PassSet{}; }
 
@@ -112,7 +169,7 @@ MethodDescriptor msaaDescriptor() {
                                                     positionsPx);
             },
             .morePasses = surfacePasses,
-            .reachPx = 1};
+            .reachPx = 5};  // the widest filter's radius and a pixel
 }
 
 MethodDescriptor csaaDescriptor() {

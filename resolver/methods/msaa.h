@@ -7,6 +7,8 @@
 //
 // Surface key: no triangle ids are exported, so samples share a surface when they share the object, their normals agree
 // and they lie in one tangent plane (key=surface, the limits of SBAA); key=object takes whole objects.
+// filter: another resolve than the mean: every sub-sample gets its surface's colour, and the filters of resolve weigh
+// those of the neighbourhood; quincunx is two samples per pixel, half of the centre and an eighth of each corner.
 // csaa: only the first `slots` sub-samples hold a colour; the others count for the stored surface that they lie on, or
 // for the nearest slot when there is none (real slot patterns are undisclosed). Of the D3D patterns the first four
 // positions lie near the centre and miss most edges: 7.6 / 5.8 dB on half-planes for 8 / 16 samples; spread over the

@@ -53,9 +53,13 @@ struct Msaa {
         }
         // A coverage-only sample counts for a stored surface that it lies on, else for that of the nearest slot.
         AA_INLINE void cover(int k) {
+            surfaceOf[k] = surfaceOf[m.a.nearestSlot[k]];
             for (int i = 0; i < count; i++)
-                if (same(surfaces[i].seed, k)) return void(surfaces[i].count++);
-            surfaces[surfaceOf[m.a.nearestSlot[k]]].count++;
+                if (same(surfaces[i].seed, k)) {
+                    surfaceOf[k] = i;
+                    break;
+                }
+            surfaces[surfaceOf[k]].count++;
         }
         AA_INLINE void group() {
             for (int& s : surfaceOf) s = -1;
@@ -89,6 +93,11 @@ struct Msaa {
         const vec3<T> c = p.resolve();
         const long o = p.pixel.at();
         a.out.c[0][o] = float(c.x), a.out.c[1][o] = float(c.y), a.out.c[2][o] = float(c.z);
+        for (int k = 0; a.sampleColors && k < g.samples; k++) {
+            const vec3<T> own = p.surfaces[p.surfaceOf[k]].color, s = is_finite(own) ? own : c;
+            const RgbOut& to = a.sampleColors[k];
+            to.c[0][o] = float(s.x), to.c[1][o] = float(s.y), to.c[2][o] = float(s.z);
+        }
         if (!a.surfacesLayer) return;
         a.surfacesLayer[o] = float(p.count);
         a.coverageLayer[o] = p.surfaces[0].seed < 0 ? float(p.surfaces[0].count) / float(g.samples) : 0.0f;
@@ -100,6 +109,8 @@ struct Msaa {
                 Marks<R> marks;
                 markEdges(x0, y, marks);
                 copy_chunk<R>(a.color, a.out, g.width - x0, o);
+                for (int k = 0; a.sampleColors && k < g.samples; k++)
+                    copy_chunk<R>(a.color, a.sampleColors[k], g.width - x0, o);
                 if (a.surfacesLayer) {
                     fill_chunk<R>(1, a.surfacesLayer + o, g.width - x0);
                     fill_chunk<R>(1, a.coverageLayer + o, g.width - x0);

@@ -16,6 +16,7 @@ struct MsaaArgs {
     bool byGeometry;         // surfaces are objects split by geometry, or whole objects
     bool centroid;           // shade a partly covered surface at a covered sub-sample even if it covers the centre
     bool inverseLuminance;   // weight 1 / (1 + luminance)
+    const RgbOut* sampleColors;  // per sub-sample: where its surface's colour goes; null when no filter follows
     float *surfacesLayer, *coverageLayer;  // debug layers; null when not kept
 };
 struct MsaaKernels {

@@ -4,6 +4,7 @@
 
 #include "image/error.h"
 #include "methods/geometry_test_frames.h"
+#include "shot/patterns.h"
 
 namespace aa {
 namespace {
@@ -65,6 +66,55 @@ TEST(Msaa, ShadesAtTheCentreOrAtTheNearestCoveredSample) {
     const double w0 = 5 / (1 + 0.2126 * 100), w1 = 3 / (1 + 0.2126 * 3);
     EXPECT_NEAR(resolved("msaa:resolve=inverseLuminance", f).c[0].at(0, 0), (w0 * 100 + w1 * 3) / (w0 + w1), 1e-4);
 }
+// Filters weigh the sub-samples of the neighbourhood, each in its surface's one colour: on surfaces of one colour that is
+// `resolve` on supersampled colours.
+TEST(Msaa, FiltersWeighTheSurfacesColours) {
+    const Frame f = renderPlanes(parallelPlanes(kLine), 48, 31, d3dPattern(8));
+    Frame shaded = f;
+    for (auto& s : shaded.subSamples) s.colorLinear.fillBorder();
+    for (const char* filter : {"filter=tent", "filter=mitchell,diameter=4", "filter=lanczos", "filter=gaussian"}) {
+        const std::string options = std::string(":") + filter;
+        for (const char* method : {"msaa", "csaa"}) {
+            const Rgb a = resolved(method + options + (method[0] == 'c' ? ",slots=8" : ""), f);
+            const Rgb b = resolved("resolve" + options, shaded);
+            for (int y = 0; y < 31; y++)
+                for (int x = 0; x < 48; x++)
+                    ASSERT_NEAR(a.c[0].at(x, y), b.c[0].at(x, y), 1e-5) << method << options << x << "," << y;
+        }
+    }
+    // A pixel of one surface shows what it was shaded with, a firefly in a sub-sample's own colour counts for nothing.
+    const TestScene wall{{{{0, 0, 1}, -4, glm::vec3(0.25f), 1}}, [](double, double) { return 0; }};
+    Frame flat = renderPlanes(wall, 20, 9, d3dPattern(4));
+    for (auto& s : flat.subSamples) s.colorLinear = Rgb(20, 9, 1e6f);
+    EXPECT_TRUE(resolved("msaa:filter=tent", flat).samePixels(flat.colorLinear));
+    // A surface that is not finite is left out of its own pixel and reaches no other.
+    Frame broken = f;
+    for (auto& s : broken.subSamples) s.colorLinear.c[0].at(20, 15) = NAN;
+    const Rgb out = resolved("msaa:filter=tent", broken);
+    for (int x = 15; x < 26; x++) EXPECT_TRUE(std::isfinite(out.c[0].at(x, 15))) << x;
+}
+// Half of the centre sample and an eighth of the four corners, which are shared with three neighbours.
+TEST(Msaa, QuincunxSharesTheCorners) {
+    const auto positionsPx = patternPositionsPx("quincunx");
+    const TestScene scene{{{{0, 0, 1}, -4, glm::vec3(1.0f), 1}, {{0, 0, 1}, -9, glm::vec3(0.0f), 2}},
+                          [](double x, double) { return x < 2.2 ? 0 : 1; }};
+    const Frame f = renderPlanes(scene, 5, 4, positionsPx);
+    const Rgb out = resolved("msaa:filter=quincunx", f);
+    // Pixel 2 shows the dark surface; its left corners, at x = 2, are bright. Pixel 1 is bright, its right corners too.
+    EXPECT_EQ(f.colorLinear.c[0].at(2, 1), 0.0f);
+    EXPECT_FLOAT_EQ(out.c[0].at(2, 1), 0.25f);
+    EXPECT_EQ(out.c[0].at(1, 1), 1.0f);
+    EXPECT_EQ(out.c[0].at(3, 1), 0.0f);
+    Frame shaded = f;
+    for (auto& s : shaded.subSamples) s.colorLinear.fillBorder();
+    EXPECT_FLOAT_EQ(resolved("resolve:filter=quincunx", shaded).c[0].at(2, 1), 0.25f);
+    EXPECT_THROW(resolved("msaa:filter=quincunx", renderPlanes(scene, 5, 4, d3dPattern(2))), InputError);
+    EXPECT_THROW(resolved("resolve:filter=quincunx", renderPlanes(scene, 5, 4, d3dPattern(4))), InputError);
+    EXPECT_THROW(parseMethod("msaa:filter=quincunx,diameter=3"), UsageError);
+    EXPECT_THROW(parseMethod("msaa:filter=tent,resolve=inverseLuminance"), UsageError);
+    // Two samples per pixel that count as five. The corner alone (d3d2 has two inside) says less of the coverage.
+    EXPECT_NEAR(halfPlaneGainDb("msaa:filter=quincunx", positionsPx), 3.5, 3.5);
+}
 TEST(Csaa, CoverageSamplesCountForStoredSurfacesOnly) {
     const Frame f = halves();
     // Slots 0..3: 0, 1, 3 left and 2 right; coverage samples 4, 5 left and 6, 7 right find their surface.
@@ -103,6 +153,21 @@ TEST(Msaa, ExtremeColoursAndEmptyPixels) {
     const TestScene empty{{}, [](double, double) { return -1; }, glm::vec3(0.3f)};
     const Frame sky = renderPlanes(empty, 9, 5, d3dPattern(8));
     EXPECT_TRUE(resolved("msaa", sky).samePixels(sky.colorLinear));
+}
+// methods/08 s.8.3: the weights sum to 1 however many surfaces share the pixel, and nothing is clamped.
+TEST(Msaa, WeightsSumToOneAndFirefliesCountInFull) {
+    const TestScene crowd{{{{0, 0, 1}, -4, glm::vec3(0.1f), 1},
+                           {{0, 0, 1}, -5, glm::vec3(0.1f), 2},
+                           {{0, 0, 1}, -6, glm::vec3(0.1f), 3},
+                           {{0, 0, 1}, -7, glm::vec3(0.1f), 4}},
+                          [](double x, double y) { return int(std::floor(x * 7.3) + std::floor(y * 5.7)) & 3; }};
+    Frame f = renderPlanes(crowd, 12, 9, d3dPattern(16));
+    for (const char* method : {"msaa", "csaa", "sbaa", "sbaa:surfaces=4", "msaa:filter=tent", "msaa:key=object"})
+        EXPECT_TRUE(resolved(method, f).samePixels(f.colorLinear)) << method;
+    Frame bright = renderPlanes(parallelPlanes({1, 0, 2.9}), 5, 3, d3dPattern(16));
+    EXPECT_EQ(bright.colorLinear.c[0].at(2, 1), 0.0f);
+    for (auto& s : bright.subSamples) s.colorLinear.c[0].at(2, 1) = 1e6f;
+    EXPECT_FLOAT_EQ(resolved("msaa", bright).c[0].at(2, 1), 62500.0f);  // one of 16 samples, 7 sixteenths right
 }
 TEST(Msaa, LayersShowSurfacesAndCoverage) {
     std::vector<DebugLayer> layers;

@@ -6,6 +6,7 @@
 #include "methods/edge_blur.h"
 #include "methods/fxaa.h"
 #include "methods/gbaa.h"
+#include "methods/gpaa.h"
 #include "methods/master.h"
 #include "methods/method.h"
 #include "methods/mlaa.h"
@@ -52,6 +53,7 @@ const std::vector<MethodDescriptor>& registry() {
         csaaDescriptor(),
         dmsaaDescriptor(),
         gbaaDescriptor(),
+        gpaaDescriptor(),
         d2eDescriptor(),
         sraaDescriptor(),
         sbaaDescriptor(),

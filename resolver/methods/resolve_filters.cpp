@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "image/error.h"
+#include "shot/patterns.h"
 
 namespace aa {
 namespace {
@@ -48,11 +49,24 @@ double filterWeight(const ResolveShape& s, double x) {
             return sincWeight((s.textbookSinc ? 1 : 2) * x * radius);
         case ResolveFilter::lanczos:
             return sincWeight(x * radius) * sincWeight(x * radius / s.lobes);
+        case ResolveFilter::quincunx:  // no function of the distance
+            break;
     }
     return 0;
 }
 
-std::vector<ResolveTap> resolveTaps(const ResolveShape& shape, const std::vector<glm::dvec2>& positions) {
+namespace {
+std::vector<ResolveTap> quincunxTaps(const std::vector<glm::dvec2>& positions, std::string_view reader) {
+    if (positions != patternPositionsPx("quincunx"))
+        throw InputError(std::string(reader) + ": filter=quincunx reads the sub-sample pattern quincunx (the centre " +
+                         "and one corner), and the shot has another one; export it with that pattern");
+    return {{0, 0, 0, 0.5f}, {0, 0, 1, 0.125f}, {1, 0, 1, 0.125f}, {0, 1, 1, 0.125f}, {1, 1, 1, 0.125f}};
+}
+}  // namespace
+
+std::vector<ResolveTap> resolveTaps(const ResolveShape& shape, const std::vector<glm::dvec2>& positions,
+                                    std::string_view reader) {
+    if (shape.filter == ResolveFilter::quincunx) return quincunxTaps(positions, reader);
     struct Candidate {
         ResolveTap tap;
         double weight, distance;
@@ -85,6 +99,21 @@ std::vector<ResolveTap> resolveTaps(const ResolveShape& shape, const std::vector
     return taps;
 }
 
+ParamSpec filterParam(std::string_view source) {
+    return choiceParam("filter", "box",
+                       {"box", "tent", "gaussian", "smoothstep", "bspline", "mitchell", "catmullRom", "cubic",
+                        "blackmanHarris", "sinc", "lanczos", "quincunx"},
+                       "shape of the filter; quincunx needs its own pattern", source);
+}
+
+ResolveShape withOwnDiameter(ResolveShape shape) {
+    if (shape.diameterPx == 0)
+        shape.diameterPx = shape.filter == ResolveFilter::box       ? 1
+                           : shape.filter == ResolveFilter::lanczos ? 2.0 * shape.lobes
+                                                                    : 2;
+    return shape;
+}
+
 namespace {
 class Resolve : public Method {
   public:
@@ -97,19 +126,16 @@ class Resolve : public Method {
         shape.lobes = p.integer("lobes");
         shape.textbookSinc = p.choice("sincZeros") == "pixel";
         shape.diameterPx = p.real("diameter");
-        if (shape.diameterPx == 0)
-            shape.diameterPx = shape.filter == ResolveFilter::box       ? 1
-                               : shape.filter == ResolveFilter::lanczos ? 2.0 * shape.lobes
-                                                                        : 2;
-        taps_ = resolveTaps(shape, shot.subSamplePositionsPx);
+        taps_ = resolveTaps(withOwnDiameter(shape), shot.subSamplePositionsPx);
         inverseLuminance_ = p.flag("inverseLuminance");
         luminanceScale_ = float(std::exp2(p.real("exposure")));
     }
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         std::vector<RgbIn> samples;
         for (const auto& s : frame.subSamples) samples.push_back(view(s.colorLinear));
-        const ResolveArgs args{samples.data(),  taps_.data(), int(taps_.size()), inverseLuminance_,
-                               luminanceScale_, view(out),    out.stride(),      frame.width};
+        const ResolveArgs args{samples.data(),    int(samples.size()), taps_.data(), int(taps_.size()),
+                               inverseLuminance_, luminanceScale_,     view(out),    out.stride(),
+                               frame.width};
         runKernel(resolveKernelsFor(exec.isa).resolve, exec, args, frame.height);
     }
 
@@ -127,12 +153,11 @@ MethodDescriptor resolveDescriptor() {
             .summary = "A reconstruction filter over the shaded sub-samples of the pixel and its neighbours.",
             .source = "MSAAFilter; methods/01 s.1.8",
             .passes = Pass::subsamples | Pass::subsampleColor,
-            .params = {choiceParam("filter", "box",
-                                   {"box", "tent", "gaussian", "smoothstep", "bspline", "mitchell", "catmullRom",
-                                    "cubic", "blackmanHarris", "sinc", "lanczos"},
-                                   "shape of the filter", "methods/01 s.1.8"),
+            .params = {filterParam("methods/01 s.1.8"),
                        realParam("diameter", "0", 0, 8, "px; 0: the filter's own (box 1, lanczos 2 * lobes, others 2)",
-                                 "MSAAFilter"),
+                                 "MSAAFilter",
+                                 "filter=box|tent|gaussian|smoothstep|bspline|mitchell|catmullRom|cubic|blackmanHarris|"
+                                 "sinc|lanczos"),
                        realParam("sigma", "0.5", 0.05, 4, "width in radii", "MSAAFilter", "filter=gaussian"),
                        realParam("b", "0.3333", 0, 1, "B of the cubic", "Mitchell and Netravali 1988", "filter=cubic"),
                        realParam("c", "0.3333", 0, 1, "C of the cubic", "Mitchell and Netravali 1988", "filter=cubic"),

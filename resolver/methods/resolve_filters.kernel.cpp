@@ -11,6 +11,13 @@ AA_INLINE vec3<R> radiance(const ResolveArgs& a, const ResolveTap& tap, long o) 
     const vec3<R> zero(R(Elem<R>(0)));
     return max(zero, vec3<R>(load<R>(s.c[0] + p), load<R>(s.c[1] + p), load<R>(s.c[2] + p)));
 }
+// Mean of the pixel's own sub-samples.
+template <class R>
+AA_INLINE vec3<R> boxMean(const ResolveArgs& a, long o) {
+    vec3<R> sum(R(Elem<R>(0)));
+    for (int k = 0; k < a.sampleCount; k++) sum = sum + radiance<R>(a, {0, 0, k, 1.0f}, o);
+    return sum / R(Elem<R>(a.sampleCount));
+}
 template <class R>
 __attribute__((flatten)) void resolveRows(const ResolveArgs& a, int y0, int y1) {
     using T = Elem<R>;
@@ -29,9 +36,10 @@ __attribute__((flatten)) void resolveRows(const ResolveArgs& a, int y0, int y1) 
                 sum = sum + (c - base) * w;
                 total = total + w;
             }
-            // Negative lobes may cancel the sum: then the first sample alone is left.
+            // Negative lobes may cancel the sum: then the box is left.
             const auto usable = abs(total) >= R(T(1e-5));
-            vec3<R> c = base + select(usable, sum / select(usable, total, one), vec3<R>(zero));
+            vec3<R> c = base + sum / select(usable, total, one);
+            if (mask_bits<R>(negate(usable))) c = select(usable, c, boxMean<R>(a, o));
             c = max(vec3<R>(zero), c);
             store(c.x, a.out.c[0] + o);
             store(c.y, a.out.c[1] + o);

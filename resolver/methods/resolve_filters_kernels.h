@@ -10,6 +10,7 @@ struct ResolveTap {
 };
 struct ResolveArgs {
     const RgbIn* samples;  // linear colours, one image per sub-sample; borders filled
+    int sampleCount;
     const ResolveTap* taps;
     int tapCount;
     bool inverseLuminance;  // weight * 1 / (1 + Y601 * scale)

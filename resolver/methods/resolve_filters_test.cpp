@@ -59,6 +59,31 @@ TEST(ResolveFilters, FootprintReachesIntoNeighbours) {
     for (const auto& t : resolveTaps({F::box, 3}, {{0, 0}})) EXPECT_LE(std::max(std::abs(t.dx), std::abs(t.dy)), 1);
     EXPECT_EQ(resolveTaps({F::box, 3}, {{0, 0}}).size(), 9u);
 }
+// methods/08 s.8.3: lobes that cancel leave the box, for all pixels or for the one where luminance weights cancel.
+TEST(ResolveFilters, CancellingWeightsLeaveTheBox) {
+    const auto taps = resolveTaps({F::sinc, 1}, {{0.5, 0}, {-0.5, 0}});  // both where the sinc is zero
+    ASSERT_EQ(taps.size(), 2u);
+    for (const auto& t : taps) EXPECT_EQ(t.weight, 0.5f);
+    // Two samples of weight +w and -w/4 whose luminances make up for it.
+    const std::vector<glm::dvec2> positions = {{0, 0}, {0.375, 0}};
+    const auto catmull = resolveTaps({F::catmullRom, 1}, positions);
+    ASSERT_EQ(catmull.size(), 2u);
+    const double w0 = catmull[0].weight, w1 = catmull[1].weight;
+    ASSERT_LT(w1, 0);
+    Frame f;
+    f.width = 3, f.height = 2;
+    f.subSamplePositionsPx = positions;
+    // w0 / (1 + Y0) + w1 / (1 + Y1) = 0 with Y1 = 0.
+    const float y0 = float(-w0 / w1 - 1);
+    f.subSamples.resize(2);
+    f.subSamples[0].colorLinear = Rgb(3, 2, y0), f.subSamples[1].colorLinear = Rgb(3, 2, 0.0f);
+    for (auto& s : f.subSamples) s.colorLinear.fillBorder();
+    Rgb out(3, 2);
+    parseMethod("resolve:filter=catmullRom,diameter=1,inverseLuminance=on")
+        .create({.width = 3, .height = 2, .subSamplePositionsPx = positions})
+        ->resolve(f, {}, out);
+    EXPECT_FLOAT_EQ(out.c[0].at(1, 1), y0 / 2);
+}
 TEST(ResolveFilters, ResolvesAnImage) {
     Frame f;
     f.width = 6, f.height = 5;

@@ -11,10 +11,12 @@
 namespace aa {
 namespace {
 
+constexpr double kMaskPassFloor = 0.2;  // methods/05 s.5.5.2; blender_addon/aa_resolve/subsamples.py
+
 struct Options {
     Dissimilarity measure;
     float floor;
-    bool adaptive, tuning, tuneAdaptive, quadrant, maskPass, ids;
+    bool adaptive, tuning, tuneAdaptive, quadrant, ids, maskPass;
     RsaaTraining training;
     explicit Options(const Params& p)
         : measure(Dissimilarity(p.choiceIndex("measure"))),
@@ -25,9 +27,13 @@ struct Options {
           tuning(p.choice("tuning") != "off"),
           tuneAdaptive(p.choice("tuning") == "adaptive"),
           quadrant(p.choice("neighbours") == "quadrant"),
-          maskPass(p.choice("mask") == "pass"),
           ids(p.flag("ids")),
+          maskPass(p.choice("mask") == "pass" || (p.choice("mask") == "auto" && asTheMaskPass(p))),
           training(RsaaTraining(p.choiceIndex("training"))) {}
+    // Whether computing the masks would give the mask pass, which was made by the defaults.
+    bool asTheMaskPass(const Params& p) const {
+        return measure == Dissimilarity::sadp && p.real("sadpFloor") == kMaskPassFloor && adaptive && ids;
+    }
     bool readsGeometry() const { return !maskPass || tuning; }
     GeometryNeeds needs() const {
         return {.normals = measure != Dissimilarity::depth, .ids = ids, .camera = measure == Dissimilarity::sadp};
@@ -126,7 +132,7 @@ MethodDescriptor rsaaDescriptor() {
                              "methods/05 s.5.5", "measure=normal"),
                    choiceParam("clustering", "adaptive", {"adaptive", "threshold"},
                                "similar or different by one k-means iteration, or by the floor alone",
-                               "seed 004 slides 20-22", "mask=geometry"),
+                               "seed 004 slides 20-22", "mask=auto|geometry"),
                    choiceParam(
                        "tuning", "on", {"on", "off", "adaptive"},
                        "drop different sub-samples that no neighbour shows; adaptive: nearer than half of the own "
@@ -135,7 +141,8 @@ MethodDescriptor rsaaDescriptor() {
                    choiceParam("neighbours", "quadrant", {"quadrant", "nearest"},
                                "who may show it: the three pixels on the sub-sample's side, or the one nearest to it",
                                "ours: nearest costs 1.8 dB on isolated edges", "tuning=on|adaptive"),
-                   choiceParam("mask", "geometry", {"geometry", "pass"}, "masks computed here, or the shot's mask pass",
+                   choiceParam("mask", "auto", {"auto", "geometry", "pass"},
+                               "computed here, or the shot's mask pass; auto: the pass where both are the same",
                                "methods/05 s.5.5"),
                    flagParam("ids", true, "sub-samples on another object are different whatever their geometry",
                              "ours: the shot's mask pass does so"),

@@ -161,10 +161,11 @@ struct Rsaa {
         const T half = a.tuneAdaptive ? outside(k, x, y, x, y).dissimilarity() * T(0.5) : T(0);
         const T limit = max(T(a.floor), half);
         const RsaaNeighbours& n = a.neighbours[k];
+        const uint32_t sampleObject = g.objectId ? g.sample[k].objectId[long(y) * a.stride + x] : 0;
         for (int i = 0; i < n.count; i++) {
             const int qx = clampIndex(x + n.at[i][0], a.width), qy = clampIndex(y + n.at[i][1], a.height);
+            if (g.objectId && g.objectId[long(qy) * a.stride + qx] != sampleObject) continue;
             const Outside to = outside(k, x, y, qx, qy);
-            if (to.otherObject) continue;
             if (!may_differ<measure>(to.neighbour, to.own, to.way, limit) || to.dissimilarity() < limit) return true;
         }
         return false;

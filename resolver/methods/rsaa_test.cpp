@@ -4,6 +4,8 @@
 
 #include "image/error.h"
 #include "methods/geometry_test_frames.h"
+#include "methods/rsaa_lut_data.h"
+#include "shot/synth.h"
 
 namespace aa {
 namespace {
@@ -118,6 +120,37 @@ TEST(Rsaa, GeometryFindsTheMasksOfTheMaskPass) {
         }
     }
 }
+// The mask pass of a shot, jittered or not, is what its geometry says: whole pictures, several surfaces in a pixel.
+TEST(Rsaa, GeometryFindsTheMasksOfAnalyticShots) {
+    for (const char* scene : {"half_planes", "two_planes", "moving", "thin_lines", "circles", "thin_motion"})
+        for (const char* pattern : {"d3d4", "d3d8", "d3d16"}) {
+            SynthOptions o;
+            o.scene = scene, o.subsamples = pattern;
+            o.width = 121, o.height = 77, o.frames = 3;
+            const SynthShot shot(o);
+            for (const Sampling sampling : {Sampling::centre, Sampling::jittered}) {
+                const Frame f = shot.frame(2, sampling);
+                expectSameMasks(f, "rsaa:mask=geometry");
+                EXPECT_TRUE(resolved("rsaa:mask=pass", f).samePixels(resolved("rsaa:mask=geometry", f))) << scene << pattern;
+            }
+        }
+}
+// The pass is read where it was made by the same parameters, and only there.
+TEST(Rsaa, AutoMasksAreThePassOfTheDefaults) {
+    Frame f = renderPlanes(parallelPlanes(kLine), 48, 31, d3dPattern(8));
+    for (int y = 0; y < 31; y++)
+        for (int x = 0; x < 48; x++) f.subSampleMask.at(x, y) ^= 1;  // nothing that geometry would give
+    const auto same = [&](const std::string& a, const std::string& b) {
+        return resolved("rsaa:" + a, f).samePixels(resolved("rsaa:" + b, f));
+    };
+    EXPECT_TRUE(same("tuning=off", "tuning=off,mask=pass"));
+    EXPECT_TRUE(same("tuning=off,training=halfPlanes", "tuning=off,training=halfPlanes,mask=pass"));
+    EXPECT_FALSE(same("tuning=off", "tuning=off,mask=geometry"));
+    for (const char* other : {"measure=depth", "measure=normal", "ids=off", "clustering=threshold", "sadpFloor=0.3"}) {
+        const std::string o = std::string("tuning=off,") + other;
+        EXPECT_TRUE(same(o, o + ",mask=geometry")) << other;
+    }
+}
 // The centre sample is where the jitter put it: the vectors between points must know.
 TEST(Rsaa, JitteredFramesGiveTheMasksOfTheirCentreSample) {
     for (const glm::dvec2 jitterPx : {glm::dvec2(0.375, -0.277), glm::dvec2(-0.4375, 0.389)}) {
@@ -147,7 +180,7 @@ TEST(Rsaa, FarSurfacesKeepTheirMasks) {
 TEST(Rsaa, ObjectsOnOnePlaneDifferByTheirIds) {
     const TestScene decal{{{{0, 0, 1}, -4, glm::vec3(1.0f), 1}, {{0, 0, 1}, -4, glm::vec3(0.0f), 2}}, kLine.visible()};
     const Frame f = renderPlanes(decal, 48, 31, d3dPattern(8));
-    expectSameMasks(f, "rsaa");
+    expectSameMasks(f, "rsaa:mask=geometry");
     EXPECT_TRUE(resolved(geometryOnly(), f).samePixels(f.colorLinear));  // the talk's measure cannot see it
 }
 
@@ -231,13 +264,27 @@ TEST(Rsaa, DegenerateGeometryKeepsTheColour) {
         EXPECT_TRUE(resolved(method, f).samePixels(f.colorLinear)) << measure;
     }
 }
+// Their masks are all ones, and no offset of any table leaves the neighbouring pixels (methods/08 s.8.3).
+TEST(Rsaa, DegenerateMasksAreAllOnesAndOffsetsStayWithinAPixel) {
+    const TestScene empty{{}, [](double, double) { return -1; }, glm::vec3(0.3f)};
+    const TestScene wall{{{{0, 0, 1}, -4, glm::vec3(0.3f), 1}}, [](double, double) { return 0; }};
+    std::vector<DebugLayer> layers;
+    for (const Frame& f : {renderPlanes(empty, 9, 5, d3dPattern(8)),
+                           renderPlanes(wall, 9, 5, std::vector<glm::dvec2>(8, glm::dvec2(0)))}) {
+        resolved("rsaa:mask=geometry", f, {}, &layers);
+        for (int y = 0; y < 5; y++)
+            for (int x = 0; x < 9; x++) EXPECT_EQ(layer(layers, "mask").at(x, y), 255.0f);
+    }
+    for (const size_t samples : {4u, 8u, 16u})
+        for (const float v : rsaaTable(samples, shippedRsaaEntries(samples))) ASSERT_LE(std::abs(v), 1.0f) << samples;
+}
 TEST(Rsaa, NanAndZeroNormalsStayInTheirPixel) {
     for (const float bad : {0.0f, NAN}) {
         Frame f = renderPlanes(parallelPlanes(kLine), 48, 31, d3dPattern(8));
         for (auto& p : f.subSamples[3].normalWorld.c) p.at(5, 5) = bad;
         for (auto& p : f.normalWorld.c) p.at(9, 20) = bad;
-        const Rgb good = resolved("rsaa", renderPlanes(parallelPlanes(kLine), 48, 31, d3dPattern(8)));
-        const Rgb out = resolved("rsaa", f);
+        const Rgb good = resolved("rsaa:mask=geometry", renderPlanes(parallelPlanes(kLine), 48, 31, d3dPattern(8)));
+        const Rgb out = resolved("rsaa:mask=geometry", f);
         for (int y = 0; y < 31; y++)
             for (int x = 0; x < 48; x++) {
                 ASSERT_TRUE(std::isfinite(out.c[0].at(x, y)));
@@ -281,6 +328,8 @@ TEST(Rsaa, AsksForWhatItReads) {
     EXPECT_EQ(passes("rsaa"), base | Pass::depth | Pass::normal | Pass::object);
     EXPECT_EQ(passes("rsaa:ids=off,measure=depth"), base | Pass::depth);
     EXPECT_EQ(passes("rsaa:mask=pass,tuning=off"), base);
+    EXPECT_EQ(passes("rsaa:tuning=off"), base);
+    EXPECT_EQ(passes("rsaa:mask=geometry,tuning=off"), base | Pass::depth | Pass::normal | Pass::object);
     EXPECT_EQ(passes("rsaa:mask=pass"), base | Pass::depth | Pass::normal | Pass::object);
 }
 

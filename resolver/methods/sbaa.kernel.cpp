@@ -39,11 +39,14 @@ struct Sbaa {
             clusters[i].coverage += clusters[j].coverage;
             clusters[j] = clusters[--count];
         }
-        // Pieces of one surface, whatever object they belong to.
+        // Pieces of one surface.
+        AA_INLINE bool like(int k, int l) const {
+            return (!m.a.ids || pixel.sameObject(k, l)) && pixel.sameGeometry(k, l);
+        }
         AA_INLINE void mergeLike() {
             for (int i = 0; i < count; i++)
                 for (int j = i + 1; j < count;)
-                    if (pixel.sameGeometry(clusters[i].representative, clusters[j].representative))
+                    if (like(clusters[i].representative, clusters[j].representative))
                         merge(i, j), j = i + 1;
                     else
                         j++;
@@ -103,13 +106,19 @@ struct Sbaa {
         const vec3<T> c = p.resolve();
         const long o = p.pixel.at();
         a.out.c[0][o] = float(c.x), a.out.c[1][o] = float(c.y), a.out.c[2][o] = float(c.z);
-        if (a.clustersLayer) a.clustersLayer[o] = float(before), a.surfacesLayer[o] = float(p.count);
+        if (!a.clustersLayer) return;
+        a.clustersLayer[o] = float(before), a.surfacesLayer[o] = float(p.count);
+        const Cluster* largest = p.clusters;
+        for (int i = 1; i < p.count; i++)
+            if (p.clusters[i].coverage > largest->coverage) largest = p.clusters + i;
+        a.largestLayer[o] = float(largest->members);
     }
     AA_INLINE void markEdges(int x0, int y, Marks<R>& marks) const {
         mark<R>(
             g, x0, y, marks, [&](int k, int x, long o) __attribute__((always_inline)) {
-                return negate(same_surface(a.merge, centre_point<R>(g, o), sample_point<R>(g, k, o),
-                                           to_sample(g, columns<R>(x), y, k)));
+                const auto apart = negate(same_surface(a.merge, centre_point<R>(g, o), sample_point<R>(g, k, o),
+                                                       to_sample(g, columns<R>(x), y, k)));
+                return a.ids ? either(apart, ids_differ<R>(g.objectId + o, g.sample[k].objectId + o)) : apart;
             });
     }
     AA_INLINE void rows(int y0, int y1) const {
@@ -122,6 +131,7 @@ struct Sbaa {
                 if (a.clustersLayer) {
                     fill_chunk<R>(1, a.clustersLayer + o, g.width - x0);
                     fill_chunk<R>(1, a.surfacesLayer + o, g.width - x0);
+                    fill_chunk<R>(float((1u << g.samples) - 1u), a.largestLayer + o, g.width - x0);
                 }
                 for (int i = 0; i < chunk_groups<R>(g.width - x0); i++)
                     for (int lane = 0; marks.lanes[i] >> lane; lane++) {

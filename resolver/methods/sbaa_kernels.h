@@ -11,7 +11,9 @@ struct SbaaArgs {
     const GeometryArgs* geometry;
     SurfaceRule merge;
     int surfaces;                          // kept per pixel
-    float *clustersLayer, *surfacesLayer;  // debug layers: before and after the reduction; null when not kept
+    bool ids;                              // objects stay apart before the reduction
+    // Debug layers; null when not kept: surfaces before and after the reduction, sub-samples of the one that covers most.
+    float *clustersLayer, *surfacesLayer, *largestLayer;
 };
 struct SbaaKernels {
     RowKernel<SbaaArgs> resolve;

@@ -35,6 +35,9 @@ TEST(Sbaa, KeepsAsManySurfacesAsAsked) {
         resolved("sbaa:surfaces=" + std::to_string(k), f, {}, &layers);
         EXPECT_EQ(layer(layers, "clusters").at(0, 0), 4.0f);
         EXPECT_EQ(layer(layers, "surfaces").at(0, 0), float(k));
+        if (k == 4) {
+            EXPECT_EQ(layer(layers, "largest").at(0, 0), float(1 << 3 | 1 << 4 | 1 << 5));
+        }
     }
     // Alone, everything has the colour of the sub-sample nearest to the centroid (0.5, 1)/16, which is 0.
     EXPECT_FLOAT_EQ(resolved("sbaa:surfaces=1", f).c[0].at(0, 0), 8.0f);
@@ -47,11 +50,22 @@ TEST(Sbaa, AsManySurfacesAsSamplesIsMsaa) {
             for (int x = 0; x < 48; x++) ASSERT_NEAR(a.c[0].at(x, y), b.c[0].at(x, y), 1e-6);
     }
 }
-// Pieces of one plane are one surface, whatever their object: a decal is not anti-aliased.
+// Pieces of one plane are one surface. Two objects are two, unless geometry alone decides: then a decal is not
+// anti-aliased.
 TEST(Sbaa, CoplanarPiecesMerge) {
     const TestScene decal{{{{0, 0, 1}, -4, glm::vec3(1.0f), 1}, {{0, 0, 1}, -4, glm::vec3(0.0f), 2}}, kLine.visible()};
     const Frame f = renderPlanes(decal, 48, 31, d3dPattern(8));
-    EXPECT_TRUE(resolved("sbaa", f).samePixels(f.colorLinear));
+    EXPECT_TRUE(resolved("sbaa:ids=off", f).samePixels(f.colorLinear));
+    const Rgb a = resolved("sbaa", f), b = resolved("msaa", f);
+    for (int y = 0; y < 31; y++)
+        for (int x = 0; x < 48; x++) ASSERT_NEAR(a.c[0].at(x, y), b.c[0].at(x, y), 1e-6);
+    EXPECT_FALSE(a.samePixels(f.colorLinear));
+    // Far away a relief is shallower than the plane's tolerance, which is relative to the depth.
+    TestScene relief = decal;
+    relief.surfaces[0].distance = -46, relief.surfaces[1].distance = -46.3;
+    const Frame far = renderPlanes(relief, 48, 31, d3dPattern(8));
+    EXPECT_TRUE(resolved("sbaa:ids=off", far).samePixels(far.colorLinear));
+    EXPECT_FALSE(resolved("sbaa", far).samePixels(far.colorLinear));
 }
 TEST(Sbaa, EmptyAndBrokenGeometry) {
     const TestScene empty{{}, [](double, double) { return -1; }, glm::vec3(0.3f)};

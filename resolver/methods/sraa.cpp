@@ -16,14 +16,14 @@ class Sraa : public Method {
         : radius_(p.integer("radius")),
           max_(p.choice("metric") == "max"),
           plainDepth_(p.choice("distance") == "depth"),
-          ids_(p.flag("ids")),
+          ids_(SraaIds(p.choiceIndex("ids"))),
           sigmaX_(p.real("sigmaX")),
           sigmaZ_(p.real("sigmaZ")),
           sigmaN_(p.real("sigmaN")),
           sharpness_(p.real("sharpness")) {}
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
-        const GeometryViews geometry(frame, {.normals = true, .ids = ids_, .camera = !plainDepth_},
+        const GeometryViews geometry(frame, {.normals = true, .ids = ids_ != SraaIds::off, .camera = !plainDepth_},
                                      "sraa:distance=plane");
         const auto exponent = [](double sigma) { return float(kLog2E / (2 * sigma * sigma)); };
         SraaArgs a{.color = view(frame.colorLinear),
@@ -50,7 +50,8 @@ class Sraa : public Method {
 
   private:
     int radius_;
-    bool max_, plainDepth_, ids_;
+    bool max_, plainDepth_;
+    SraaIds ids_;
     double sigmaX_, sigmaZ_, sigmaN_, sharpness_;
     std::vector<DebugLayer> layers_;
 };
@@ -75,12 +76,13 @@ MethodDescriptor sraaDescriptor() {
                              "metric=product"),
                    realParam("sigmaN", "0.25", 0.001, 10, "of 1 - cosine", "methods/05 s.5.4", "metric=product"),
                    realParam("sharpness", "50", 0.1, 10000, "T of the max metric", "methods/05 s.5.4", "metric=max"),
-                   flagParam("ids", false, "other objects at another depth share nothing", "methods/05 s.5.4")},
+                   choiceParam("ids", "off", {"off", "depth", "always"},
+                               "other objects share nothing: those at another depth, or all", "methods/05 s.5.4; always is ours")},
         .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
             requireSubSamples(shot.subSamplePositionsPx, "sraa", 64);
             return std::make_unique<Sraa>(p);
         },
-        .morePasses = [](const Params& p) { return p.flag("ids") ? PassSet(Pass::object) : PassSet{}; },
+        .morePasses = [](const Params& p) { return p.choice("ids") == "off" ? PassSet{} : PassSet(Pass::object); },
         .reachPx = 3};
 }
 }  // namespace aa

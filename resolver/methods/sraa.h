@@ -6,7 +6,8 @@
 //   tangent
 //            plane relative to i's depth (distance=depth: relative depth difference), dn = 1 - cosine of the normals
 //   max      exp(-T max(1 - cosine, dz)), as in the authors' published kernel
-// Surface and background share nothing. Choices of ours: the three sigmas (methods/11 #43); pixels outside the picture
+// Surface and background share nothing; nor do objects, with ids (always: the sigmas do not see a shallow relief from
+// afar). Choices of ours: the three sigmas (methods/11 #43); pixels outside the picture
 // are left out; a sub-sample without any usable pixel takes the pixel's own colour.
 #pragma once
 #include "methods/method.h"

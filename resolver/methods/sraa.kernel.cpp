@@ -38,9 +38,10 @@ struct Sraa {
         const auto bothEmpty = both(emptyOwn, emptyOther);
         R log = -(spatial + select(bothEmpty, zero, geometry));
         log = select(both(either(emptyOwn, emptyOther), negate(bothEmpty)), unusable(), log);
-        if (a.ids) {
+        if (a.ids != SraaIds::off) {
             const long o = long(y) * g.stride + x;
-            const auto otherObject = both(ids_differ<R>(s.objectId + o, g.objectId + q), relative > R(T(a.depthSigma)));
+            auto otherObject = ids_differ<R>(s.objectId + o, g.objectId + q);
+            if (a.ids == SraaIds::depth) otherObject = both(otherObject, relative > R(T(a.depthSigma)));
             log = select(otherObject, unusable(), log);
         }
         const R column = columns<R>(x + dx);

@@ -9,6 +9,7 @@
 #include "shot/check_jitter.h"
 #include "shot/check_motion.h"
 #include "shot/reader.h"
+#include "shot/segments.h"
 
 namespace aa {
 using glm::dvec2;
@@ -141,11 +142,23 @@ class ShotCheck {
         count(f.motionYPx, "motion.Y");
         count(f.edgeXPx, "edge.X");
         count(f.edgeYPx, "edge.Y");
+        segmentNumbers(f, prefix);
         for (size_t k = 0; k < f.subSamples.size(); k++) {
             count(f.subSamples[k].depthView, subSampleChannel(k, "Z"));
             rgb(f.subSamples[k].normalWorld, subSampleChannel(k, "N."), "XYZ");
             rgb(f.subSamples[k].colorLinear, subSampleChannel(k, ""), "RGB");
         }
+    }
+
+    void segmentNumbers(const Frame& f, const std::string& prefix) {
+        uint64_t bad = 0;
+        size_t first = 0;
+        for (size_t i = 0; i < f.segments.size(); i++)
+            if (!isUsable(f.segments[i]) && bad++ == 0) first = i;
+        if (bad == 0 || !numbersFound_.insert(prefix + "segments").second) return;
+        find("numbers", f.number, prefix + "segments", std::nullopt, "finite positions and depths > 0",
+             std::to_string(bad) + " unusable segments, the first at index " + std::to_string(first),
+             "repair the export; `run` leaves them out and counts them (methods/08)");
     }
 
     void normals(const Frame& f) {

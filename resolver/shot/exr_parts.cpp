@@ -209,6 +209,9 @@ void writeParts(const fs::path& file, const std::vector<PartSource>& parts) {
             spec.set_format(spec.channelformats[0]);
             spec.channelformats.clear();
         }
+        // All parts show one picture: a list of another size keeps its display window.
+        spec.full_width = specs.empty() ? w : specs[0].full_width;
+        spec.full_height = specs.empty() ? h : specs[0].full_height;
         spec.attribute("oiio:subimagename", part.name);
         spec.attribute("compression", "zip");
         specs.push_back(std::move(spec));

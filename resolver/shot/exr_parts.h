@@ -55,7 +55,7 @@ class ExrFile {
     std::vector<ExrPart> parts_;
 };
 
-// A part to be written: float or uint planes of one size.
+// A part to be written: float or uint planes of one size. Parts may differ in size.
 struct ChannelSource {
     std::string channel;
     std::variant<const PlaneF*, const PlaneU*> plane;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "image/plane.h"
+#include "shot/edge_segment.h"
 #include "shot/manifest.h"
 #include "shot/pass.h"
 
@@ -42,6 +43,7 @@ struct Frame {
     std::vector<glm::dvec2> subSamplePositionsPx;  // offsets from pixel centre + jitterPx, y down
     PlaneU subSampleMask;                          // bit k: sub-sample k lies on the centre sample's surface
     PlaneF edgeXPx, edgeYPx;
+    std::vector<EdgeSegment> segments;  // of the un-jittered picture, whatever this frame's jitter
 };
 
 // Ground truth: two independent halves; the reference is their mean, the error bar MSE(a, b) / 4 (methods/07 s.9).

@@ -13,6 +13,8 @@ const std::vector<PassInfo>& allPasses() {
         {Pass::subsamples, "subsamples", "subsamples", "geometry at each sub-sample and the similarity mask"},
         {Pass::subsampleColor, "subsampleColor", "subsamples", "shaded colour at each sub-sample, linear"},
         {Pass::edges, "edges", "edges", "signed axis distances to the visible triangle's nearest edge, px"},
+        {Pass::segments, "segments", "segments",
+         "list of the geometry's projected edges: ends in px of the un-jittered picture, and their depth"},
     };
     return table;
 }

@@ -18,6 +18,7 @@ enum class Pass : uint32_t {
     subsamples = 64,       // depth, normal, id at each sub-sample, and the similarity mask
     subsampleColor = 128,  // shaded colour at each sub-sample
     edges = 256,           // signed axis distances to the visible triangle's nearest edge, px
+    segments = 512,        // projected edges of the geometry: a list, not a picture
 };
 
 // Where in the pixel a frame is sampled. Methods that accumulate frames read jittered ones; all others judge a picture

@@ -22,9 +22,12 @@ inline constexpr SixteenthPx kD3d8[] = {{1, -3}, {-1, 3}, {5, 1}, {-3, -5}, {-5,
 inline constexpr SixteenthPx kD3d16[] = {{1, 1},  {-1, -3}, {-3, 2},  {4, -1}, {-5, -2}, {2, 5},  {5, 3}, {3, -5},
                                          {-2, 6}, {0, -7},  {-4, -6}, {-6, 4}, {-8, 0},  {7, -4}, {6, 7}, {-7, -8}};
 
+// Pixel centre and upper left corner, which four pixels share (methods/00 s.2).
+inline constexpr SixteenthPx kQuincunx[] = {{0, 0}, {-8, -8}};
+
 inline constexpr int kMaxGrid = 8;  // grid8: 64 sub-samples
 
-// "d3d1", "d3d2", "d3d4", "d3d8", "d3d16" or "gridN" (regular N x N, row by row, N = 1..8). Throws UsageError
+// "d3d1", "d3d2", "d3d4", "d3d8", "d3d16", "quincunx" or "gridN" (regular N x N, row by row, N = 1..8). Throws UsageError
 // otherwise.
 inline std::vector<glm::dvec2> patternPositionsPx(std::string_view name) {
     std::vector<glm::dvec2> r;
@@ -37,6 +40,7 @@ inline std::vector<glm::dvec2> patternPositionsPx(std::string_view name) {
     if (name == "d3d4") return sixteenths(kD3d4);
     if (name == "d3d8") return sixteenths(kD3d8);
     if (name == "d3d16") return sixteenths(kD3d16);
+    if (name == "quincunx") return sixteenths(kQuincunx);
     if (name.size() == 5 && name.starts_with("grid") && name[4] >= '1' && name[4] <= '0' + kMaxGrid) {
         const int n = name[4] - '0';
         for (int row = 0; row < n; row++)
@@ -45,7 +49,7 @@ inline std::vector<glm::dvec2> patternPositionsPx(std::string_view name) {
         return r;
     }
     throw UsageError("sub-sample pattern '" + std::string(name) +
-                     "': expected d3d1, d3d2, d3d4, d3d8, d3d16 or grid1..grid8");
+                     "': expected d3d1, d3d2, d3d4, d3d8, d3d16, quincunx or grid1..grid8");
 }
 
 }  // namespace aa

@@ -3,6 +3,7 @@
 #include "image/error.h"
 #include "shot/exr_parts.h"
 #include "shot/sanitise.h"
+#include "shot/segments.h"
 
 namespace aa {
 namespace {
@@ -28,6 +29,7 @@ class FrameDecoder {
         if (wanted.has(Pass::motion)) motion();
         if (wanted.has(Pass::subsamples) || wanted.has(Pass::subsampleColor)) subSamples(wanted);
         if (wanted.has(Pass::edges)) edges();
+        if (wanted.has(Pass::segments)) segments();
     }
 
   private:
@@ -98,6 +100,22 @@ class FrameDecoder {
         sanitiseEdges(frame_.edgeXPx, frame_.edgeYPx, policy_, planeName("edges", {"edge.X", "edge.Y"}), counts_);
         frame_.edgeXPx.fillBorder();
         frame_.edgeYPx.fillBorder();
+    }
+    // A list: its part has a size of its own.
+    void segments() {
+        const ExrPart* list = file_.find("segments");
+        if (!list) throw InputError(where() + " has no part 'segments'; export the shot again with this pass");
+        const PlaneName name = planeName("segments", {kSegmentChannels.begin(), kSegmentChannels.end()});
+        if (list->width > kSegmentsPerRow || (list->height > 1 && list->width != kSegmentsPerRow))
+            throw InputError(name.where + ": expected a list of one row of at most " +
+                             std::to_string(kSegmentsPerRow) + " segments, or of rows of " +
+                             std::to_string(kSegmentsPerRow) + ", found " + size(list->width, list->height) +
+                             "; export the frame again");
+        SegmentPlanes planes;
+        std::vector<ChannelTarget> t;
+        for (size_t c = 0; c < planes.size(); c++) t.push_back({name.channels[c], &planes[c]});
+        file_.read(*list, t);
+        frame_.segments = unpackSegments(planes, policy_, name, counts_);
     }
     // One read for all sub-samples: the part's channels share their compressed blocks.
     void subSamples(PassSet wanted) {

@@ -6,8 +6,11 @@ namespace aa {
 
 // Counts of what the input sanitiser replaced (methods/08 s.8.0).
 struct SanitiseCounts {
-    uint64_t colourNan = 0, colourInf = 0, colourNegative = 0, depth = 0, normal = 0, motion = 0, edges = 0;
-    uint64_t total() const { return colourNan + colourInf + colourNegative + depth + normal + motion + edges; }
+    uint64_t colourNan = 0, colourInf = 0, colourNegative = 0, depth = 0, normal = 0, motion = 0, edges = 0,
+             segments = 0;
+    uint64_t total() const {
+        return colourNan + colourInf + colourNegative + depth + normal + motion + edges + segments;
+    }
     SanitiseCounts& operator+=(const SanitiseCounts& o);
 };
 enum class InputPolicy {

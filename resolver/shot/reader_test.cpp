@@ -10,6 +10,7 @@
 #include "image/error.h"
 #include "shot/exr_parts.h"
 #include "shot/frame_stream.h"
+#include "shot/segments.h"
 #include "shot/writer.h"
 
 namespace aa {
@@ -40,7 +41,7 @@ Rgb rgb(int seed) {
     return r;
 }
 const PassSet kAll = Pass::color | Pass::albedo | Pass::depth | Pass::normal | Pass::object | Pass::motion |
-                     Pass::subsamples | Pass::subsampleColor | Pass::edges;
+                     Pass::subsamples | Pass::subsampleColor | Pass::edges | Pass::segments;
 
 Frame fullFrame(int seed) {
     Frame f;
@@ -60,6 +61,8 @@ Frame fullFrame(int seed) {
         f.subSamples.push_back({plane(seed + 12 + k), rgb(seed + 14 + k), ids(uint32_t(k)), rgb(seed + 20 + k)});
     f.edgeXPx = plane(seed + 30);
     f.edgeYPx = plane(seed + 31);
+    for (int i = 0; i < kSegmentsPerRow + 3; i++)  // more than one row
+        f.segments.push_back({float(i), -0.5f, 2, 3.25f, float(seed), float(i + 1)});
     return f;
 }
 
@@ -128,6 +131,7 @@ TEST_F(ReaderTest, EveryPassComesBackBitForBit) {
     }
     EXPECT_TRUE(f.edgeXPx.samePixels(e.edgeXPx));
     EXPECT_TRUE(f.edgeYPx.samePixels(e.edgeYPx));
+    EXPECT_EQ(f.segments, e.segments);
     EXPECT_EQ(f.depthView.at(-kBorderX, -kBorderY), f.depthView.at(0, 0));  // borders repeat the edge
     EXPECT_EQ(f.objectId.at(kWidth, kHeight + kBorderY - 1), f.objectId.at(kWidth - 1, kHeight - 1));
     EXPECT_EQ(fs::exists(folder / ".1.partial.exr"), false);
@@ -294,6 +298,9 @@ TEST_F(ReaderTest, SanitiserFollowsTheRulesAndCounts) {
     f.normalWorld.c[1].at(8, 8) = NAN;
     f.motionXPx.at(3, 3) = NAN;
     f.edgeYPx.at(3, 3) = INFINITY;
+    f.segments[1].x1 = NAN;
+    f.segments[2].z0 = -1;
+    f.segments[3].z1 = 0;
     write(f);
     SanitiseCounts counts;
     const Frame g = ShotReader(folder).read(0, kAll, &counts);
@@ -315,8 +322,58 @@ TEST_F(ReaderTest, SanitiserFollowsTheRulesAndCounts) {
     EXPECT_EQ(counts.normal, 1u);
     EXPECT_EQ(counts.motion, 1u);
     EXPECT_EQ(counts.edges, 1u);
-    EXPECT_EQ(counts.total(), 19u);
+    EXPECT_EQ(counts.segments, 3u);
+    EXPECT_EQ(g.segments.size(), f.segments.size() - 3);
+    EXPECT_EQ(g.segments[1], f.segments[4]);
+    EXPECT_EQ(counts.total(), 22u);
     EXPECT_TRUE(std::isnan(ShotReader(folder, InputPolicy::raw).read(0, kAll).colorLinear.c[0].at(0, 0)));
+}
+
+// A list has a size of its own, which says how many segments fit in; anything else is a broken list.
+TEST_F(ReaderTest, SegmentsAreAListOfAnyLength) {
+    const auto written = [&](std::vector<EdgeSegment> segments) {
+        Frame f = fullFrame(1);
+        f.segments = segments;
+        write(f);
+        EXPECT_EQ(ShotReader(folder, InputPolicy::strict).read(0, Pass::segments).segments, segments);
+        return *ExrFile(folder / "1.exr").find("segments");
+    };
+    const EdgeSegment one{-3, 4, 1, 5000, 2, 9};
+    ExrPart part = written({});
+    EXPECT_EQ(std::pair(part.width, part.height), std::pair(1, 1));
+    part = written({one, one});
+    EXPECT_EQ(std::pair(part.width, part.height), std::pair(2, 1));
+    part = written(std::vector(kSegmentsPerRow, one));
+    EXPECT_EQ(std::pair(part.width, part.height), std::pair(kSegmentsPerRow, 1));
+    part = written(std::vector(2 * kSegmentsPerRow + 1, one));
+    EXPECT_EQ(std::pair(part.width, part.height), std::pair(kSegmentsPerRow, 3));
+}
+TEST_F(ReaderTest, BrokenSegmentListsAreNamed) {
+    const auto write = [&](int width, int height, size_t channels) {
+        const PlaneF ones(width, height, 1.0f);
+        PartSource part{"segments", {}};
+        for (size_t c = 0; c < channels; c++) part.channels.push_back({std::string(kSegmentChannels[c]), &ones});
+        writeParts(folder / "1.exr", {part});
+    };
+    write(kSegmentsPerRow + 1, 1, 6);
+    EXPECT_THAT(errorOf(Pass::segments), AllOf(HasSubstr("frame 1"), HasSubstr("'segments'"), HasSubstr("4097x1")));
+    write(100, 2, 6);
+    EXPECT_THAT(errorOf(Pass::segments), AllOf(HasSubstr("rows of 4096"), HasSubstr("100x2")));
+    write(7, 1, 5);
+    EXPECT_THAT(errorOf(Pass::segments), HasSubstr("no channel 'z1'"));
+    write(7, 1, 6);
+    EXPECT_EQ(errorOf(Pass::segments), "no error");
+    Frame f = fullFrame(1);
+    f.segments[5].y0 = NAN;
+    writeFrame(folder / "1.exr", f, true);
+    EXPECT_THAT(errorOf(Pass::segments, InputPolicy::strict),
+                AllOf(HasSubstr("channel 'y0'"), HasSubstr("segment 5"), HasSubstr("found nan")));
+    f.segments[5] = {0, 0, 2, 0, 0, -2};
+    writeFrame(folder / "1.exr", f, true);
+    EXPECT_THAT(errorOf(Pass::segments, InputPolicy::strict), AllOf(HasSubstr("'z1'"), HasSubstr("depth > 0")));
+    f.passes = PassSet(Pass::color);
+    writeFrame(folder / "1.exr", f, true);
+    EXPECT_THAT(errorOf(Pass::segments), HasSubstr("no part 'segments'"));
 }
 
 TEST_F(ReaderTest, TruthComesBackAndIsNeverRepaired) {

@@ -111,6 +111,7 @@ SanitiseCounts& SanitiseCounts::operator+=(const SanitiseCounts& o) {
     normal += o.normal;
     motion += o.motion;
     edges += o.edges;
+    segments += o.segments;
     return *this;
 }
 

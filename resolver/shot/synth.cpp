@@ -131,6 +131,17 @@ class Sampler {
     glm::dmat3 toWorld_;
 };
 
+// All edges of a polygon, hidden ones too.
+void addSegments(const Placed& shape, const Sampler& sampler, std::vector<EdgeSegment>& to) {
+    const auto& corners = std::get<Polygon>(shape.region);
+    for (size_t i = 0; i < corners.size(); i++) {
+        const dvec2 a = corners[i], b = corners[(i + 1) % corners.size()];
+        if (a == b) continue;
+        to.push_back({float(a.x), float(a.y), sampler.depth(&shape, a), float(b.x), float(b.y),
+                      sampler.depth(&shape, b)});
+    }
+}
+
 // Exact: each visible shape counts by its area in the pixel.
 void areaTruth(const std::vector<Placed>& placed, dvec3 background, Rgb& to) {
     forRows({}, to.height(), [&](int y0, int y1) {
@@ -250,7 +261,7 @@ SynthShot::SynthShot(const SynthOptions& o) {
     passes_ = Pass::color | Pass::albedo | Pass::depth | Pass::normal | Pass::object | Pass::motion;
     if (!o.subsamples.empty()) passes_ |= Pass::subsamples;
     if (o.subsampleColor) passes_ |= Pass::subsampleColor;
-    if (polygonsOnly(scene_->contents.shapes) && !scene_->contents.zonePlate) passes_ |= Pass::edges;
+    if (polygonsOnly(scene_->contents.shapes) && !scene_->contents.zonePlate) passes_ |= Pass::edges | Pass::segments;
 
     Manifest& m = manifest_;
     m.name = o.scene;
@@ -352,6 +363,8 @@ Frame SynthShot::frame(size_t index, Sampling sampling) const {
             }
         }
     });
+    if (passes_.has(Pass::segments))
+        for (const Placed& shape : placed) addSegments(shape, sampler, f.segments);
     f.albedoLinear = f.colorLinear;  // nothing is lit
     f.colorLinear.fillBorder();
     f.albedoLinear.fillBorder();

@@ -178,6 +178,8 @@ TEST(Synth, HalfPlanesShowAtLeast64Angles) {
     const Frame f = shot.frame(0);
     EXPECT_TRUE(f.passes.has(Pass::edges));
     EXPECT_FALSE(SynthShot(small("circles")).passes().has(Pass::edges));
+    EXPECT_TRUE(f.passes.has(Pass::segments));
+    EXPECT_FALSE(SynthShot(small("circles")).passes().has(Pass::segments));
 }
 
 // methods/05 s.5.1: an edge 0.2 px to the right makes (0.2, 0.5); the sign follows the side.
@@ -198,6 +200,47 @@ TEST(Synth, EdgeDistancesAreSignedAndPointAtTheEdge) {
             EXPECT_NE(picture(p + step * (1 + beyond)), picture(p + step * (1 - beyond))) << x << " " << y;
         }
     EXPECT_GT(cut, 400);
+}
+
+// The list is of the un-jittered picture: where the colour changes there is a segment, at the depth of its surface.
+TEST(Synth, SegmentsLieOnTheEdges) {
+    for (const char* scene : {"half_planes", "two_planes", "thin_motion"}) {
+        const SynthShot shot(small(scene));
+        const Frame f = shot.frame(2), other = shot.frame(2, Sampling::centre);
+        EXPECT_EQ(f.segments, other.segments);
+        ASSERT_NE(f.jitterPx, other.jitterPx);
+        const auto picture = shot.picture(2);
+        const auto at = [](const EdgeSegment& s, double t) {
+            return dvec2(s.x0 + t * (double(s.x1) - s.x0), s.y0 + t * (double(s.y1) - s.y0));
+        };
+        int changes = 0;
+        for (const EdgeSegment& s : f.segments) {
+            const dvec2 along = glm::normalize(at(s, 1) - at(s, 0)), across(-along.y, along.x);
+            for (const double t : {0.3, 0.5, 0.7}) {
+                const dvec2 p = at(s, t);
+                changes += p.x > 1 && p.y > 1 && p.x < 120 && p.y < 76 &&
+                           picture(p + across * 1e-4) != picture(p - across * 1e-4);
+            }
+        }
+        EXPECT_GT(changes, 10) << scene;
+        // Depth: 1 / z is linear in the picture for a perspective camera, z for an orthographic one.
+        const bool perspective = f.camera->kind == "perspective";
+        int seen = 0;
+        for (const EdgeSegment& s : f.segments)
+            for (const double t : {0.25, 0.5, 0.75}) {
+                const dvec2 p = at(s, t);
+                const int x = int(std::floor(p.x)), y = int(std::floor(p.y));
+                if (x < 1 || y < 1 || x > 119 || y > 75) continue;
+                const double z = perspective ? 1 / ((1 - t) / s.z0 + t / s.z1) : (1 - t) * s.z0 + t * s.z1;
+                for (int dy = -1; dy <= 1 && seen >= 0; dy++)
+                    for (int dx = -1; dx <= 1; dx++)
+                        if (std::abs(other.depthView.at(x + dx, y + dy) / z - 1) < 0.02) {
+                            seen++, dy = 2;
+                            break;
+                        }
+            }
+        EXPECT_GT(seen, 10) << scene;
+    }
 }
 
 TEST(Synth, SameBitsAtEveryCall) {

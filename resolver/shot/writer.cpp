@@ -1,6 +1,7 @@
 #include "shot/writer.h"
 
 #include "shot/exr_parts.h"
+#include "shot/segments.h"
 
 namespace aa {
 namespace {
@@ -37,7 +38,14 @@ void writeFrame(const std::filesystem::path& file, const Frame& frame, bool moti
     if (has(Pass::motion) && motionPart)
         parts.push_back({"motion", {{"motion.X", &frame.motionXPx}, {"motion.Y", &frame.motionYPx}}});
     if (has(Pass::subsamples) || has(Pass::subsampleColor)) parts.push_back(subSamplePart(frame));
+    const SegmentPlanes segments = has(Pass::segments) ? packSegments(frame.segments) : SegmentPlanes{};
     if (has(Pass::edges)) parts.push_back({"edges", {{"edge.X", &frame.edgeXPx}, {"edge.Y", &frame.edgeYPx}}});
+    if (has(Pass::segments)) {
+        PartSource part{"segments", {}};
+        for (size_t c = 0; c < segments.size(); c++)
+            part.channels.push_back({std::string(kSegmentChannels[c]), &segments[c]});
+        parts.push_back(std::move(part));
+    }
     writeParts(file, parts);
 }
 

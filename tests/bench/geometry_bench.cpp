@@ -109,11 +109,11 @@ void resolveFrame(benchmark::State& state, const char* text, int samples) {
     state.counters["edgeShare"] = t.edgeShare;
 }
 BENCHMARK_CAPTURE(resolveFrame, rsaa8, "rsaa", 8);
-BENCHMARK_CAPTURE(resolveFrame, rsaa8_noIds, "rsaa:ids=off", 8);
+BENCHMARK_CAPTURE(resolveFrame, rsaa8_computed, "rsaa:mask=geometry", 8);
+BENCHMARK_CAPTURE(resolveFrame, rsaa8_computedNoIds, "rsaa:ids=off", 8);
+BENCHMARK_CAPTURE(resolveFrame, rsaa8_computedUntuned, "rsaa:mask=geometry,tuning=off", 8);
+BENCHMARK_CAPTURE(resolveFrame, rsaa8_computedDepth, "rsaa:measure=depth,ids=off", 8);
 BENCHMARK_CAPTURE(resolveFrame, rsaa8_untuned, "rsaa:tuning=off", 8);
-BENCHMARK_CAPTURE(resolveFrame, rsaa8_depth, "rsaa:measure=depth,ids=off", 8);
-BENCHMARK_CAPTURE(resolveFrame, rsaa8_maskPass, "rsaa:mask=pass", 8);
-BENCHMARK_CAPTURE(resolveFrame, rsaa8_maskPassUntuned, "rsaa:mask=pass,tuning=off", 8);
 BENCHMARK_CAPTURE(resolveFrame, noaa, "noaa", 8);
 BENCHMARK_CAPTURE(resolveFrame, ssaa8, "ssaa", 8);
 BENCHMARK_CAPTURE(resolveFrame, msaa8, "msaa", 8);
@@ -122,7 +122,7 @@ BENCHMARK_CAPTURE(resolveFrame, dmsaa8, "dmsaa", 8);
 BENCHMARK_CAPTURE(resolveFrame, sbaa8, "sbaa", 8);
 BENCHMARK_CAPTURE(resolveFrame, sraa4, "sraa", 4);
 BENCHMARK_CAPTURE(resolveFrame, rsaa4, "rsaa", 4);
-BENCHMARK_CAPTURE(resolveFrame, rsaa4_maskPass, "rsaa:mask=pass", 4);
+BENCHMARK_CAPTURE(resolveFrame, rsaa4_computed, "rsaa:mask=geometry", 4);
 BENCHMARK_CAPTURE(resolveFrame, gbaa, "gbaa", 4);
 BENCHMARK_CAPTURE(resolveFrame, d2e, "d2e", 4);
 

@@ -10,7 +10,9 @@
 namespace aa::testing {
 
 // Offsets from the pixel centre in 1/16 px, D3D11 standard patterns (methods/00 s.2).
+inline constexpr int kQuincunx = 0;  // in place of a number of samples: the pattern of that name
 inline std::vector<glm::dvec2> pattern(int samples) {
+    if (samples == kQuincunx) return {{0, 0}, {-0.5, -0.5}};
     static const int p2[] = {4, 4, -4, -4}, p4[] = {-2, -6, 6, -2, -6, 2, 2, 6},
                      p8[] = {1, -3, -1, 3, 5, 1, -3, -5, -5, 5, -7, -1, 3, 7, 7, -7},
                      p16[] = {1,  1, -1, -3, -3, 2,  4,  -1, -5, -2, 2, 5,  5, 3, 3,  -5,
@@ -59,8 +61,12 @@ inline Frame renderFrame(const Scene& scene, int w, int h, int number, glm::dvec
     f.depthView = f.motionXPx = f.motionYPx = f.edgeXPx = f.edgeYPx = PlaneF(w, h);
     f.objectId = f.subSampleMask = PlaneU(w, h);
     f.subSamplePositionsPx = pattern(samples);
-    f.subSamples.resize(size_t(samples));
+    f.subSamples.resize(f.subSamplePositionsPx.size());
     for (auto& s : f.subSamples) s = {PlaneF(w, h), Rgb(w, h), PlaneU(w, h), Rgb(w, h)};
+    for (int i = 0; i < 12; i++) {  // a star that crosses the picture, each ray at another depth
+        const float x = float(w) * (0.5f + 0.6f * float(std::cos(i * 0.53))), y = float(h) * (0.5f + 0.6f * float(std::sin(i * 0.53)));
+        f.segments.push_back({float(w) * 0.4f, float(h) * 0.45f, 2.0f + float(i), x, y, 3.0f});
+    }
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++) {
             const Surface s = scene(x + 0.5 + jitterPx.x, y + 0.5 + jitterPx.y);
@@ -160,7 +166,7 @@ struct Subject {
 inline Subject makeSubject(const std::string& text, int w, int h) {
     const MethodSpec spec = parseMethod(text);
     std::string why;
-    for (int samples : {8, 4, 2, 16}) try {
+    for (int samples : {8, 4, 2, 16, kQuincunx}) try {
             return {RunningMethod(spec, {.width = w,
                                          .height = h,
                                          .jitterPeriod = 16,
