@@ -5,13 +5,14 @@ BLENDER ?= blender
 # A compiler cache is used where there is one.
 LAUNCHER := $(if $(shell command -v ccache 2>/dev/null),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache,)
 
-.PHONY: help deps configure build program demo test sanitize bench addon docs format clean
+.PHONY: help deps configure build program demo test sanitize bench addon docs reproduce format clean
 help:
 	@echo "make demo       build, render two scenes in Blender, run the methods, make contact sheets and reports"
 	@echo "make test       build and run every test"
 	@echo "make build      the program, at build/aaresolve"
 	@echo "make addon      the Blender add-on as one zip, at build/aa_resolve.zip"
 	@echo "make bench      speed of every method, ns per pixel"
+	@echo "make reproduce  render the study's scenes, run every method on each, write docs/results (QUICK=1: a short form)"
 	@echo "make sanitize   unit and property tests under AddressSanitizer and UndefinedBehaviorSanitizer"
 	@echo "make deps, docs, format, clean"
 
@@ -49,6 +50,10 @@ addon:
 docs: program
 	@build/aaresolve list --markdown > docs/methods.md
 	@build/aaresolve list --json > blender_addon/aa_resolve/methods.json
+
+# Resumable: what build/reproduce holds is kept.
+reproduce: program
+	@python3 scenes/reproduce/reproduce.py build/aaresolve build/reproduce docs/results $(if $(QUICK),--quick)
 
 format:
 	@git ls-files 'resolver/*.cpp' 'resolver/*.h' 'tests/*.cpp' 'tests/*.h' | xargs clang-format -i

@@ -17,7 +17,7 @@ scene() {
     echo "== $name"
     "$blender" -b --factory-startup --python-exit-code 9 -P "$here/$name.py" -- --out "$blend" >"$out/$name.log" 2>&1 ||
         { tail -5 "$out/$name.log" >&2; exit 1; }
-    ids=$(echo "$methods" | sed 's/:[^ ]*//g; s/ /,/g')
+    ids=$(echo "$methods" | sed 's/[:+][^ ]*//g; s/ /,/g')
     "$blender" -b "$blend" --python-exit-code 9 -P "$here/../blender_addon/aa_resolve/headless.py" -- \
         --out "$out/$name/shot" --for "$ids" --resolution 480 270 --name "$name" --passes normal,object "$@" |
         { grep -v '^Blender\|^Read blend\|^$' || true; }
@@ -29,10 +29,11 @@ scene() {
     "$program" report "$out/$name/results" -o "$out/$name/report.html"
 }
 
-methods="noaa fxaa311:preset=12 fxaa311:preset=39 taaSimplest uncharted unchartedNorm unchartedNoSharpen accum"
+methods="noaa fxaa311:preset=39 smaa1x:preset=ULTRA taaSimplest uncharted unchartedNorm unchartedNoSharpen master accum"
 scene hard_edges --frames 1-16 --truth-samples 128
-methods="noaa fxaa311:preset=12 fxaa311:preset=39 taaSimplest uncharted unchartedNorm unchartedNoSharpen"
-scene moving_sphere --frames 1-16 --truth-samples 64 --truth-frames 8,12,16
+# Ghosts and flicker are judged between frames that follow each other, so these have truth.
+methods="noaa fxaa311:preset=39 smaa1x:preset=ULTRA taaSimplest uncharted unchartedNorm unchartedNoSharpen master accumReject"
+scene moving_sphere --frames 1-16 --truth-samples 32 --truth-frames 5-16
 
 echo
 echo "done in $(($(date +%s) - started)) s; look at"

@@ -204,8 +204,8 @@ class Store:
                 entry["centre"] = self.picture("centre", truth_frame)
                 objects.update(centre["objects"])
                 if truth_frame == number:
-                    spent = sum(centre["render_seconds"].values())
-                    entry["render_seconds"] = {**entry["render_seconds"], "centre": round(spent, 4)}
+                    spent = {f"centre.{k}": v for k, v in centre["render_seconds"].items()}
+                    entry["render_seconds"] = {**entry["render_seconds"], **spent}
                     size = sum(centre["bytes"].values())
                     entry["bytes"] = {**entry["bytes"], "centre": size}
             truth = self.record("truth", truth_frame)

@@ -58,6 +58,7 @@ RunResults describeRun(const Manifest& m, const RunOptions& o) {
         r.jitterMeanPx[0] += m.frames[i].jitterPx.x / double(period);
         r.jitterMeanPx[1] += m.frames[i].jitterPx.y / double(period);
     }
+    r.subSamples = int(m.subsamplePositionsPx.size());
     r.truthSamplesPerHalf = m.truthSamplesPerHalf;
     r.truthFilter = m.truthFilter;
     r.truthFilterWidthPx = m.truthFilterWidthPx;
@@ -92,6 +93,28 @@ RunResults describeRun(const Manifest& m, const RunOptions& o) {
         r.methods.push_back(std::move(result));
     }
     return r;
+}
+
+// Squared error where history was rejected, of every method that rejects and keeps the mask (one with a fill) and of its
+// peers without or with another fill: they reject the same pixels.
+void judgeRejected(const std::vector<RunningMethod>& methods, const Rgb& truthEncoded, std::vector<MethodResult>& results) {
+    const auto base = [](const RunningMethod& m) { return m.spec.text.substr(0, m.spec.text.find('+')); };
+    for (size_t k = 0; k < methods.size(); k++) {
+        const auto peer = std::find_if(methods.begin(), methods.end(), [&](const auto& m) {
+            return m.method->rejection() && base(m) == base(methods[k]);
+        });
+        if (peer == methods.end()) continue;
+        const PlaneF& mask = *peer->method->rejection();
+        FrameSum sum;
+        for (int y = 0; y < mask.height(); y++)
+            for (int x = 0; x < mask.width(); x++)
+                if (mask.at(x, y) != 0)
+                    for (size_t c = 0; c < 3; c++, sum.count++) {
+                        const double e = double(methods[k].outEncoded.c[c].at(x, y)) - double(truthEncoded.c[c].at(x, y));
+                        sum.sum += e * e;
+                    }
+        results[k].frames.back().rejected = sum;
+    }
 }
 
 // Writes one method's image of one frame; returns the path relative to the run's folder.
@@ -213,13 +236,17 @@ RunResults run(const ShotReader& shot, const RunOptions& o, Progress& progress) 
                 result.metrics = measure(methods[k].outEncoded, linear ? &methods[k].out : nullptr, *reference,
                                          o.measure, o.exec, errors[k]);
             }
-            if (judgeTime) judges[k].add(scene, methods[k].outEncoded, o.exec);
+            if (judgeTime) {
+                judges[k].add(scene, methods[k].outEncoded, o.exec);
+                if (int(i) >= temporalWarmup(o.frames.size())) result.temporal = judges[k].latest();
+            }
             if (write) result.image = writeImage(methods[k], frame->number, o);
             auto& done = results.methods[k].frames;
             if (manifest.isStatic && !done.empty()) done.back().judged = false;
             done.push_back(std::move(result));
             results.methods[k].stateBytes = std::max(results.methods[k].stateBytes, methods[k].method->stateBytes());
         }
+        if (judgeTime && reference && !frame->reset) judgeRejected(methods, reference->encoded, results.methods);
         progress.step("frame " + std::to_string(frame->number));
         if (progress.interrupted()) break;
     }

@@ -54,6 +54,7 @@ class StagedMethod : public Method {
         return bytes;
     }
     std::vector<DebugLayer> debugLayers() const override { return method_->debugLayers(); }
+    const PlaneF* rejection() const override { return method_->rejection(); }
 
   private:
     std::unique_ptr<Method> method_;

@@ -58,6 +58,10 @@ TEST(ErrorBar, ClearDifferenceIsResolved) {
     EXPECT_GT(c.high, c.mseDifference);
     EXPECT_LT(c.high, 0);
     EXPECT_NEAR(c.gainDb, 20 * std::log10(2), 0.1);
+    EXPECT_LT(c.gainLow, c.gainDb);
+    EXPECT_GT(c.gainHigh, c.gainDb);
+    EXPECT_LT(c.gainHigh - c.gainLow, 1.2);  // the noise of 1e-5 alone may hide 0.3 dB
+    EXPECT_GT(c.gainHigh - c.gainDb, 0.3);
     const Comparison reversed = compareMethods(bad, good, 1e-5);
     EXPECT_EQ(reversed.mseDifference, -c.mseDifference);
     EXPECT_TRUE(reversed.resolved);
@@ -118,6 +122,36 @@ TEST(Measure, OneCallGivesAllFigures) {
     EXPECT_EQ(pool.squaredError().mse, m.mse);
     EXPECT_FALSE(measure(encoded, nullptr, reference, {}, {}, pool).relMse);
     EXPECT_EQ(pool.totalValues(), 2.0 * 3 * 40 * 30);
+}
+
+// Three methods over 16 frames: the second has a quarter of the first's ghost, the third differs from the first by the
+// frames' own scatter alone.
+TEST(ErrorBar, OverTime) {
+    std::vector<FrameSum> first, quarter, alike;
+    std::mt19937 random(5);
+    std::normal_distribution<double> scatter(0, 0.05);
+    for (int n = 0; n < 16; n++) {
+        const double pixels = 100 + n;
+        first.push_back({pixels * 0.01 * (1 + scatter(random)), pixels});
+        quarter.push_back({first.back().sum / 4 * (1 + scatter(random)), pixels});
+        alike.push_back({pixels * 0.01 * (1 + scatter(random)), pixels});
+    }
+    const auto clear = compareOverTime(quarter, first), none = compareOverTime(alike, first);
+    ASSERT_TRUE(clear && none);
+    EXPECT_NEAR(clear->gainDb, 6.02, 0.2);
+    EXPECT_TRUE(clear->resolved);
+    EXPECT_LT(clear->high - clear->low, 1);
+    EXPECT_FALSE(none->resolved);
+    EXPECT_LT(none->low * none->high, 0);
+    const auto error = errorOverTime(first);
+    ASSERT_TRUE(error);
+    EXPECT_GT(*error, 1e-5);  // 0.01 with 5 % scatter over 16 frames: about +- 2.7 %
+    EXPECT_LT(*error, 1e-3);
+    // Equal frames have no spread.
+    EXPECT_NEAR(*errorOverTime(std::vector<FrameSum>(12, {3.0, 10.0})), 0, 1e-15);
+    // Too few frames, and nothing at all, give no interval.
+    EXPECT_FALSE(errorOverTime(std::vector<FrameSum>(2, {1.0, 10.0})));
+    EXPECT_FALSE(compareOverTime(std::vector<FrameSum>(8, {0.0, 10.0}), std::vector<FrameSum>(8, {1.0, 10.0})));
 }
 }  // namespace
 }  // namespace aa

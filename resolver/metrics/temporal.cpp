@@ -135,6 +135,7 @@ void TemporalScene::followSurfaces(const Frame& frame, const Exec& exec) {
 void TemporalJudge::add(const TemporalScene& scene, const Rgb& encoded, const Exec& exec) {
     const int w = scene.width(), h = scene.height();
     const bool counts = seen_++ >= warmup_;
+    latest_ = {};
     isStatic_ = scene.isStatic();
     const Rgb* truth = scene.truth();
     if (truth) {
@@ -149,15 +150,20 @@ void TemporalJudge::add(const TemporalScene& scene, const Rgb& encoded, const Ex
         fit(mean_, w, h), fit(spread_, w, h);
         counted_++;
         const float n = float(counted_);
-        const auto sums = sumRows<1>(exec, h, [&](int row, std::array<double, 1>& sum) {
+        const auto sums = sumRows<2>(exec, h, [&](int row, std::array<double, 2>& sum) {
             for (int x = 0; x < w; x++) {  // Welford
                 const float v = y.at(x, row), d = v - mean_.at(x, row);
                 mean_.at(x, row) += d / n;
                 spread_.at(x, row) += d * (v - mean_.at(x, row));
-                if (hasPrevious) sum[0] += std::fabs(double(v) - double(previousLuma_.at(x, row)));
+                if (!hasPrevious) continue;
+                const double step = double(v) - double(previousLuma_.at(x, row));
+                sum[0] += std::fabs(step), sum[1] += step * step;
             }
         });
-        if (hasPrevious) stepSum_ += sums[0] / (double(w) * h), steps_++;
+        if (hasPrevious) {
+            stepSum_ += sums[0] / (double(w) * h), steps_++;
+            latest_.flickerSquares = sums[1], latest_.flickerPixels = double(w) * h;
+        }
     }
     if (!scene.isStatic() && scene.alongMotion() && counts) {
         if (scene.hasTruthStep() && hasPrevious) {
@@ -171,6 +177,7 @@ void TemporalJudge::add(const TemporalScene& scene, const Rgb& encoded, const Ex
                 }
             });
             motionSquares_ += sums[0], motionPixels_ += sums[1];
+            latest_.flickerSquares = sums[0], latest_.flickerPixels = sums[1];
         }
         if (truth) {
             const auto sums =
@@ -189,6 +196,7 @@ void TemporalJudge::add(const TemporalScene& scene, const Rgb& encoded, const Ex
                     }
                 });
             ghostSquares_ += sums[0], ghostPixels_ += sums[1];
+            latest_.ghostSquares = sums[0], latest_.ghostValues = sums[1];
             trailPixels_ += sums[2], trailFrames_ += double(w) * h;
             for (size_t a = 0; a < kGhostAges; a++) along_[a] += sums[3 + a], norm_[a] += sums[3 + kGhostAges + a];
         }

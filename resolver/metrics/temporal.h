@@ -69,10 +69,17 @@ struct TemporalMetrics {
     int frames = 0;  // frames that count
     std::optional<double> tPsnr, flickerStatic, flickerStep, flickerMoving;
     std::optional<double> ghostMse, ghostHalfLife;
+    std::optional<double> ghostMseError, flickerError;  // half widths of 95 % intervals; filled by the caller
     std::optional<double> ghostExcess;  // ghostMse over that of noaa in the same run; filled by the caller
     std::vector<double> ghostFraction;  // [a - 1] for age a; empty without a trail
     double trailShare = 0;              // mean share of pixels on the trail
     std::optional<int> convergence;
+};
+
+// What the latest frame added to the figures; their spread over the frames is the error bar.
+struct TemporalFrame {
+    double ghostSquares = 0, ghostValues = 0;      // (T-R)^2 on the trail
+    double flickerSquares = 0, flickerPixels = 0;  // (D_T - D_R)^2 along the motion; static: (y_T(t) - y_T(t-1))^2
 };
 
 // One method's figures.
@@ -82,10 +89,12 @@ class TemporalJudge {
     // After scene.advance() for the same frame. `encoded` has a filled border.
     void add(const TemporalScene& scene, const Rgb& encoded, const Exec& exec);
     TemporalMetrics result() const;
+    const TemporalFrame& latest() const { return latest_; }  // zeros during the warm-up
 
   private:
     int warmup_;
     int seen_ = 0;
+    TemporalFrame latest_;
     double squaredError_ = 0, values_ = 0;
     int framesWithTruth_ = 0;
     // static: running mean and sum of squared deviations per pixel

@@ -105,6 +105,51 @@ std::vector<std::string> sharpenSentences(const RunResults& run, const std::vect
     return sentences;
 }
 
+// Methods with history by a figure over time, least first; those without the figure are left out.
+template <class Get>
+std::vector<size_t> leastFirst(const RunResults& run, Get get) {
+    std::vector<size_t> order;
+    for (size_t i = 0; i < run.methods.size(); i++)
+        if (run.methods[i].family == "temporal" && run.methods[i].temporal && get(*run.methods[i].temporal))
+            order.push_back(i);
+    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+        return *get(*run.methods[a].temporal) < *get(*run.methods[b].temporal);
+    });
+    return order;
+}
+// Whether two methods differ over time by more than their frames do; `get` picks the comparison of a pair.
+template <class Get>
+bool resolvedOverTime(const RunResults& run, size_t a, size_t b, Get get) {
+    for (const auto& p : run.pairs)
+        if ((p.first == a && p.second == b) || (p.first == b && p.second == a)) return get(p) && get(p)->resolved;
+    return false;
+}
+std::string ghostSentence(const RunResults& run) {
+    const auto order = leastFirst(run, [](const TemporalMetrics& t) { return t.ghostExcess; });
+    if (order.empty()) return {};
+    const auto times = [&](size_t i) {
+        return run.methods[i].text + " (" + significant(*run.methods[i].temporal->ghostExcess, 2) + " times)";
+    };
+    std::string s = "Where something comes into view, the error of the methods with history against no anti-aliasing is ";
+    if (order.size() == 1) return s + significant(*run.methods[order[0]].temporal->ghostExcess, 2) + " times.";
+    const size_t least = order.front(), most = order.back();
+    s += "least for " + times(least) + " and largest for " + times(most);
+    return s + (resolvedOverTime(run, least, most, [](const PairResult& p) { return p.ghost; })
+                    ? "."
+                    : ", a difference that these frames cannot resolve.");
+}
+std::string flickerSentence(const RunResults& run) {
+    const auto flicker = [&](const TemporalMetrics& t) { return run.isStatic ? t.flickerStatic : t.flickerMoving; };
+    const auto order = leastFirst(run, flicker);
+    if (order.size() < 2) return {};
+    const auto codes = [&](size_t i) {
+        return run.methods[i].text + " (" + significant(*flicker(*run.methods[i].temporal), 2) + " codes of 255)";
+    };
+    const size_t least = order.front(), most = order.back();
+    if (!resolvedOverTime(run, least, most, [](const PairResult& p) { return p.flicker; })) return {};
+    return "Of the methods with history, " + codes(least) + " flickers least and " + codes(most) + " most.";
+}
+
 std::string unresolvedSentence(const RunResults& run) {
     std::vector<std::string> pairs;
     for (const auto& p : run.pairs)
@@ -143,6 +188,8 @@ std::vector<std::string> captions(const RunResults& run) {
         add(harmSentence(run, order, index));
     }
     for (auto& s : sharpenSentences(run, order)) add(s);
+    add(ghostSentence(run));
+    add(flickerSentence(run));
     add(unresolvedSentence(run));
     add(truthSentence(run, order));
     return all;

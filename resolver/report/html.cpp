@@ -126,6 +126,7 @@ std::string base64(const std::vector<unsigned char>& bytes) {
 
 std::string reportHtml(const RunResults& run, const std::vector<Pictures>& pictures) {
     json data = {{"run", json::parse(toJsonText(run))}, {"order", presentationOrder(run)}, {"words", captions(run)}};
+    for (auto& m : data["run"]["methods"]) m.erase("tileSquares");  // the page has no use for them
     data["errorScale"] = kErrorScale;
     constexpr int kColours = 256;
     for (int i = 0; i < kColours; i++) {

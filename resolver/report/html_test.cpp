@@ -80,6 +80,59 @@ TEST(Caption, SharpeningCanGainAndCanBeAParameter) {
     weak.parameters["k"] = "3";  // now something else differs too
     EXPECT_FALSE(says(runOf({strong, weak}, 0), "sharpen filter"));
 }
+// A moving run of two methods with history over twelve frames, the second with four times the ghosts of the first.
+RunResults overTime(double scatter) {
+    RunResults run = runOf({method("noaa", 1e-3, 1e-5), method("a", 2e-4, 2e-5), method("b", 3e-4, 2e-5)}, 0);
+    for (size_t k = 0; k < 3; k++) {
+        auto& m = run.methods[k];
+        m.family = k ? "temporal" : "reference";
+        m.temporal = TemporalMetrics{};
+        const double ghost = k == 0 ? 0.02 : k == 1 ? 0.01 : 0.04, flicker = k == 1 ? 1e-4 : 4e-4;
+        m.temporal->ghostMse = ghost, m.temporal->flickerMoving = 255 * std::sqrt(flicker);
+        const FrameResult first = m.frames[0];
+        m.frames.clear();
+        for (int n = 0; n < 12; n++) {
+            FrameResult f = first;
+            f.frame = n;
+            const double here = 1 + (n % 2 ? scatter : -scatter) * (k == 1 ? 1 : -1) * (n < 6 ? 1 : 0.2);
+            f.temporal = TemporalFrame{ghost * here * 100, 100, flicker * here * 100, 100};
+            if (k) f.rejected = FrameSum{ghost * here * 30, 30};
+            m.frames.push_back(f);
+        }
+    }
+    std::vector<TileErrors> errors(3);
+    for (size_t k = 0; k < 3; k++) errors[k].values.assign(16, 3072), errors[k].sum.assign(16, double(k + 1));
+    finish(run, errors);
+    return run;
+}
+TEST(Caption, OverTime) {
+    const RunResults run = overTime(0.1);
+    EXPECT_TRUE(says(run, "is least for a (0.5 times) and largest for b (2 times).")) << allOf(captions(run));
+    EXPECT_TRUE(says(run, "a (2.5 codes of 255) flickers least and b (5.1 codes of 255) most.")) << allOf(captions(run));
+    const PairResult& p = run.pairs[2];  // a and b
+    EXPECT_NEAR(p.ghost->gainDb, 6.02, 0.3);
+    EXPECT_TRUE(p.ghost->resolved);
+    EXPECT_GT(*run.methods[1].temporal->ghostMseError, 0);
+    EXPECT_LT(*run.methods[1].temporal->ghostMseError, 0.005);
+    EXPECT_NEAR(*run.methods[2].rejectedMse, 0.04, 0.001);
+    EXPECT_FALSE(run.methods[0].rejectedMse);
+    EXPECT_FALSE(p.rejected);  // other methods, other pixels
+}
+TEST(Caption, GhostsThatCannotBeTold) {
+    EXPECT_TRUE(says(overTime(0.95), "a difference that these frames cannot resolve.")) << allOf(captions(overTime(0.95)));
+}
+TEST(Results, OverTimeSurvivesTheFile) {
+    const fs::path folder = fs::temp_directory_path() / "aaresolve_results_time";
+    makeWritableFolder(folder);
+    const RunResults run = overTime(0.1);
+    writeResults(run, folder);
+    const RunResults back = readResults(folder);
+    EXPECT_EQ(toJsonText(back), toJsonText(run));
+    EXPECT_TRUE(back.methods[1].frames[3].rejected && back.methods[1].frames[3].temporal);
+    EXPECT_EQ(back.methods[1].tileSquares.size(), 16u);
+    EXPECT_TRUE(back.pairs[2].flicker);
+    fs::remove_all(folder);
+}
 TEST(Caption, WithoutTruth) {
     RunResults run;
     run.methods = {method("noaa", 1, 1)};

@@ -115,6 +115,8 @@ json toJson(const TemporalMetrics& t) {
     put("flickerMoving", t.flickerMoving);
     put("ghostMse", t.ghostMse);
     put("ghostExcess", t.ghostExcess);
+    put("ghostMseError", t.ghostMseError);
+    put("flickerError", t.flickerError);
     put("ghostHalfLifeFrames", t.ghostHalfLife);
     if (!t.ghostFraction.empty()) j["ghostFraction"] = t.ghostFraction, j["trailShare"] = t.trailShare;
     if (t.convergence) j["convergenceFrames"] = *t.convergence;
@@ -130,6 +132,8 @@ TemporalMetrics temporalMetrics(const json& j) {
     t.flickerMoving = toOptional(j, "flickerMoving");
     t.ghostMse = toOptional(j, "ghostMse");
     t.ghostExcess = toOptional(j, "ghostExcess");
+    t.ghostMseError = toOptional(j, "ghostMseError");
+    t.flickerError = toOptional(j, "flickerError");
     t.ghostHalfLife = toOptional(j, "ghostHalfLifeFrames");
     if (j.contains("ghostFraction")) {
         j.at("ghostFraction").get_to(t.ghostFraction);
@@ -137,6 +141,68 @@ TemporalMetrics temporalMetrics(const json& j) {
     }
     if (j.contains("convergenceFrames")) t.convergence = j.at("convergenceFrames").get<int>();
     return t;
+}
+
+json toJson(const TemporalFrame& t) {
+    return {{"ghostSquares", t.ghostSquares},
+            {"ghostValues", t.ghostValues},
+            {"flickerSquares", t.flickerSquares},
+            {"flickerPixels", t.flickerPixels}};
+}
+TemporalFrame temporalFrame(const json& j) {
+    return {j.at("ghostSquares").get<double>(), j.at("ghostValues").get<double>(),
+            j.at("flickerSquares").get<double>(), j.at("flickerPixels").get<double>()};
+}
+json toJson(const TimeComparison& c) {
+    return {{"gainDb", c.gainDb}, {"low95", c.low}, {"high95", c.high}, {"resolved", c.resolved}};
+}
+std::optional<TimeComparison> timeComparison(const json& pair, const char* key) {
+    const auto it = pair.find(key);
+    if (it == pair.end()) return {};
+    return TimeComparison{it->at("gainDb").get<double>(), it->at("low95").get<double>(), it->at("high95").get<double>(),
+                          it->at("resolved").get<bool>()};
+}
+
+// A method's trail and flicker frame by frame.
+struct OverTime {
+    std::vector<FrameSum> ghost, flicker, rejected;
+};
+OverTime overTime(const MethodResult& m) {
+    OverTime o;
+    for (const auto& f : m.frames) {
+        if (f.rejected && f.rejected->count > 0) o.rejected.push_back(*f.rejected);
+        if (!f.temporal) continue;
+        if (f.temporal->ghostValues > 0) o.ghost.push_back({f.temporal->ghostSquares, f.temporal->ghostValues});
+        if (f.temporal->flickerPixels > 0) o.flicker.push_back({f.temporal->flickerSquares, f.temporal->flickerPixels});
+    }
+    return o;
+}
+void addErrorsOverTime(RunResults& run) {
+    std::vector<OverTime> all;
+    for (auto& m : run.methods) {
+        all.push_back(overTime(m));
+        FrameSum rejected;
+        for (const FrameSum& f : all.back().rejected) rejected.sum += f.sum, rejected.count += f.count;
+        if (rejected.count > 0) {
+            const auto frames = std::count_if(m.frames.begin(), m.frames.end(), [](auto& f) { return f.rejected; });
+            m.rejectedMse = rejected.sum / rejected.count;
+            m.rejectedShare = rejected.count / (3.0 * run.width * run.height * double(frames));
+        }
+        if (!m.temporal) continue;
+        m.temporal->ghostMseError = errorOverTime(all.back().ghost);
+        // The flicker along the motion is a root mean square: d sqrt(v) = dv / (2 sqrt(v)).
+        if (const auto e = errorOverTime(all.back().flicker); e && m.temporal->flickerMoving.value_or(0) > 0)
+            m.temporal->flickerError = *e * 255 * 255 / (2 * *m.temporal->flickerMoving);
+    }
+    for (auto& p : run.pairs) {
+        const OverTime &a = all[p.first], &b = all[p.second];
+        if (a.ghost.size() == b.ghost.size()) p.ghost = compareOverTime(a.ghost, b.ghost);
+        if (a.flicker.size() == b.flicker.size()) p.flicker = compareOverTime(a.flicker, b.flicker);
+        const bool samePixels = std::equal(a.rejected.begin(), a.rejected.end(), b.rejected.begin(), b.rejected.end(),
+                                           [](auto& x, auto& y) { return x.count == y.count; });
+        const auto base = [&](size_t i) { return run.methods[i].text.substr(0, run.methods[i].text.find('+')); };
+        if (samePixels && base(p.first) == base(p.second)) p.rejected = compareOverTime(a.rejected, b.rejected);
+    }
 }
 
 // Mean of a figure over the frames; absent unless every frame has it.
@@ -207,11 +273,13 @@ void finish(RunResults& run, const std::vector<TileErrors>& errors) {
     for (auto& m : run.methods)
         if (noaa && noaa->temporal && noaa->temporal->ghostMse.value_or(0) > 0 && m.temporal && m.temporal->ghostMse)
             m.temporal->ghostExcess = *m.temporal->ghostMse / *noaa->temporal->ghostMse;
+    for (size_t i = 0; i < errors.size() && i < run.methods.size(); i++) run.methods[i].tileSquares = errors[i].sum;
     run.pairs.clear();
     for (size_t i = 0; i < errors.size(); i++)
         for (size_t k = i + 1; k < errors.size(); k++)
             if (!errors[i].sum.empty() && errors[i].sum.size() == errors[k].sum.size())
                 run.pairs.push_back({i, k, compareMethods(errors[i], errors[k], noise)});
+    addErrorsOverTime(run);
 }
 
 std::string toJsonText(const RunResults& run) {
@@ -225,6 +293,7 @@ std::string toJsonText(const RunResults& run) {
                    {"period", run.jitterPeriod},
                    {"meanPx", {run.jitterMeanPx[0], run.jitterMeanPx[1]}},
                    {"centred", run.jitterCentred()}}}};
+    if (run.subSamples > 0) j["shot"]["subSamples"] = run.subSamples;
     if (!run.renderSeconds.empty()) j["shot"]["renderSeconds"] = run.renderSeconds;
     j["truth"] = {{"samplesPerHalf", run.truthSamplesPerHalf},
                   {"filter", run.truthFilter},
@@ -257,24 +326,35 @@ std::string toJsonText(const RunResults& run) {
                   {"pooled", m.pooled ? toJson(*m.pooled) : json(nullptr)},
                   {"frames", json::array()}};
         if (m.temporal) q["temporal"] = toJson(*m.temporal);
+        if (!m.tileSquares.empty()) q["tileSquares"] = m.tileSquares;
+        if (m.rejectedMse) q["rejected"] = {{"mse", *m.rejectedMse}, {"share", *m.rejectedShare}};
         for (const auto& f : m.frames) {
             json r = {{"frame", f.frame}, {"seconds", f.seconds}, {"judged", f.judged}};
             if (!f.image.empty()) r["image"] = f.image;
             if (f.metrics) r["metrics"] = toJson(*f.metrics);
+            if (f.temporal) r["temporal"] = toJson(*f.temporal);
+            if (f.rejected) r["rejected"] = {{"squares", f.rejected->sum}, {"values", f.rejected->count}};
             q["frames"].push_back(r);
         }
         j["methods"].push_back(q);
     }
     j["pairs"] = json::array();
-    for (const auto& p : run.pairs)
-        j["pairs"].push_back({{"first", run.methods[p.first].text},
-                              {"second", run.methods[p.second].text},
-                              {"indices", {p.first, p.second}},
-                              {"mseDifference", number(p.comparison.mseDifference)},
-                              {"low95", number(p.comparison.low)},
-                              {"high95", number(p.comparison.high)},
-                              {"gainDb", number(p.comparison.gainDb)},
-                              {"resolved", p.comparison.resolved}});
+    for (const auto& p : run.pairs) {
+        json q = {{"first", run.methods[p.first].text},
+                  {"second", run.methods[p.second].text},
+                  {"indices", {p.first, p.second}},
+                  {"mseDifference", number(p.comparison.mseDifference)},
+                  {"low95", number(p.comparison.low)},
+                  {"high95", number(p.comparison.high)},
+                  {"gainDb", number(p.comparison.gainDb)},
+                  {"gainLow95", number(p.comparison.gainLow)},
+                  {"gainHigh95", number(p.comparison.gainHigh)},
+                  {"resolved", p.comparison.resolved}};
+        if (p.ghost) q["ghost"] = toJson(*p.ghost);
+        if (p.flicker) q["flicker"] = toJson(*p.flicker);
+        if (p.rejected) q["rejected"] = toJson(*p.rejected);
+        j["pairs"].push_back(q);
+    }
     return j.dump(1) + "\n";
 }
 
@@ -320,6 +400,7 @@ RunResults readResults(const fs::path& folder) {
         run.width = shot.at("resolution").at(0).get<int>();
         run.height = shot.at("resolution").at(1).get<int>();
         run.isStatic = shot.at("static").get<bool>();
+        run.subSamples = shot.value("subSamples", 0);
         if (shot.contains("renderSeconds")) shot.at("renderSeconds").get_to(run.renderSeconds);
         run.jitterSequence = jitter.at("sequence").get<std::string>();
         run.jitterStart = jitter.at("start").get<int>();
@@ -356,6 +437,10 @@ RunResults readResults(const fs::path& folder) {
             m.nsPerPixel = q.at("nsPerPixel").get<double>();
             if (!q.at("pooled").is_null()) m.pooled = pooledMetrics(q.at("pooled"));
             if (q.contains("temporal")) m.temporal = temporalMetrics(q.at("temporal"));
+            if (q.contains("tileSquares")) q.at("tileSquares").get_to(m.tileSquares);
+            if (q.contains("rejected"))
+                m.rejectedMse = q.at("rejected").at("mse").get<double>(),
+                m.rejectedShare = q.at("rejected").at("share").get<double>();
             for (const json& r : q.at("frames")) {
                 FrameResult f;
                 f.frame = r.at("frame").get<int>();
@@ -363,6 +448,10 @@ RunResults readResults(const fs::path& folder) {
                 f.judged = r.at("judged").get<bool>();
                 f.image = r.value("image", "");
                 if (r.contains("metrics")) f.metrics = frameMetrics(r.at("metrics"));
+                if (r.contains("temporal")) f.temporal = temporalFrame(r.at("temporal"));
+                if (r.contains("rejected"))
+                    f.rejected = FrameSum{r.at("rejected").at("squares").get<double>(),
+                                          r.at("rejected").at("values").get<double>()};
                 m.frames.push_back(f);
             }
             run.methods.push_back(m);
@@ -371,8 +460,15 @@ RunResults readResults(const fs::path& folder) {
             PairResult p;
             p.first = q.at("indices").at(0).get<size_t>();
             p.second = q.at("indices").at(1).get<size_t>();
-            p.comparison = {toNumber(q.at("mseDifference")), toNumber(q.at("low95")), toNumber(q.at("high95")),
-                            toNumber(q.at("gainDb")), q.at("resolved").get<bool>()};
+            p.comparison = {.mseDifference = toNumber(q.at("mseDifference")),
+                            .low = toNumber(q.at("low95")),
+                            .high = toNumber(q.at("high95")),
+                            .gainDb = toNumber(q.at("gainDb")),
+                            .gainLow = toNumber(q.at("gainLow95")),
+                            .gainHigh = toNumber(q.at("gainHigh95")),
+                            .resolved = q.at("resolved").get<bool>()};
+            p.ghost = timeComparison(q, "ghost"), p.flicker = timeComparison(q, "flicker");
+            p.rejected = timeComparison(q, "rejected");
             if (p.first >= run.methods.size() || p.second >= run.methods.size())
                 throw InputError(file.string() + ": a pair names a method that is not there; run the shot again");
             run.pairs.push_back(p);

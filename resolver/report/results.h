@@ -20,6 +20,9 @@ struct FrameResult {
     std::optional<FrameMetrics> metrics;  // only when the frame has ground truth
     bool judged = true;                   // counts in the pooled figures; of a static shot only the last frame does
     std::string image;                    // relative path of the written image; empty when none was
+    std::optional<TemporalFrame> temporal{};  // of a sequence, after the warm-up
+    // Squared error where this method, or the one that it fills, rejected its history; not of a frame without history.
+    std::optional<FrameSum> rejected{};
 };
 
 // Figures over the judged frames that have truth. MSE, reference power, SSIM, relMse and FLIP are means over the
@@ -44,13 +47,18 @@ struct MethodResult {
     // Filled by finish():
     double secondsMedian = 0, secondsMin = 0, nsPerPixel = 0;  // per frame; ns/px from the median
     std::optional<PooledMetrics> pooled;
+    std::vector<double> tileSquares;  // sums of squared error of tiles of 32 x 32 px, so that runs can be paired
     std::optional<TemporalMetrics> temporal;  // of a sequence
+    // Over the frames that have FrameResult::rejected; absent when no history was rejected.
+    std::optional<double> rejectedMse, rejectedShare;
 };
 
 // A pair of methods, as indices into RunResults::methods.
 struct PairResult {
     size_t first = 0, second = 0;
     Comparison comparison;
+    // Of ghostMse, of the square of flicker, and of rejectedMse (only where both were judged on the same pixels).
+    std::optional<TimeComparison> ghost{}, flicker{}, rejected{};
 };
 
 struct RunResults {
@@ -61,6 +69,7 @@ struct RunResults {
     std::string jitterSequence = "none";
     int jitterStart = 0, jitterPeriod = 1;
     double jitterMeanPx[2] = {0, 0};  // over one period; a block is centred when it is zero
+    int subSamples = 0;               // per pixel; 0 when the shot has none
     // The truth
     int truthSamplesPerHalf = 0;
     std::string truthFilter;

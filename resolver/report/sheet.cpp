@@ -27,7 +27,7 @@ struct Layout {
     int detailSource, detailMagnification;       // px of the frame, px of the sheet per px
     int rowHeight;
     std::vector<Window> details;
-    bool errors;
+    bool errors, overTime;  // overTime: figures of flicker and ghosts in the rows
     int detailSide() const { return detailSource * detailMagnification; }
     int frameX() const { return kMargin + kLabelWidth + kGap; }
     int detailX(size_t i) const { return frameX() + frameWidth + kGap + int(i) * (detailSide() + kGap); }
@@ -38,6 +38,7 @@ struct Layout {
 Layout layoutOf(const RunResults& run, const Pictures& p) {
     Layout l{};
     l.errors = !p.truth.empty();
+    l.overTime = std::any_of(run.methods.begin(), run.methods.end(), [](const auto& m) { return m.temporal; });
     const int w = run.width, h = run.height;
     l.magnification = std::min(kFrameWidth / w, kFrameHeight / h);
     if (l.magnification > 0) {
@@ -52,7 +53,7 @@ Layout layoutOf(const RunResults& run, const Pictures& p) {
     l.detailSource = std::min({side / l.detailMagnification, w, h});
     l.detailMagnification = side / l.detailSource;
     l.details = mostTellingWindows(p, l.detailSource, l.detailSource, kDetails);
-    l.rowHeight = std::max({l.frameHeight, l.details.empty() ? 0 : l.detailSide(), 216});
+    l.rowHeight = std::max({l.frameHeight, l.details.empty() ? 0 : l.detailSide(), l.overTime ? 264 : 216});
     return l;
 }
 
@@ -206,7 +207,7 @@ class Sheet {
             canvas_.text(kMargin + 168, line, value, size, colour, size > 16 ? Font::bold : Font::regular,
                          Align::right);
             canvas_.text(kMargin + 176, line, unit, 14, kQuiet);
-            line += 25;
+            line += layout_.overTime ? 22 : 25;
         };
         if (m.pooled) {
             figure("PSNR", decibelNumber(m.pooled->mean.psnr), "dB", kInk, 20);
@@ -216,6 +217,13 @@ class Sheet {
             figure("SSIM", similarity(m.pooled->mean.ssimLuma), "", kInk, 16);
         }
         figure("time", shortNumber(m.nsPerPixel), "ns/px", kInk, 16);
+        if (m.temporal) {
+            const auto flicker = run_.isStatic ? m.temporal->flickerStatic : m.temporal->flickerMoving;
+            if (flicker) figure("flicker", shortNumber(*flicker), "codes", kInk, 16);
+            if (m.temporal->ghostExcess && m.id != "noaa")
+                figure("ghosts", shortNumber(*m.temporal->ghostExcess), "x noaa",
+                       *m.temporal->ghostExcess <= 1 ? kBetter : kWorse, 16);
+        }
         if (place > 0)
             if (const Comparison* c = comparisonOf(run_, order_[place - 1], order_[place]); c && !c->resolved)
                 canvas_.text(kMargin + 14, line, canvas_.fitted("not resolved from the row above", width, 13), 13,
@@ -231,7 +239,10 @@ class Sheet {
     }
     void footer(int y) {
         std::string text = "Best PSNR first, noaa last. Details: unfiltered pixels, where the methods differ most. ";
-        if (layout_.errors) text += "Figures and errors of display-encoded values.";
+        if (layout_.errors) text += "Figures and errors of display-encoded values. ";
+        if (layout_.overTime)
+            text += run_.isStatic ? "Flicker: spread over time, 8-bit codes."
+                                  : "Flicker along the motion in 8-bit codes; ghosts: error where something came into view.";
         canvas_.text(kMargin, y + 24, canvas_.fitted(text, canvas_.width() - 2 * kMargin - 220, 14), 14, kQuiet);
         canvas_.text(canvas_.width() - kMargin, y + 24, "AA Resolve " + run_.programVersion, 14, kQuiet, Font::regular,
                      Align::right);

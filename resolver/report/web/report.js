@@ -12,6 +12,7 @@
     const n = value(v);
     return n == null ? "–" : Number.isFinite(n) ? n.toFixed(digits) : n > 0 ? "Inf" : n < 0 ? "−Inf" : "NaN";
   };
+  const minus = (text) => (/^-0\.?0*$/.test(text) ? text.slice(1) : text.replace("-", "−"));
   const signed = (v) => (value(v) > 0 ? "+" : "") + fixed(v, 2).replace("-", "−");
   const short = (v) => (v == null ? "–" : Number.isFinite(value(v)) ? Number(value(v).toPrecision(4)).toString() : fixed(v, 0));
   const psnr = (mse) => (mse > 0 ? -10 * Math.log10(mse) : Infinity);
@@ -64,39 +65,120 @@
     const p = pair(i, ranked[place - 1]);
     return { gain: value(methods[i].pooled.psnr) - value(methods[ranked[place - 1]].pooled.psnr), resolved: !p || p.resolved };
   }
-  let rows = order.slice(), sortedBy = null, descending = true;
-  const drawTable = () => {
-    const heads = columns.map((c, k) => element("th", { scope: "col", "aria-sort": sortedBy === k ? (descending ? "descending" : "ascending") : "none" },
-      Object.assign(element("button", { type: "button" }, c.title), { onclick: () => sortBy(k) })));
-    $("figures").replaceChildren(
-      element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "Method"), ...heads)),
-      element("tbody", {}, ...rows.map((i) => {
-        const m = methods[i];
-        return element("tr", {}, element("th", { scope: "row" }, m.text, element("small", {}, m.title)), ...columns.map((c) => {
-          const small = c.small && c.small(m, i);
-          return element("td", { class: c.tone ? c.tone(m) : null }, c.show(m, i),
-            small ? element("small", { class: small === "not resolved" ? "unresolved" : null }, small) : null);
-        }));
-      })));
+  // A table of methods whose columns sort on a click: {title, get, show, small, tone, better}.
+  const sortableTable = (table, shown, columns) => {
+    let rows = shown.slice(), sortedBy = null, descending = true;
+    const draw = () => {
+      const heads = columns.map((c, k) => element("th", { scope: "col", "aria-sort": sortedBy === k ? (descending ? "descending" : "ascending") : "none" },
+        Object.assign(element("button", { type: "button" }, c.title), { onclick: () => sortBy(k) })));
+      table.replaceChildren(
+        element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "Method"), ...heads)),
+        element("tbody", {}, ...rows.map((i) => {
+          const m = methods[i];
+          return element("tr", {}, element("th", { scope: "row" }, m.text, element("small", {}, m.title)), ...columns.map((c) => {
+            const small = c.small && c.small(m, i);
+            return element("td", { class: c.tone ? c.tone(m) : null }, c.show ? c.show(m, i) : short(c.get(m, i)),
+              small ? element("small", { class: small.startsWith("not resolved") ? "unresolved" : null }, small) : null);
+          }));
+        })));
+    };
+    const sortBy = (k) => {
+      descending = sortedBy === k ? !descending : columns[k].better !== "low";
+      sortedBy = k;
+      const key = (i) => { const v = columns[k].get(methods[i], i); return v == null || Number.isNaN(v) ? null : v; };
+      rows = shown.slice().sort((a, b) => {
+        const x = key(a), y = key(b);
+        if (x === null || y === null) return (x === null) - (y === null);
+        return x === y ? 0 : (x < y) === descending ? 1 : -1;
+      });
+      draw();
+      table.querySelectorAll("thead button")[k].focus();
+    };
+    draw();
   };
-  const sortBy = (k) => {
-    descending = sortedBy === k ? !descending : columns[k].better !== "low";
-    sortedBy = k;
-    const key = (i) => { const v = columns[k].get(methods[i], i); return v == null || Number.isNaN(v) ? null : v; };
-    rows = order.slice().sort((a, b) => {
-      const x = key(a), y = key(b);
-      if (x === null || y === null) return (x === null) - (y === null);
-      return x === y ? 0 : (x < y) === descending ? 1 : -1;
-    });
-    drawTable();
-    $("figures").querySelectorAll("thead button")[k].focus();
-  };
-  drawTable();
+  sortableTable($("figures"), order, columns);
   const judgedFrames = methods.length && methods[0].pooled ? methods[0].pooled.frames : 0;
   $("figures-note").textContent = judgedFrames
     ? `Figures of display-encoded values, pooled over ${judgedFrames} frame${judgedFrames > 1 ? "s" : ""} with ground truth: the mean squared error is averaged, never the decibels. ` +
       "“to” is the PSNR after the truth’s own noise is taken off. “Not resolved”: the difference is below that noise, or not consistent over the picture (95 % bootstrap over tiles of 32 × 32 px)."
     : "This run has no ground truth, so only times are known.";
+
+  // ---- over time ----
+  const time = (i) => methods[i].temporal || {};
+  // The stale colour is known only where the frame before has truth, too.
+  for (const m of methods) if (m.temporal && m.temporal.ghostFraction && m.temporal.ghostFraction.every((v) => v === 0)) {
+    delete m.temporal.ghostFraction;
+    delete m.temporal.ghostHalfLifeFrames;
+  }
+  const judged = order.filter((i) => methods[i].temporal);
+  const flickerOf = (i) => value(run.shot.static ? time(i).flickerStatic : time(i).flickerMoving);
+  const flickerError = (i) => (run.shot.static ? null : time(i).flickerError);
+  const judgedHave = (key) => judged.some((i) => time(i)[key] != null);
+  const timeColumn = (title, key, digits, more = {}) => judgedHave(key) && { title, better: "low", get: (m) => (m.temporal ? value(m.temporal[key]) : null),
+    show: (m) => (m.temporal && m.temporal[key] != null ? (digits == null ? short(m.temporal[key]) : fixed(m.temporal[key], digits)) : "–"), ...more };
+  const plusMinus = (key) => (m) => (m.temporal && m.temporal[key] > 0 ? "± " + Number(m.temporal[key].toPrecision(2)) : null);
+  // Against noaa, over time: "fewer dB" reads better as a factor.
+  const versusNoaa = (key) => (m, i) => { const p = i !== noaa && noaa >= 0 && pair(i, noaa); return p && p[key] && !p[key].resolved ? "not resolved from noaa" : null; };
+  const ghostAt = (age) => judgedHave("ghostFraction") && { title: `Stale at age ${age}`, better: "low",
+    get: (m) => (m.temporal && m.temporal.ghostFraction ? m.temporal.ghostFraction[age - 1] ?? null : null),
+    show: (m) => (m.temporal && m.temporal.ghostFraction && m.temporal.ghostFraction[age - 1] != null ? minus(fixed(m.temporal.ghostFraction[age - 1], 2)) : "–") };
+  const lasting = (t) => t.ghostFraction && Math.max(...t.ghostFraction.slice(0, 3)) > 0.05;
+  const timeColumns = [
+    timeColumn("Flicker at rest", "flickerStatic", 3),
+    timeColumn("Flicker in motion", "flickerMoving", 3, { small: plusMinus("flickerError") }),
+    timeColumn("Ghost MSE", "ghostMse", null, { small: plusMinus("ghostMseError") }),
+    timeColumn("Ghosts, × noaa", "ghostExcess", 2, { small: versusNoaa("ghost") }),
+    ghostAt(1), ghostAt(4), ghostAt(16),
+    timeColumn("Half-life, frames", "ghostHalfLifeFrames", 1, { show: (m) => (m.temporal && m.temporal.ghostHalfLifeFrames != null && lasting(m.temporal) ? fixed(m.temporal.ghostHalfLifeFrames, 1) : "–") }),
+    timeColumn("tPSNR, dB", "tPsnr", 2, { better: "high" }),
+    timeColumn("Converged after, frames", "convergenceFrames", 0),
+  ].filter(Boolean);
+  $("time").hidden = !judged.length;
+  if (judged.length) {
+    sortableTable($("time-figures"), judged, timeColumns);
+    const t = time(judged[0]);
+    $("time-note").textContent = `Over ${t.frames} frames, after ${t.warmupFrames} that each history needs to fill. Flicker is in 8-bit codes: 1 is one step of 255. ` +
+      (run.shot.static
+        ? "Nothing moves here, so whatever changes from frame to frame is flicker: the mean standard deviation of a pixel's brightness. The truth has 0."
+        : "Flicker in motion follows each surface and counts what changes beyond what the truth changes. Ghosts are the errors where a surface came into view at most 16 frames ago; “× noaa” compares them with the same places without anti-aliasing. ± is a 95 % interval over blocks of frames.") +
+      " tPSNR pools the error over these frames.";
+    $("flicker-title").textContent = run.shot.static ? "Flicker of a scene at rest: shorter is steadier" : "Flicker along the motion: shorter is steadier";
+    $("flicker-note").textContent = (run.shot.static ? "Mean standard deviation over time, 8-bit codes." : "Root mean square of the change that the truth does not have, 8-bit codes; whiskers: 95 % interval.") +
+      " A spatial method flickers when edges step from pixel to pixel; a heavy history hardly flickers, but blurs and lags.";
+    $("frames-title").textContent = run.shot.static ? "Convergence: PSNR against the frame number" : "PSNR of every frame";
+    $("frames-note").textContent = (run.shot.static
+      ? "A method with history gets better from frame to frame until its history is full; “converged” is the frame from which it stays within 0.5 dB of its last value."
+      : "A dip means that something came into view or moved fast.") + " The best methods are drawn; click a name to show or hide one.";
+  }
+
+  // ---- the price in full ----
+  // Render seconds by pass group: colour, depth, normals, ids, motion and albedo come from one render.
+  const renderSeconds = run.shot.renderSeconds || {};
+  const groupsOf = (m) => ["color", ...(m.passes.some((p) => p.startsWith("subsample")) ? ["subsamples"] : []), ...(m.passes.includes("edges") ? ["edges"] : [])];
+  const priceOf = (i) => {
+    const m = methods[i], centre = m.sampling === "centre" && renderSeconds["centre.color"] != null ? "centre." : "";
+    const seconds = groupsOf(m).map((g) => renderSeconds[centre + g]);
+    if (seconds.some((v) => v == null)) return null;
+    const render = seconds.reduce((a, b) => a + b, 0);
+    return { render, all: render + m.secondsMedian };
+  };
+  // Bytes per pixel of each pass in memory, 32-bit floats and ids; S = sub-samples of the shot.
+  const S = run.shot.subSamples || 0;
+  const passBytes = { depth: 4, albedo: 12, normal: 12, object: 4, motion: 8, edges: 8, subsamples: 4 + 20 * S, subsampleColor: 12 * S };
+  const megabytes1080 = (bytesPerPixel) => bytesPerPixel * 1920 * 1080 / 1048576;
+  const stateOf = (m) => megabytes1080(m.stateBytes / (run.shot.resolution[0] * run.shot.resolution[1]));
+  const passMemory = (m) => megabytes1080(m.passes.reduce((sum, p) => sum + (passBytes[p] || 0), 0));
+  // Extra memory at 1920 x 1080 that a GPU implementation reports: seed 001, table 5.6 (methods/10 s.B.3).
+  const publishedMemory = (m) => ({ gbaa: 7.9, fxaa1: 0, fxaacs: 9.9, t2msaa: 67.2, asaa: 86.5 })[m.id] ?? (m.id === "msaa" ? { 2: 39.6, 4: 91, 8: 209.6 }[S] : undefined) ?? null;
+  sortableTable($("price-figures"), order, [
+    { title: "Passes, s per frame", better: "low", get: (m, i) => priceOf(i)?.render ?? null, small: (m) => m.passes.join(", ") },
+    { title: "Method, ms per frame", better: "low", get: (m) => m.secondsMedian * 1000 },
+    { title: "Kept, MB at 1080p", better: "low", get: (m) => stateOf(m), show: (m) => stateOf(m).toFixed(1) },
+    { title: "Passes, MB at 1080p", better: "low", get: (m) => passMemory(m), show: (m) => passMemory(m).toFixed(1) },
+    { title: "Published extra, MB", better: "low", get: publishedMemory, show: (m) => (publishedMemory(m) == null ? "–" : publishedMemory(m).toFixed(1)) },
+  ]);
+  $("price-note").textContent = "Kept: history and working memory of the method, scaled from this picture's size. Passes: what it reads beside colour, in 32-bit floats" +
+    (S ? ` with ${S} sub-samples per pixel` : "") + ". Published: extra memory of a GPU implementation (Linköping thesis, table 5.6), which packs its buffers more tightly and counts its render targets.";
 
   // ---- charts ----
   const hues = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#b8a800"]; // Okabe and Ito 2008
@@ -124,33 +206,80 @@
       data: { datasets: shown.map((i) => ({ label: methods[i].text, data: [{ x: methods[i].nsPerPixel, y: value(methods[i].pooled.psnr) }],
         backgroundColor: colourOf(i), borderColor: colourOf(i), pointStyle: markerOf(i), pointRadius: 7, pointHoverRadius: 9, borderWidth: 2 })) },
       options: { scales: { x: axis("time, ns per pixel (logarithmic)", { type: "logarithmic" }), y: axis("PSNR, dB", { grace: "8%" }) },
-        plugins: { legend: { position: "bottom", labels: { usePointStyle: true } },
+        plugins: { legend: { position: "bottom", labels: { usePointStyle: true, boxWidth: 8, boxHeight: 8 } },
           tooltip: { callbacks: { label: (t) => `${t.dataset.label}: ${t.parsed.x.toPrecision(3)} ns/px, ${t.parsed.y.toFixed(2)} dB` } } } },
     });
-    const gains = order.filter((i) => i !== noaa && methods[i].pooled && finite(methods[i].pooled.gainDb) !== null && methods[i].pooled.gainDb != null);
-    if (gains.length)
-      show("gain", {
+    // Horizontal bars, as tall as their number asks for.
+    const bars = (id, indices, get, axisTitle, colour, tip, errorOf) => {
+      $(id).closest("figure").hidden = !indices.length;
+      if (!indices.length) return;
+      $(id).parentElement.style.height = Math.max(160, 60 + 22 * indices.length) + "px";
+      show(id, {
         type: "bar",
-        data: { labels: gains.map((i) => methods[i].text), datasets: [{ data: gains.map((i) => methods[i].pooled.gainDb),
-          backgroundColor: gains.map((i) => { const p = pair(i, noaa); return p && !p.resolved ? css("--line") : methods[i].pooled.gainDb >= 0 ? css("--better") : css("--worse"); }) }] },
-        options: { indexAxis: "y", scales: { x: axis("dB; grey = not resolved") }, plugins: { legend: { display: false },
-          tooltip: { callbacks: { label: (t) => `${signed(t.parsed.x)} dB` } } } },
+        data: { labels: indices.map((i) => methods[i].text), datasets: [{ data: indices.map(get), backgroundColor: indices.map(colour), maxBarThickness: 18 }] },
+        options: { indexAxis: "y", scales: { x: axis(axisTitle), y: { ticks: { autoSkip: false } } },
+          plugins: { legend: { display: false }, tooltip: { callbacks: { label: (t) => tip(t.parsed.x, indices[t.dataIndex]) } } } },
+        plugins: errorOf ? [{ // whiskers of the error bars
+          afterDatasetsDraw: (chart) => {
+            const pen = chart.ctx;
+            pen.save();
+            pen.strokeStyle = css("--ink");
+            pen.lineWidth = 1.5;
+            pen.beginPath();
+            chart.getDatasetMeta(0).data.forEach((bar, k) => {
+              const e = errorOf(indices[k]), v = get(indices[k]);
+              if (!(e > 0)) return;
+              const [from, to] = [Math.max(0, v - e), v + e].map((x) => chart.scales.x.getPixelForValue(x));
+              pen.moveTo(from, bar.y); pen.lineTo(to, bar.y);
+              for (const x of [from, to]) { pen.moveTo(x, bar.y - 4); pen.lineTo(x, bar.y + 4); }
+            });
+            pen.stroke();
+            pen.restore();
+          } }] : [],
       });
-    else $("gain").closest("figure").hidden = true;
-    const numbers = [...new Set(methods.flatMap((m) => measured(m).map((f) => f.frame)))].sort((a, b) => a - b);
-    if (numbers.length > 1)
-      show("frames", {
+    };
+    bars("gain", order.filter((i) => i !== noaa && methods[i].pooled && methods[i].pooled.gainDb != null && finite(methods[i].pooled.gainDb) !== null),
+      (i) => methods[i].pooled.gainDb, "dB; grey = not resolved",
+      (i) => { const p = pair(i, noaa); return p && !p.resolved ? css("--line") : methods[i].pooled.gainDb >= 0 ? css("--better") : css("--worse"); },
+      (v) => `${signed(v)} dB`);
+    // Lines of many methods: a few are drawn, a click on a name shows or hides it.
+    const kLines = 8;
+    const lines = (id, indices, labels, dataOf, xTitle, yAxis, tip, preferred = indices.slice(0, kLines)) => {
+      $(id).closest("figure").hidden = !indices.length;
+      if (!indices.length) return;
+      const first = new Set([...preferred, ...indices.filter((i) => i === noaa)]);
+      $(id).parentElement.style.height = 320 + 12 * Math.ceil(indices.length / 3) + "px";
+      show(id, {
         type: "line",
-        data: { labels: numbers, datasets: order.filter((i) => measured(methods[i]).length).map((i) => {
-          const byFrame = new Map(measured(methods[i]).map((f) => [f.frame, finite(f.metrics.psnr)]));
-          return { label: methods[i].text, data: numbers.map((n) => byFrame.get(n) ?? null), borderColor: colourOf(i), backgroundColor: colourOf(i),
-            pointStyle: markerOf(i), borderDash: dashOf(i), borderWidth: 2, pointRadius: numbers.length > 40 ? 0 : 3, spanGaps: true };
-        }) },
-        options: { interaction: { mode: "index", intersect: false }, scales: { x: axis("frame"), y: axis("PSNR, dB", { grace: "5%" }) },
-          plugins: { legend: { position: "bottom", labels: { usePointStyle: true } },
-            tooltip: { itemSort: (a, b) => b.parsed.y - a.parsed.y, callbacks: { label: (t) => `${t.dataset.label}: ${t.parsed.y.toFixed(2)} dB` } } } },
+        data: { labels, datasets: indices.map((i) => ({ label: methods[i].text, data: dataOf(i), hidden: !first.has(i), borderColor: colourOf(i), backgroundColor: colourOf(i),
+          pointStyle: markerOf(i), borderDash: dashOf(i), borderWidth: 2, pointRadius: labels.length > 40 ? 0 : 3, spanGaps: true })) },
+        options: { interaction: { mode: "index", intersect: false }, scales: { x: axis(xTitle), y: yAxis },
+          plugins: { legend: { position: "bottom", labels: { usePointStyle: true, boxWidth: 8, boxHeight: 8 } },
+            tooltip: { itemSort: (a, b) => b.parsed.y - a.parsed.y, callbacks: { label: (t) => `${t.dataset.label}: ${tip(t.parsed.y)}` } } } },
       });
-    else $("frames").closest("figure").hidden = true;
+    };
+    const numbers = [...new Set(methods.flatMap((m) => measured(m).map((f) => f.frame)))].sort((a, b) => a - b);
+    lines("frames", numbers.length > 1 ? order.filter((i) => measured(methods[i]).length) : [], numbers, (i) => {
+      const byFrame = new Map(measured(methods[i]).map((f) => [f.frame, finite(f.metrics.psnr)]));
+      return numbers.map((n) => byFrame.get(n) ?? null);
+    }, "frame", axis("PSNR, dB", { grace: "5%" }), (v) => v.toFixed(2) + " dB");
+    bars("flicker", judged.filter((i) => flickerOf(i) != null).sort((a, b) => flickerOf(a) - flickerOf(b)), flickerOf, "8-bit codes",
+      (i) => (i === noaa ? css("--quiet") : css("--accent")), (v, i) => `${v.toPrecision(3)}${flickerError(i) ? " ± " + flickerError(i).toPrecision(2) : ""} codes`, flickerError);
+    const ages = Math.max(0, ...judged.map((i) => (time(i).ghostFraction || []).length));
+    const ghosting = ages ? judged.filter((i) => time(i).ghostFraction).sort((a, b) => value(time(a).ghostMse) - value(time(b).ghostMse)) : [];
+    const withHistory = ghosting.filter((i) => methods[i].family === "temporal"); // the least and the worst of them
+    lines("ghost", ghosting, Array.from({ length: ages }, (_, k) => k + 1), (i) => time(i).ghostFraction, "age, frames", axis("share of the stale colour left"),
+      (v) => v.toFixed(3), [...withHistory.slice(0, kLines / 2), ...withHistory.slice(-kLines / 2)]);
+    const priced = shown.filter((i) => priceOf(i) !== null);
+    if (priced.length) show("price-scatter", {
+      type: "scatter",
+      data: { datasets: priced.map((i) => ({ label: methods[i].text, data: [{ x: priceOf(i).all, y: value(methods[i].pooled.psnr) }],
+        backgroundColor: colourOf(i), borderColor: colourOf(i), pointStyle: markerOf(i), pointRadius: 7, pointHoverRadius: 9, borderWidth: 2 })) },
+      options: { scales: { x: axis("seconds per frame (logarithmic)", { type: "logarithmic" }), y: axis("PSNR, dB", { grace: "8%" }) },
+        plugins: { legend: { position: "bottom", labels: { usePointStyle: true, boxWidth: 8, boxHeight: 8 } },
+          tooltip: { callbacks: { label: (t) => `${t.dataset.label}: ${t.parsed.x.toPrecision(3)} s, ${t.parsed.y.toFixed(2)} dB` } } } },
+    });
+    $("price-scatter").closest("figure").hidden = !priced.length;
   };
   drawCharts();
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", drawCharts);

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+"""What is rendered and what is run on it: the shots, and the minimum study set of methods/09 on each of them."""
+
+from __future__ import annotations
+
+from shots import Shot
+
+SPATIAL = (
+    "noaa fxaa1:preset=3 fxaa1:preset=5 fxaa311:preset=12 fxaa311:preset=39 fxaacs fxaaconsole mlaa cmaa2 "
+    "smaa1x:preset=LOW smaa1x:preset=MEDIUM smaa1x:preset=HIGH smaa1x:preset=ULTRA dlaa nfaa ssssaa"
+)
+EDGES = "gbaa gpaa d2e"
+SUBSAMPLES = "msaa csaa:slots=4 dmsaa deaa sraa sbaa"
+UNCHARTED = "uncharted unchartedNorm unchartedNoSharpen"
+# Each part of `master` switched off; its colour box open everywhere (minAlias=1); and a first frame that does not keep
+# its weight (warmup=ramp).
+ABLATIONS = (
+    "master master:model=off master:depth=off master:depthTemporal=off master:sobel=off master:sobelTemporal=off "
+    "master:sharpen=none master:sharpen=none,minAlias=1"
+)
+RAMPED = "unchartedNoSharpen:warmup=ramp master:sharpen=none,warmup=ramp"
+RAPTOR = "raptor raptor:lumaDiff=printed raptor:filterDomain=printed,lumaDiff=printed raptor:sharpen=0"
+BOXES = "inside karis salvi falcor donut"  # with `raptor`, `uncharted*` and `master`: history held by a box of colours
+IDENTITY = "accumReject accumReject:objectIds=off accumReject:depthTest=off"
+FILLS = "accumReject+fill=smaa1x accumReject+fill=fxaa311"
+TEMPORAL = f"taaSimplest {UNCHARTED} {ABLATIONS} {RAPTOR} {BOXES} fsr2n {IDENTITY} {FILLS}"
+RSAA = (
+    "rsaa rsaa:tuning=off rsaa:measure=depth rsaa:measure=normal rsaa:measure=depth,tuning=off "
+    "rsaa:measure=normal,tuning=off"
+)
+
+
+def _shots(*all_shots: Shot) -> dict[str, Shot]:
+    return {shot.name: shot for shot in all_shots}
+
+
+STILL = dict(frames=1, quick_frames=1, jitter="none", period=1)  # centre samples alone
+MOVING = dict(
+    methods=f"{SPATIAL} {TEMPORAL} dmsaa sraa rsaa accumReject+fill=rsaa",
+    pattern="d3d8",
+    passes="normal,object,subsamples",
+    truth_samples=64,
+    quick_truth_samples=16,
+)
+
+SHOTS = _shots(
+    Shot(
+        "hard_edges", "hard_edges",
+        f"{SPATIAL} {EDGES} {SUBSAMPLES} {RSAA} {TEMPORAL} {RAMPED} accum:samples=16",
+        pattern="d3d8", truth_samples=256, quick_truth_samples=64,
+    ),
+    Shot("hard_edges.s2", "hard_edges", "noaa msaa smaaS2x", pattern="d3d2", truth_of="hard_edges", **STILL),
+    Shot("hard_edges.s4", "hard_edges", f"noaa {SUBSAMPLES} rsaa", pattern="d3d4", truth_of="hard_edges", **STILL),
+    Shot("hard_edges.s16", "hard_edges", f"noaa {SUBSAMPLES} rsaa", pattern="d3d16", truth_of="hard_edges", **STILL),
+    Shot("hard_edges.grid2", "hard_edges", "noaa ssaa", pattern="grid2", truth_of="hard_edges", **STILL),
+    Shot("hard_edges.grid4", "hard_edges", "noaa ssaa", pattern="grid4", truth_of="hard_edges", **STILL),
+    Shot(
+        "hard_edges.t2x", "hard_edges", "noaa smaaT2x smaa4x", pattern="d3d4", truth_of="hard_edges",
+        jitter="smaaT2x", period=2, frames=8, quick_frames=8,
+    ),
+    Shot(
+        "hard_edges.t2msaa", "hard_edges", "noaa t2msaa t2msaa:offset=0.1875 t2msaa:offset=0.125",
+        pattern="d3d16", truth_of="hard_edges", jitter="none", period=1, frames=8, quick_frames=8,
+    ),
+    Shot("hard_edges.asaa", "hard_edges", "noaa asaa", truth_of="hard_edges", jitter="quadrantGaussian"),
+    Shot(
+        "hard_edges.accum128", "hard_edges", "noaa accum:samples=128", truth_of="hard_edges", period=128,
+        frames=128, quick_frames=128,
+    ),
+    Shot(
+        "hairball", "hairball", f"{SPATIAL} {SUBSAMPLES} {RSAA} {TEMPORAL} accum:samples=16", pattern="d3d8",
+        truth_samples=256, quick_truth_samples=32,
+    ),
+    Shot("hairball.s4", "hairball", f"noaa {SUBSAMPLES} rsaa", pattern="d3d4", truth_of="hairball", **STILL),
+    Shot("hairball.s16", "hairball", f"noaa {SUBSAMPLES} rsaa", pattern="d3d16", truth_of="hairball", **STILL),
+    Shot("hairball_unlit", "hairball", f"{SPATIAL} {TEMPORAL} accum:samples=16", variant=("--unlit",)),
+    Shot("flowers", "flowers", f"{SPATIAL} {TEMPORAL} msaa rsaa accum:samples=16", pattern="d3d8"),
+    Shot("moving_sphere", "moving_sphere", frames=32, quick_frames=16, **MOVING),
+    Shot("hairball_rotating", "hairball", variant=("--rotating",), frames=24, quick_frames=12, **MOVING),
+    Shot("wires", "wires", frames=24, quick_frames=12, **MOVING),
+    # For timing alone.
+    Shot(
+        "moving_sphere_1080p", "moving_sphere",
+        f"{SPATIAL} {EDGES} {SUBSAMPLES} rsaa {TEMPORAL} asaa t2msaa smaaT2x", pattern="d3d8", frames=3, quick_frames=2,
+        passes="normal,object", size=(1920, 1080), truth=False,
+    ),
+)  # fmt: skip
+
+# Contact sheets beside the pages: name -> shot and methods.
+PICTURES = {
+    "moving_sphere": (
+        "moving_sphere",
+        "noaa smaa1x:preset=ULTRA uncharted unchartedNorm master taaSimplest accumReject accumReject+fill=smaa1x",
+    ),
+    "hairball": ("hairball", "noaa mlaa smaa1x:preset=ULTRA rsaa msaa unchartedNorm master accum:samples=16"),
+}

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: MIT
+"""Figures of finished runs (results.json) and their differences, each with its 95 % interval."""
+
+from __future__ import annotations
+
+import json
+import math
+import random
+from dataclasses import dataclass
+from pathlib import Path
+
+
+def number(value) -> float:
+    """JSON has no infinity: it is written as text."""
+    if isinstance(value, str):
+        return {"Inf": math.inf, "-Inf": -math.inf}.get(value, math.nan)
+    return math.nan if value is None else float(value)
+
+
+def signed(value: float, digits: int = 2) -> str:
+    """+1.23 with a true minus sign; a rounded zero has no sign."""
+    if 0 < abs(value) < 0.01:
+        digits = max(digits, 3)
+    text = f"{value:+.{digits}f}"
+    return text.lstrip("+-") if float(text) == 0 else text.replace("-", "−")
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Decibels by which a first method is better than a second one; `resolved`: more than chance and truth's noise."""
+
+    db: float
+    low: float
+    high: float
+    resolved: bool
+
+    def __str__(self) -> str:
+        interval = f"{signed(self.low)} to {signed(self.high)}"
+        return f"{signed(self.db)} dB ({interval})" + ("" if self.resolved else ", not resolved")
+
+    def __neg__(self) -> "Difference":
+        return Difference(-self.db, -self.high, -self.low, self.resolved)
+
+
+class Run:
+    """One results.json."""
+
+    def __init__(self, folder: Path) -> None:
+        self.data = json.loads((folder / "results.json").read_text())
+        self.methods = {m["text"]: m for m in self.data["methods"]}
+        self._pairs = {(p["first"], p["second"]): p for p in self.data["pairs"]}
+
+    def __contains__(self, text: str) -> bool:
+        return text in self.methods
+
+    @property
+    def noise(self) -> float:
+        return number(self.data["truth"]["noiseMse"])
+
+    def mse(self, text: str) -> float:
+        return number(self.methods[text]["pooled"]["mse"])
+
+    def psnr(self, text: str) -> float:
+        return number(self.methods[text]["pooled"]["psnr"])
+
+    def best_first(self) -> list[str]:
+        return sorted(self.methods, key=self.mse)
+
+    def temporal(self, text: str, key: str):
+        """A figure over time, or None."""
+        value = self.methods[text].get("temporal", {}).get(key)
+        return value if isinstance(value, list) or value is None else number(value)
+
+    def _pair(self, a: str, b: str) -> tuple[dict, int]:
+        return (self._pairs[a, b], 1) if (a, b) in self._pairs else (self._pairs[b, a], -1)
+
+    def gain(self, a: str, b: str = "noaa") -> Difference:
+        """PSNR of a over b. Interval: bootstrap over tiles of 32 x 32 px, and the truth's noise."""
+        if a == b:
+            return Difference(0.0, 0.0, 0.0, False)
+        pair, sign = self._pair(a, b)
+        d = Difference(*(number(pair[k]) for k in ("gainDb", "gainLow95", "gainHigh95")), pair["resolved"])
+        return d if sign > 0 else -d
+
+    def over_time(self, a: str, b: str, key: str) -> Difference | None:
+        """How much less a has than b of `ghost`, `flicker` or (error where history was) `rejected`."""
+        pair, sign = self._pair(a, b)
+        if key not in pair:
+            return None
+        c = pair[key]
+        d = Difference(number(c["gainDb"]), number(c["low95"]), number(c["high95"]), c["resolved"])
+        return d if sign > 0 else -d
+
+
+def across(run_a: Run, a: str, run_b: Run, b: str) -> Difference:
+    """PSNR of a over b in two shots of one scene and truth: the same bootstrap, by the runs' tiles."""
+    of_a, of_b = (r.methods[m]["tileSquares"] for r, m in ((run_a, a), (run_b, b)))
+    assert len(of_a) == len(of_b), "two shots of one scene have the same tiles"
+    in_db = lambda picked: 10 * math.log10(sum(of_b[i] for i in picked) / sum(of_a[i] for i in picked))  # noqa: E731
+    tiles = range(len(of_a))
+    generator = random.Random(1)  # the same figures at every run
+    resampled = sorted(in_db(generator.choices(tiles, k=len(tiles))) for _ in range(1000))
+    low, high = resampled[25], resampled[974]
+    apart = abs(run_a.mse(a) - run_b.mse(b)) > run_a.noise
+    return Difference(in_db(tiles), low, high, apart and low * high > 0)
+
+
+def verdict(difference: Difference | None, better: str = "better", worse: str = "worse") -> str:
+    """The figures' answer to: is the first one better than the second?"""
+    if difference is None:
+        return "**Cannot be said**: no such figure in this shot."
+    interval = f"95 %: {signed(difference.low)} to {signed(difference.high)}"
+    if not difference.resolved:
+        return f"**Not resolved**: {signed(difference.db)} dB ({interval})."
+    size = f"{abs(difference.db):.2f} dB"
+    if difference.db > 0:
+        return f"**Yes**, {size} {better} ({interval})."
+    return f"**No**, {size} {worse} ({interval})."

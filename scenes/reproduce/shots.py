@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: MIT
+"""The shots of the studies: which scene, which frames, how good a truth; rendered by Blender, resumable.
+
+Several shots may show one scene with other sub-samples or another jitter. Their truth is the same picture, so it is
+rendered once and hard-linked (`truth_of`).
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@dataclass(frozen=True)
+class Shot:
+    """One export. Samples are per pixel and half of the truth; `quick_*` serve the short form of the study."""
+
+    name: str
+    scene: str
+    methods: str  # methods it must serve, separated by blanks: they decide the passes
+    variant: tuple[str, ...] = ()  # flags of the scene
+    frames: int = 16
+    quick_frames: int = 16
+    truth_samples: int = 128
+    quick_truth_samples: int = 32
+    jitter: str = "halton23"
+    period: int = 16
+    pattern: str = ""  # of sub-samples
+    passes: str = ""  # of the jittered frames, beyond what the methods read
+    truth_of: str = ""  # another shot of the same scene, variant and frames
+    truth: bool = True
+    size: tuple[int, int] = (480, 270)
+
+
+@dataclass
+class Workshop:
+    """Where things are and how they are called."""
+
+    program: Path
+    blender: str
+    out: Path
+    quick: bool
+    known: set[str] = field(default_factory=set)  # method ids of the program and of the add-on
+
+    def run(self, what: str, command: list[object]) -> str:
+        """Runs a command, keeps its output in a log; a failure ends the study with its last lines."""
+        log = self.out / "logs" / f"{what.replace('/', '.')}.log"
+        log.parent.mkdir(parents=True, exist_ok=True)
+        environment = dict(os.environ)
+        # Blender's own Python takes its modules from the python3 of PATH: another one would mislead it.
+        places = [p for p in environment.get("PATH", "").split(":") if p]
+        environment["PATH"] = ":".join(
+            p for p in places if p == "/usr/bin" or not os.path.exists(os.path.join(p, "python3"))
+        )
+        done = subprocess.run(
+            [str(word) for word in command], capture_output=True, text=True, env=environment
+        )
+        log.write_text(done.stdout + done.stderr)
+        if done.returncode != 0:
+            last = "\n".join((done.stdout + done.stderr).strip().splitlines()[-5:])
+            raise SystemExit(f"{what}: failed (exit {done.returncode}), see {log}\n{last}")
+        return done.stdout
+
+    def folder(self, shot: Shot) -> Path:
+        return self.out / ("quick" if self.quick else "full") / shot.name
+
+    def serves(self, method: str) -> bool:
+        """Whether the program has the method and every method that fills its rejected pixels."""
+        parts = method.split("+")
+        ids = [parts[0].split(":")[0]]
+        ids += [p.split("=", 1)[1].split(":")[0] for p in parts[1:] if p.startswith("fill=")]
+        return all(name in self.known for name in ids)
+
+
+def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
+    """Exports what is not there yet; returns the shot's folder."""
+    started = time.monotonic()
+    folder = shop.folder(shot)
+    stamp = shop.out / "stamps" / f"{folder.parent.name}.{shot.name}"
+    wish = _identity(shot, shop)
+    if stamp.exists() and stamp.read_text() == wish and (folder / "shot.json").exists():
+        return folder
+    blend = shop.out / "scenes" / f"{'_'.join([shot.scene, *(v.strip('-') for v in shot.variant)])}.blend"
+    headless = ROOT / "blender_addon/aa_resolve/headless.py"
+    shop.run(
+        f"scene.{blend.stem}",
+        [shop.blender, "-b", "--factory-startup", "--python-exit-code", 9, "-P", ROOT / f"scenes/{shot.scene}.py"]
+        + ["--", "--out", blend, *shot.variant],
+    )  # fmt: skip
+    frames = shot.quick_frames if shop.quick else shot.frames
+    samples = shot.quick_truth_samples if shop.quick else shot.truth_samples
+    ids = [m.split("+")[0] for m in shot.methods.split() if shop.serves(m)]
+    command = [shop.blender, "-b", blend, "--python-exit-code", 9, "-P", headless, "--"]
+    command += ["--out", folder, "--for", ",".join(ids), "--name", shot.name]
+    command += ["--resolution", *shot.size, "--frames", f"1-{frames}", "--truth-samples", samples]
+    command += ["--jitter", shot.jitter, "--period", shot.period]
+    if shot.pattern:
+        command += ["--subsamples", shot.pattern]
+    if shot.passes:
+        command += ["--passes", shot.passes]
+    if shot.truth_of or not shot.truth:
+        command += ["--truth-frames", "none"]
+    said = shop.run(f"export.{shot.name}", command)
+    if shot.truth_of:
+        _lend_truth(make_folder(shop, shots[shot.truth_of]), folder)
+    stamp.parent.mkdir(exist_ok=True)
+    stamp.write_text(wish)
+    done = [line for line in said.splitlines() if "pictures in" in line]
+    print(f"  shot {shot.name}: {done[-1].split(': ', 1)[-1] if done else 'ready'}"
+          f" ({time.monotonic() - started:.0f} s)", flush=True)  # fmt: skip
+    return folder
+
+
+def _identity(shot: Shot, shop: Workshop) -> str:
+    """What decides the shot's content: its description and the sources of scene and exporter."""
+    digest = hashlib.sha256(f"{shot} {shop.quick} {sorted(shop.known)}".encode())
+    sources = [ROOT / f"scenes/{shot.scene}.py", ROOT / "scenes/common.py"]
+    sources += sorted((ROOT / "blender_addon/aa_resolve").glob("*.py"))
+    sources += [ROOT / "blender_addon/aa_resolve/methods.json"]
+    for path in sources:
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+def make_folder(shop: Workshop, shot: Shot) -> Path:
+    """The folder of a shot that must be there already."""
+    folder = shop.folder(shot)
+    if not (folder / "shot.json").exists():
+        raise SystemExit(f"{folder}: expected a finished shot, whose truth is to be lent")
+    return folder
+
+
+def _lend_truth(lender: Path, borrower: Path) -> None:
+    """Gives a shot without truth that of another one: the same scene at the same frames."""
+    manifest = json.loads((borrower / "shot.json").read_text())
+    source = json.loads((lender / "shot.json").read_text())
+    truths = {f["frame"]: f["truth"] for f in source["frames"] if "truth" in f}
+    for entry in manifest["frames"]:
+        path = next(iter(truths.values()), None) if source["static"] else truths.get(entry["frame"])
+        if path is None:
+            raise SystemExit(f"{lender}: no truth of frame {entry['frame']}, which {borrower} needs")
+        target = borrower / path
+        target.parent.mkdir(exist_ok=True)
+        target.unlink(missing_ok=True)
+        try:
+            os.link(lender / path, target)
+        except OSError:  # another file system
+            shutil.copyfile(lender / path, target)
+        entry["truth"] = path
+    manifest["truth"] = source["truth"]
+    (borrower / "shot.json").write_text(json.dumps(manifest, indent=1) + "\n")
