@@ -186,7 +186,7 @@ def test_costs_of_every_pass() -> None:
         assert set(parts) <= set(entry["bytes"]), (parts, entry["bytes"])
         size = os.path.getsize(os.path.join(out, entry["file"]))
         assert 0.5 * size < sum(entry["bytes"][name] for name in parts) < size
-        assert entry["bytes"]["centre"] > 0 and entry["render_seconds"]["centre"] > 0
+        assert entry["bytes"]["centre"] > 0 and entry["render_seconds"]["centre.color"] > 0
         assert {"color", "motion", "segments", "write"} <= set(entry["render_seconds"])
     assert shot["frames"][0]["bytes"]["truth"] > 0 and "truth" not in shot["frames"][1]["bytes"]
 
