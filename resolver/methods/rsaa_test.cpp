@@ -131,7 +131,8 @@ TEST(Rsaa, GeometryFindsTheMasksOfAnalyticShots) {
             for (const Sampling sampling : {Sampling::centre, Sampling::jittered}) {
                 const Frame f = shot.frame(2, sampling);
                 expectSameMasks(f, "rsaa:mask=geometry");
-                EXPECT_TRUE(resolved("rsaa:mask=pass", f).samePixels(resolved("rsaa:mask=geometry", f))) << scene << pattern;
+                EXPECT_TRUE(resolved("rsaa:mask=pass", f).samePixels(resolved("rsaa:mask=geometry", f)))
+                    << scene << pattern;
             }
         }
 }

@@ -64,7 +64,8 @@ inline Frame renderFrame(const Scene& scene, int w, int h, int number, glm::dvec
     f.subSamples.resize(f.subSamplePositionsPx.size());
     for (auto& s : f.subSamples) s = {PlaneF(w, h), Rgb(w, h), PlaneU(w, h), Rgb(w, h)};
     for (int i = 0; i < 12; i++) {  // a star that crosses the picture, each ray at another depth
-        const float x = float(w) * (0.5f + 0.6f * float(std::cos(i * 0.53))), y = float(h) * (0.5f + 0.6f * float(std::sin(i * 0.53)));
+        const float x = float(w) * (0.5f + 0.6f * float(std::cos(i * 0.53))),
+                    y = float(h) * (0.5f + 0.6f * float(std::sin(i * 0.53)));
         f.segments.push_back({float(w) * 0.4f, float(h) * 0.45f, 2.0f + float(i), x, y, 3.0f});
     }
     for (int y = 0; y < h; y++)
