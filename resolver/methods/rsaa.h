@@ -15,8 +15,7 @@
 // neighbours that a sub-sample is compared with (#34: the talk says "closest outside samples"; taking only the nearest
 // one drops surfaces that continue across the pixel's other side, 0.8 / 1.8 / 2.9 dB on half-planes for 4 / 8 / 16).
 // Objects are told apart by their ids too (ids=off: geometry alone, as in the talk). The depth measure is capped at 2,
-// so that no surface seems farther than the background. With jitter see subsample_geometry.h; the table itself was
-// learned for jitter 0.
+// so that no surface seems farther than the background.
 #pragma once
 #include "methods/method.h"
 

@@ -55,7 +55,7 @@ GeometryViews::GeometryViews(const Frame& frame, GeometryNeeds needs, std::strin
     }
     for (size_t k = 0; k < frame.subSamples.size(); k++) {
         const SubSample& s = frame.subSamples[k];
-        const glm::dvec2 offsetPx = frame.subSamplePositionsPx[k] - frame.jitterPx;
+        const glm::dvec2 offsetPx = frame.subSamplePositionsPx[k];
         samples_.push_back({s.depthView.row(0),
                             needs.normals ? view(s.normalWorld) : RgbIn{},
                             needs.ids ? s.objectId.row(0) : nullptr,

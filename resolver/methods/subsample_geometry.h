@@ -1,10 +1,8 @@
 // What the geometry-aware methods know of a frame's sub-samples, as plain views for kernels (methods/05 s.5.0).
 //
-// Positions. Sub-sample k lies at the pixel centre plus its offset, whatever the jitter; the frame's colour, depth,
-// normal and object were sampled at the pixel centre plus the jitter ("centre sample"). So the offset between the two
-// is position - jitter, and that is what every vector between points uses. Pixels that hold the centre sample's colour
-// stay centred on their own pixel: a method that blends with a neighbour decides with the sub-samples, which are not
-// jittered, how much of that neighbour's colour the pixel shows. Jitter 0 is the case that the papers describe.
+// Positions. The frame's colour, depth, normal and object were sampled at the pixel centre plus the jitter ("centre
+// sample"); sub-sample k lies at its position from there, as a GPU jitters all samples of a pixel together. So every
+// vector from the centre sample to sub-sample k is the position itself, with and without jitter.
 #pragma once
 #include <array>
 

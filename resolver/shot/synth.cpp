@@ -351,7 +351,7 @@ Frame SynthShot::frame(size_t index, Sampling sampling) const {
                     f.edgeYPx.at(x, y) = float(e.y);
                 }
                 for (size_t k = 0; k < f.subSamples.size(); k++) {
-                    const dvec2 q = centre + f.subSamplePositionsPx[k];
+                    const dvec2 q = p + f.subSamplePositionsPx[k];
                     const Placed* subHit = frontMost(row, q);
                     SubSample& s = f.subSamples[k];
                     s.depthView.at(x, y) = sampler.depth(subHit, q);

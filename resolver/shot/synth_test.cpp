@@ -101,7 +101,7 @@ TEST_P(SynthScenes, PassesAreSound) {
             for (size_t k = 0; k < 4; k++) {
                 const bool same = f.subSamples[k].objectId.at(x, y) == id;
                 EXPECT_EQ((f.subSampleMask.at(x, y) >> k & 1) == 1, same);
-                const dvec2 q = dvec2(x + .5, y + .5) + f.subSamplePositionsPx[k];
+                const dvec2 q = dvec2(x + .5, y + .5) + f.jitterPx + f.subSamplePositionsPx[k];
                 EXPECT_EQ(f.subSamples[k].colorLinear.c[0].at(x, y), float(picture(q).x));
             }
         }
