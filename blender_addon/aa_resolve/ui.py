@@ -111,7 +111,7 @@ class AAResolveSettings(bpy.types.PropertyGroup):
         description="Pattern of the geometry within a pixel, for methods that read it",
         items=[
             (name, name.upper(), f"{len(jitter.pattern_positions(name))} points per pixel")
-            for name in jitter.NAMED_PATTERNS[1:]
+            for name in jitter.D3D_PATTERNS[1:]
         ],
         default="d3d8",
     )
