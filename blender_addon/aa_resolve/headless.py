@@ -111,7 +111,7 @@ def build_parser() -> argparse.ArgumentParser:
         "--subsamples",
         default=None,
         metavar="PATTERN",
-        help=f"sub-sample pattern: {', '.join(jitter.NAMED_PATTERNS)} or gridN (default: what a method asks for, else d3d8)",
+        help=f"sub-sample pattern: {', '.join(jitter.D3D_PATTERNS)} or gridN (default: what a method asks for, else d3d8)",
     )
     add(
         "--lighting",
@@ -205,7 +205,7 @@ def settings_from(arguments: argparse.Namespace, scene: bpy.types.Scene) -> Sett
     try:
         jitter.pattern_positions(pattern)
     except ValueError:
-        known = ", ".join(jitter.NAMED_PATTERNS)
+        known = ", ".join(jitter.D3D_PATTERNS)
         raise UsageError(
             f"--subsamples: expected {known} or grid1 to grid8, found '{pattern}'"
         ) from None

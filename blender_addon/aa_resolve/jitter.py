@@ -12,7 +12,7 @@ import math
 Offset = tuple[float, float]
 
 # Direct3D 11 standard patterns, in 1/16 pixel, y down, in API order; quincunx: centre and shared corner.
-_SIXTEENTHS: dict[str, tuple[tuple[int, int], ...]] = {
+_D3D_SIXTEENTHS: dict[str, tuple[tuple[int, int], ...]] = {
     "d3d1": ((0, 0),),
     "d3d2": ((4, 4), (-4, -4)),
     "d3d4": ((-2, -6), (6, -2), (-6, 2), (2, 6)),
@@ -24,15 +24,15 @@ _SIXTEENTHS: dict[str, tuple[tuple[int, int], ...]] = {
     "quincunx": ((0, 0), (-8, -8)),
 }  # fmt: skip
 
-NAMED_PATTERNS = tuple(_SIXTEENTHS)
+D3D_PATTERNS = tuple(_D3D_SIXTEENTHS)
 
 
 def pattern_positions(name: str) -> list[Offset]:
     """Sub-sample offsets of ``d3d1|2|4|8|16``, of ``quincunx`` or of a regular ``gridN`` (N x N, row by row), N from 1 to 8.
 
     Raises ValueError for any other name."""
-    if name in _SIXTEENTHS:
-        return [(x / 16.0, y / 16.0) for x, y in _SIXTEENTHS[name]]
+    if name in _D3D_SIXTEENTHS:
+        return [(x / 16.0, y / 16.0) for x, y in _D3D_SIXTEENTHS[name]]
     if name.startswith("grid") and name[4:].isdigit() and 1 <= int(name[4:]) <= 8:
         count = int(name[4:])
         return [

@@ -101,7 +101,7 @@ class AAResolveSettings(bpy.types.PropertyGroup):
             ("AUTO", "As Methods Need", "The pattern that serves all chosen methods, else 8 points"),
             *(
                 (name, name.upper(), f"{len(jitter.pattern_positions(name))} points per pixel")
-                for name in jitter.NAMED_PATTERNS[1:]
+                for name in jitter.D3D_PATTERNS[1:]
             ),
         ],
         default="AUTO",

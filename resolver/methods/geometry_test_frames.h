@@ -71,11 +71,12 @@ inline Frame renderPlanes(const TestScene& scene, int w, int h, const std::vecto
     };
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++) {
-            const Hit centre = trace(scene, *f.camera, w, h, x + 0.5 + jitterPx.x, y + 0.5 + jitterPx.y);
+            const glm::dvec2 p = glm::dvec2(x + 0.5, y + 0.5) + jitterPx;
+            const Hit centre = trace(scene, *f.camera, w, h, p.x, p.y);
             put(centre, f.depthView, f.normalWorld, f.objectId, f.colorLinear, x, y);
             for (size_t k = 0; k < positionsPx.size(); k++) {
                 SubSample& s = f.subSamples[k];
-                const Hit hit = trace(scene, *f.camera, w, h, x + 0.5 + positionsPx[k].x, y + 0.5 + positionsPx[k].y);
+                const Hit hit = trace(scene, *f.camera, w, h, p.x + positionsPx[k].x, p.y + positionsPx[k].y);
                 put(hit, s.depthView, s.normalWorld, s.objectId, s.colorLinear, x, y);
                 f.subSampleMask.at(x, y) |= uint32_t(hit.surface == centre.surface) << k;
             }

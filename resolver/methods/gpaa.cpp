@@ -78,26 +78,23 @@ class Gpaa : public Method {
 }  // namespace
 
 MethodDescriptor gpaaDescriptor() {
-    return {.id = "gpaa",
-            .title = "Geometric post-process anti-aliasing",
-            .family = "geometry",
-            .summary = "Draws the edges of the geometry over the picture and blends what they cross.",
-            .source = "Persson 2011; methods/05 s.5.2",
-            .passes = Pass::color | Pass::segments,
-            .params = {choiceParam("keep", "last", {"last", "nearest"},
-                                   "of several edges in a pixel: the last in the list, or the one nearest to the centre",
-                                   "Persson 2011; nearest: methods/05 s.5.2"),
-                       choiceParam("depthTest", "pixel", {"pixel", "farther", "off"},
-                                   "hidden edges: behind the pixel, behind it and its neighbour beyond, or none",
-                                   "methods/05 s.5.2; farther is ours"),
-                       realParam("depthBias", "0.001", 0, 10, "an edge this much behind, relative, is not hidden",
-                                 "methods/05 s.5.2", "depthTest=pixel|farther")},
-            .create = [](const Params& p, const ShotInfo&) -> std::unique_ptr<Method> {
-                return std::make_unique<Gpaa>(p);
-            },
-            .morePasses = [](const Params& p) {
-                return p.choice("depthTest") == "off" ? PassSet{} : PassSet(Pass::depth);
-            },
-            .reachPx = 2};
+    return {
+        .id = "gpaa",
+        .title = "Geometric post-process anti-aliasing",
+        .family = "geometry",
+        .summary = "Draws the edges of the geometry over the picture and blends what they cross.",
+        .source = "Persson 2011; methods/05 s.5.2",
+        .passes = Pass::color | Pass::segments,
+        .params = {choiceParam("keep", "last", {"last", "nearest"},
+                               "of several edges in a pixel: the last in the list, or the one nearest to the centre",
+                               "Persson 2011; nearest: methods/05 s.5.2"),
+                   choiceParam("depthTest", "pixel", {"pixel", "farther", "off"},
+                               "hidden edges: behind the pixel, behind it and its neighbour beyond, or none",
+                               "methods/05 s.5.2; farther is ours"),
+                   realParam("depthBias", "0.001", 0, 10, "an edge this much behind, relative, is not hidden",
+                             "methods/05 s.5.2", "depthTest=pixel|farther")},
+        .create = [](const Params& p, const ShotInfo&) -> std::unique_ptr<Method> { return std::make_unique<Gpaa>(p); },
+        .morePasses = [](const Params& p) { return p.choice("depthTest") == "off" ? PassSet{} : PassSet(Pass::depth); },
+        .reachPx = 2};
 }
 }  // namespace aa

@@ -1,5 +1,5 @@
-// gpaa: geometric post-process anti-aliasing. Every edge of the geometry is drawn over the finished picture as a line of
-// one pixel, and blends each pixel that it crosses with the neighbour beyond it.
+// gpaa: geometric post-process anti-aliasing. Every edge of the geometry is drawn over the finished picture as a line
+// of one pixel, and blends each pixel that it crosses with the neighbour beyond it.
 //
 // Source: Persson 2011; methods/05 s.5.2. The segments pass lists the edges. For a pixel that a segment touches:
 //   axis   across the segment: y for a mostly horizontal one, x otherwise
@@ -10,10 +10,10 @@
 // Linear light.
 //
 // Choices of ours: for |s| < 1e-3 either side would do, and the sign of s, which is the side that was rasterised, gains
-// 1.6 dB on half-planes over always +. Near its ends a segment touches the pixels whose centre projects on it, or half a
-// pixel beyond. The list is of the un-jittered picture: a jittered frame shows everything displaced by -jitter, and so
-// does the list then. depthTest=farther also draws an edge that the surface beyond it does not hide: on surfaces seen at
-// a grazing angle half a pixel is more depth than any bias.
+// 1.6 dB on half-planes over always +. Near its ends a segment touches the pixels whose centre projects on it, or half
+// a pixel beyond. The list is of the un-jittered picture: a jittered frame shows everything displaced by -jitter, and
+// so does the list then. depthTest=farther also draws an edge that the surface beyond it does not hide: on surfaces
+// seen at a grazing angle half a pixel is more depth than any bias.
 #pragma once
 #include "methods/method.h"
 

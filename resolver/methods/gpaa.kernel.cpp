@@ -21,9 +21,7 @@ struct GpaaLine {
           z1(T(s.z1)),
           horizontal(abs(dx) > abs(dy)) {}
     // Distance along the minor axis from the centre of pixel x to the line.
-    AA_INLINE T distance(int x) const {
-        return horizontal ? y0 + (T(x) - x0) * (dy / dx) : x0 - T(x) - y0 * (dx / dy);
-    }
+    AA_INLINE T distance(int x) const { return horizontal ? y0 + (T(x) - x0) * (dy / dx) : x0 - T(x) - y0 * (dx / dy); }
     // Where the centre projects: 0 and 1 are the ends.
     AA_INLINE T along(int x) const { return ((T(x) - x0) * dx - y0 * dy) / length2; }
     AA_INLINE bool reaches(T t) const {
@@ -82,11 +80,10 @@ struct Gpaa {
             const long o = long(y) * a.stride + x;
             for (int c = 0; c < 3; c++) store(load<R>(a.color.c[c] + o), a.out.c[c] + o);
             const R dx = load<R>(a.shiftXPx + o), dy = load<R>(a.shiftYPx + o);
-            unsigned moved = ~mask_bits<R>(both(dx == zero, dy == zero)) & ((1u << N<R>) - 1u);
+            unsigned moved = ~mask_bits<R>(both(dx == zero, dy == zero)) & ((1u << N<R>)-1u);
             for (int i = 0; moved >> i; i++) {
                 if (!(moved >> i & 1u) || x + i >= a.width) continue;
-                const vec3<T> c =
-                    resample<T>(a.color, a.stride, x + i, y, T(a.shiftXPx[o + i]), T(a.shiftYPx[o + i]));
+                const vec3<T> c = resample<T>(a.color, a.stride, x + i, y, T(a.shiftXPx[o + i]), T(a.shiftYPx[o + i]));
                 a.out.c[0][o + i] = float(c.x), a.out.c[1][o + i] = float(c.y), a.out.c[2][o + i] = float(c.z);
             }
         }

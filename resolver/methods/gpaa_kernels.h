@@ -10,10 +10,11 @@ struct GpaaArgs {
     const float* depthView;  // null: no depth test
     int stride, width;
     const EdgeSegment* segments;
-    const uint32_t *firstOfRow, *ofRow;  // ofRow[firstOfRow[y]..firstOfRow[y + 1]]: those that may touch row y, in order
-    float jitterXPx, jitterYPx;          // of the frame
-    bool perspective;                    // 1 / depth is linear along a segment; otherwise depth is
-    bool farther;                        // hidden only if behind the neighbour beyond it, too
+    const uint32_t *firstOfRow,
+        *ofRow;                  // ofRow[firstOfRow[y]..firstOfRow[y + 1]]: those that may touch row y, in order
+    float jitterXPx, jitterYPx;  // of the frame
+    bool perspective;            // 1 / depth is linear along a segment; otherwise depth is
+    bool farther;                // hidden only if behind the neighbour beyond it, too
     bool keepNearest;
     float depthLimit;            // hidden beyond this times the depth shown
     float *shiftXPx, *shiftYPx;  // scratch: where each pixel is fetched, from its centre

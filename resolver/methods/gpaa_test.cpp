@@ -88,7 +88,8 @@ TEST(Gpaa, TheLastEdgeWinsOrTheNearest) {
     expectShift(shiftAt("gpaa", two), 0, 0.1f);
     expectShift(shiftAt("gpaa:keep=nearest", two), 0.4f, 0);
     expectShift(shiftAt("gpaa:keep=nearest", ramp({horizontal(4.9f), vertical(4.6f)})), 0.4f, 0);
-    expectShift(shiftAt("gpaa:keep=nearest", ramp({vertical(4.75f), horizontal(4.75f)})), 0.25f, 0);  // a tie: the first
+    expectShift(shiftAt("gpaa:keep=nearest", ramp({vertical(4.75f), horizontal(4.75f)})), 0.25f,
+                0);  // a tie: the first
 }
 TEST(Gpaa, HiddenEdgesAreSkipped) {
     expectShift(shiftAt("gpaa", ramp({vertical(4.7f, 5.004f)})), 0.3f, 0);  // within the bias
@@ -133,11 +134,10 @@ TEST(Gpaa, JitteredFramesMoveTheList) {
 // methods/08 s.8.3: shifts stay within a pixel, broken and endless edges cut nothing.
 TEST(Gpaa, DegenerateSegments) {
     const Frame clean = ramp({});
-    for (const EdgeSegment& s :
-         {EdgeSegment{4.5f, 4.5f, 5, 4.5f, 4.5f, 5}, EdgeSegment{NAN, 1, 5, 4, 8, 5}, EdgeSegment{4.7f, 1, NAN, 4.7f, 8, 5},
-          EdgeSegment{INFINITY, 1, 5, -INFINITY, 8, 5},
-          EdgeSegment{-300, -200, 5, -100, -200, 5}, EdgeSegment{4.7f, 1e7f, 5, 4.7f, 2e7f, 5},
-          EdgeSegment{4.7f, 1, 1e10f, 4.7f, 8, 1e10f}})
+    for (const EdgeSegment& s : {EdgeSegment{4.5f, 4.5f, 5, 4.5f, 4.5f, 5}, EdgeSegment{NAN, 1, 5, 4, 8, 5},
+                                 EdgeSegment{4.7f, 1, NAN, 4.7f, 8, 5}, EdgeSegment{INFINITY, 1, 5, -INFINITY, 8, 5},
+                                 EdgeSegment{-300, -200, 5, -100, -200, 5}, EdgeSegment{4.7f, 1e7f, 5, 4.7f, 2e7f, 5},
+                                 EdgeSegment{4.7f, 1, 1e10f, 4.7f, 8, 1e10f}})
         EXPECT_TRUE(resolved("gpaa", ramp({s})).samePixels(clean.colorLinear)) << s.x0 << " " << s.y0;
     Frame sky = ramp({vertical(4.7f, 1e9f)});
     sky.depthView = PlaneF(9, 9, kBackgroundDepth);

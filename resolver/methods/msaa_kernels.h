@@ -10,12 +10,12 @@ struct MsaaArgs {
     RgbOut out;
     const GeometryArgs* geometry;
     SurfaceRule rule;
-    int slots;               // sub-samples 0..slots-1 hold a colour; msaa: all of them
-    const int* order;        // sub-samples by distance from the pixel centre
-    const int* nearestSlot;  // of each sub-sample
-    bool byGeometry;         // surfaces are objects split by geometry, or whole objects
-    bool centroid;           // shade a partly covered surface at a covered sub-sample even if it covers the centre
-    bool inverseLuminance;   // weight 1 / (1 + luminance)
+    int slots;                   // sub-samples 0..slots-1 hold a colour; msaa: all of them
+    const int* order;            // sub-samples by distance from the pixel centre
+    const int* nearestSlot;      // of each sub-sample
+    bool byGeometry;             // surfaces are objects split by geometry, or whole objects
+    bool centroid;               // shade a partly covered surface at a covered sub-sample even if it covers the centre
+    bool inverseLuminance;       // weight 1 / (1 + luminance)
     const RgbOut* sampleColors;  // per sub-sample: where its surface's colour goes; null when no filter follows
     float *surfacesLayer, *coverageLayer;  // debug layers; null when not kept
 };

@@ -66,8 +66,8 @@ TEST(Msaa, ShadesAtTheCentreOrAtTheNearestCoveredSample) {
     const double w0 = 5 / (1 + 0.2126 * 100), w1 = 3 / (1 + 0.2126 * 3);
     EXPECT_NEAR(resolved("msaa:resolve=inverseLuminance", f).c[0].at(0, 0), (w0 * 100 + w1 * 3) / (w0 + w1), 1e-4);
 }
-// Filters weigh the sub-samples of the neighbourhood, each in its surface's one colour: on surfaces of one colour that is
-// `resolve` on supersampled colours.
+// Filters weigh the sub-samples of the neighbourhood, each in its surface's one colour: on surfaces of one colour that
+// is `resolve` on supersampled colours.
 TEST(Msaa, FiltersWeighTheSurfacesColours) {
     const Frame f = renderPlanes(parallelPlanes(kLine), 48, 31, d3dPattern(8));
     Frame shaded = f;

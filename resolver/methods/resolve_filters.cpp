@@ -133,9 +133,8 @@ class Resolve : public Method {
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         std::vector<RgbIn> samples;
         for (const auto& s : frame.subSamples) samples.push_back(view(s.colorLinear));
-        const ResolveArgs args{samples.data(),    int(samples.size()), taps_.data(), int(taps_.size()),
-                               inverseLuminance_, luminanceScale_,     view(out),    out.stride(),
-                               frame.width};
+        const ResolveArgs args{samples.data(),  int(samples.size()), taps_.data(), int(taps_.size()), inverseLuminance_,
+                               luminanceScale_, view(out),           out.stride(), frame.width};
         runKernel(resolveKernelsFor(exec.isa).resolve, exec, args, frame.height);
     }
 

@@ -8,15 +8,14 @@
 //   tune      a different sub-sample whose surface no neighbouring pixel on its side shows is dropped
 //   resample  out = bilinear(colour, centre + table[mask])
 // Masks are computed or taken from the shot's mask pass; bit k = 1: sub-sample k is on the centre sample's surface. The
-// pass was made by the defaults of measure, floor, clustering and ids, so with these it is read (mask=auto): 4 bytes per
-// pixel in place of 20 for every sub-sample.
+// pass was made by the defaults of measure, floor, clustering and ids, so with these it is read (mask=auto): 4 bytes
+// per pixel in place of 20 for every sub-sample.
 //
 // Choices of ours: the k-means start and the floors (methods/11 #32), the training set (#33, rsaa_learn.h), the
 // neighbours that a sub-sample is compared with (#34: the talk says "closest outside samples"; taking only the nearest
 // one drops surfaces that continue across the pixel's other side, 0.8 / 1.8 / 2.9 dB on half-planes for 4 / 8 / 16).
 // Objects are told apart by their ids too (ids=off: geometry alone, as in the talk). The depth measure is capped at 2,
-// so that no surface seems farther than the background. With jitter see subsample_geometry.h; the table itself was
-// learned for jitter 0.
+// so that no surface seems farther than the background.
 #pragma once
 #include "methods/method.h"
 

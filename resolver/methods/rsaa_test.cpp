@@ -131,7 +131,8 @@ TEST(Rsaa, GeometryFindsTheMasksOfAnalyticShots) {
             for (const Sampling sampling : {Sampling::centre, Sampling::jittered}) {
                 const Frame f = shot.frame(2, sampling);
                 expectSameMasks(f, "rsaa:mask=geometry");
-                EXPECT_TRUE(resolved("rsaa:mask=pass", f).samePixels(resolved("rsaa:mask=geometry", f))) << scene << pattern;
+                EXPECT_TRUE(resolved("rsaa:mask=pass", f).samePixels(resolved("rsaa:mask=geometry", f)))
+                    << scene << pattern;
             }
         }
 }
@@ -151,7 +152,7 @@ TEST(Rsaa, AutoMasksAreThePassOfTheDefaults) {
         EXPECT_TRUE(same(o, o + ",mask=geometry")) << other;
     }
 }
-// The centre sample is where the jitter put it: the vectors between points must know.
+// A frame's samples are jittered together: the vectors between them are those of the pattern.
 TEST(Rsaa, JitteredFramesGiveTheMasksOfTheirCentreSample) {
     for (const glm::dvec2 jitterPx : {glm::dvec2(0.375, -0.277), glm::dvec2(-0.4375, 0.389)}) {
         expectSameMasks(renderPlanes(parallelPlanes(kLine), 48, 31, d3dPattern(8), jitterPx), geometryOnly());
@@ -160,12 +161,12 @@ TEST(Rsaa, JitteredFramesGiveTheMasksOfTheirCentreSample) {
         const TestScene floor{{{n, -1.5, glm::vec3(1.0f), 1}}, [](double, double y) { return y > 22 ? 0 : -1; }};
         Frame f = renderPlanes(floor, 48, 31, d3dPattern(8), jitterPx);
         expectSameMasks(f, geometryOnly());
-        f.jitterPx = -jitterPx;
+        for (auto& p : f.subSamplePositionsPx) p -= jitterPx;  // as if the jitter had moved the centre sample alone
         std::vector<DebugLayer> layers;
         resolved(geometryOnly(), f, {}, &layers);
         bool seen = false;
         for (int x = 0; x < 48; x++) seen = seen || layer(layers, "dissimilarity").at(x, 28) > 0;
-        EXPECT_TRUE(seen) << "a wrong jitter sign must show";
+        EXPECT_TRUE(seen) << "wrong offsets must show";
     }
 }
 // Positions 1e5 times farther away than apart: float keeps the direction because depths are subtracted, not positions.

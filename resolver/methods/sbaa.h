@@ -2,12 +2,12 @@
 //
 // Source: Salvi, Vidimce 2012; methods/05 s.5.6. Linear light.
 //   cluster  one per object and tangent plane (kernels/surfaces.h)
-//   merge    clusters whose normals agree and that lie in one plane; of one object only (ids=off: whatever their object)
-//   reduce   while more than K: merge the two of smallest SADP; the one that covers more represents both
-//   shade    each at the sub-sample nearest to its centroid; out = sum of coverage x colour
+//   merge    clusters whose normals agree and that lie in one plane; of one object only (ids=off: whatever their
+//   object) reduce   while more than K: merge the two of smallest SADP; the one that covers more represents both shade
+//   each at the sub-sample nearest to its centroid; out = sum of coverage x colour
 // ids is ours: the plane's tolerance grows with the distance, and seen from afar a shallow relief of several objects
-// would be one surface. Deviation: a pixel whose sub-samples all lie on the centre sample's plane keeps the pixel's colour, which is shaded
-// at the centre already.
+// would be one surface. Deviation: a pixel whose sub-samples all lie on the centre sample's plane keeps the pixel's
+// colour, which is shaded at the centre already.
 #pragma once
 #include "methods/method.h"
 

@@ -10,9 +10,10 @@ struct SbaaArgs {
     RgbOut out;
     const GeometryArgs* geometry;
     SurfaceRule merge;
-    int surfaces;                          // kept per pixel
-    bool ids;                              // objects stay apart before the reduction
-    // Debug layers; null when not kept: surfaces before and after the reduction, sub-samples of the one that covers most.
+    int surfaces;  // kept per pixel
+    bool ids;      // objects stay apart before the reduction
+    // Debug layers; null when not kept: surfaces before and after the reduction, sub-samples of the one that covers
+    // most.
     float *clustersLayer, *surfacesLayer, *largestLayer;
 };
 struct SbaaKernels {

@@ -77,7 +77,8 @@ MethodDescriptor sraaDescriptor() {
                    realParam("sigmaN", "0.25", 0.001, 10, "of 1 - cosine", "methods/05 s.5.4", "metric=product"),
                    realParam("sharpness", "50", 0.1, 10000, "T of the max metric", "methods/05 s.5.4", "metric=max"),
                    choiceParam("ids", "off", {"off", "depth", "always"},
-                               "other objects share nothing: those at another depth, or all", "methods/05 s.5.4; always is ours")},
+                               "other objects share nothing: those at another depth, or all",
+                               "methods/05 s.5.4; always is ours")},
         .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
             requireSubSamples(shot.subSamplePositionsPx, "sraa", 64);
             return std::make_unique<Sraa>(p);

@@ -12,7 +12,8 @@ const Line kLine{std::cos(0.4), std::sin(0.4), 22.3};
 
 // With telling geometry and constant colours it is coverage MSAA (methods/05 s.5.4): 8.6 / 12.7 / 15.0 dB.
 TEST(Sraa, GainOnHalfPlanesIsThatOfCoverage) {
-    for (const char* method : {"sraa", "sraa:metric=max", "sraa:radius=2", "sraa:distance=depth", "sraa:ids=depth", "sraa:ids=always"}) {
+    for (const char* method :
+         {"sraa", "sraa:metric=max", "sraa:radius=2", "sraa:distance=depth", "sraa:ids=depth", "sraa:ids=always"}) {
         EXPECT_NEAR(halfPlaneGainDb(method, d3dPattern(4)), 8.6, 0.5) << method;
         EXPECT_NEAR(halfPlaneGainDb(method, d3dPattern(8)), 12.7, 0.5) << method;
     }

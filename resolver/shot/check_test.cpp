@@ -73,6 +73,17 @@ class CheckTest : public testing::Test {
     fs::path folder;
 };
 
+TEST_F(CheckTest, UnusableSegmentsAreCounted) {
+    const CheckReport r = withFrames(options("half_planes"), [](Frame& f) {
+        if (f.number != 2) return;
+        f.segments[3].x0 = NAN;
+        f.segments[5].z1 = -1;
+    });
+    expectOnly(r, "numbers", "2 unusable segments, the first at index 3");
+    ASSERT_EQ(r.findings.size(), 1u);
+    EXPECT_EQ(r.findings[0].frame, 2);
+}
+
 TEST_F(CheckTest, CleanShotsAreClean) {
     for (const auto& scene : synthScenes()) {
         SynthOptions o = options(scene.name.data(), "d3d4");

@@ -27,8 +27,8 @@ inline constexpr SixteenthPx kQuincunx[] = {{0, 0}, {-8, -8}};
 
 inline constexpr int kMaxGrid = 8;  // grid8: 64 sub-samples
 
-// "d3d1", "d3d2", "d3d4", "d3d8", "d3d16", "quincunx" or "gridN" (regular N x N, row by row, N = 1..8). Throws UsageError
-// otherwise.
+// "d3d1", "d3d2", "d3d4", "d3d8", "d3d16", "quincunx" or "gridN" (regular N x N, row by row, N = 1..8). Throws
+// UsageError otherwise.
 inline std::vector<glm::dvec2> patternPositionsPx(std::string_view name) {
     std::vector<glm::dvec2> r;
     const auto sixteenths = [&](const auto& table) {

@@ -107,10 +107,9 @@ class FrameDecoder {
         if (!list) throw InputError(where() + " has no part 'segments'; export the shot again with this pass");
         const PlaneName name = planeName("segments", {kSegmentChannels.begin(), kSegmentChannels.end()});
         if (list->width > kSegmentsPerRow || (list->height > 1 && list->width != kSegmentsPerRow))
-            throw InputError(name.where + ": expected a list of one row of at most " +
-                             std::to_string(kSegmentsPerRow) + " segments, or of rows of " +
-                             std::to_string(kSegmentsPerRow) + ", found " + size(list->width, list->height) +
-                             "; export the frame again");
+            throw InputError(name.where + ": expected a list of one row of at most " + std::to_string(kSegmentsPerRow) +
+                             " segments, or of rows of " + std::to_string(kSegmentsPerRow) + ", found " +
+                             size(list->width, list->height) + "; export the frame again");
         SegmentPlanes planes;
         std::vector<ChannelTarget> t;
         for (size_t c = 0; c < planes.size(); c++) t.push_back({name.channels[c], &planes[c]});

@@ -137,8 +137,8 @@ void addSegments(const Placed& shape, const Sampler& sampler, std::vector<EdgeSe
     for (size_t i = 0; i < corners.size(); i++) {
         const dvec2 a = corners[i], b = corners[(i + 1) % corners.size()];
         if (a == b) continue;
-        to.push_back({float(a.x), float(a.y), sampler.depth(&shape, a), float(b.x), float(b.y),
-                      sampler.depth(&shape, b)});
+        to.push_back(
+            {float(a.x), float(a.y), sampler.depth(&shape, a), float(b.x), float(b.y), sampler.depth(&shape, b)});
     }
 }
 

@@ -64,7 +64,8 @@ inline Frame renderFrame(const Scene& scene, int w, int h, int number, glm::dvec
     f.subSamples.resize(f.subSamplePositionsPx.size());
     for (auto& s : f.subSamples) s = {PlaneF(w, h), Rgb(w, h), PlaneU(w, h), Rgb(w, h)};
     for (int i = 0; i < 12; i++) {  // a star that crosses the picture, each ray at another depth
-        const float x = float(w) * (0.5f + 0.6f * float(std::cos(i * 0.53))), y = float(h) * (0.5f + 0.6f * float(std::sin(i * 0.53)));
+        const float x = float(w) * (0.5f + 0.6f * float(std::cos(i * 0.53))),
+                    y = float(h) * (0.5f + 0.6f * float(std::sin(i * 0.53)));
         f.segments.push_back({float(w) * 0.4f, float(h) * 0.45f, 2.0f + float(i), x, y, 3.0f});
     }
     for (int y = 0; y < h; y++)
@@ -82,17 +83,16 @@ inline Frame renderFrame(const Scene& scene, int w, int h, int number, glm::dvec
             f.edgeXPx.at(x, y) = 0.5f;
             f.edgeYPx.at(x, y) = 0.5f;
             uint32_t mask = 0;
-            const Surface centre = scene(x + 0.5, y + 0.5);
             for (size_t k = 0; k < f.subSamples.size(); k++) {
                 const auto o = f.subSamplePositionsPx[k];
-                const Surface t = scene(x + 0.5 + o.x, y + 0.5 + o.y);
+                const Surface t = scene(x + 0.5 + jitterPx.x + o.x, y + 0.5 + jitterPx.y + o.y);
                 for (int c = 0; c < 3; c++) {
                     f.subSamples[k].colorLinear.c[size_t(c)].at(x, y) = t.color[c];
                     f.subSamples[k].normalWorld.c[size_t(c)].at(x, y) = t.normalWorld[c];
                 }
                 f.subSamples[k].depthView.at(x, y) = t.depthView;
                 f.subSamples[k].objectId.at(x, y) = t.objectId;
-                if (t.objectId == centre.objectId) mask |= 1u << k;
+                if (t.objectId == s.objectId) mask |= 1u << k;
             }
             f.subSampleMask.at(x, y) = mask;
         }
