@@ -75,7 +75,8 @@ inline Frame renderPlanes(const TestScene& scene, int w, int h, const std::vecto
             put(centre, f.depthView, f.normalWorld, f.objectId, f.colorLinear, x, y);
             for (size_t k = 0; k < positionsPx.size(); k++) {
                 SubSample& s = f.subSamples[k];
-                const Hit hit = trace(scene, *f.camera, w, h, x + 0.5 + positionsPx[k].x, y + 0.5 + positionsPx[k].y);
+                const glm::dvec2 p = glm::dvec2(x + 0.5, y + 0.5) + jitterPx + positionsPx[k];
+                const Hit hit = trace(scene, *f.camera, w, h, p.x, p.y);
                 put(hit, s.depthView, s.normalWorld, s.objectId, s.colorLinear, x, y);
                 f.subSampleMask.at(x, y) |= uint32_t(hit.surface == centre.surface) << k;
             }

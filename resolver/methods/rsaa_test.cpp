@@ -118,7 +118,7 @@ TEST(Rsaa, GeometryFindsTheMasksOfTheMaskPass) {
         }
     }
 }
-// The centre sample is where the jitter put it: the vectors between points must know.
+// Jitter moves the centre sample and its sub-samples together: the vectors between points stay the positions.
 TEST(Rsaa, JitteredFramesGiveTheMasksOfTheirCentreSample) {
     for (const glm::dvec2 jitterPx : {glm::dvec2(0.375, -0.277), glm::dvec2(-0.4375, 0.389)}) {
         expectSameMasks(renderPlanes(parallelPlanes(kLine), 48, 31, d3dPattern(8), jitterPx), geometryOnly());
@@ -127,12 +127,12 @@ TEST(Rsaa, JitteredFramesGiveTheMasksOfTheirCentreSample) {
         const TestScene floor{{{n, -1.5, glm::vec3(1.0f), 1}}, [](double, double y) { return y > 22 ? 0 : -1; }};
         Frame f = renderPlanes(floor, 48, 31, d3dPattern(8), jitterPx);
         expectSameMasks(f, geometryOnly());
-        f.jitterPx = -jitterPx;
+        for (auto& p : f.subSamplePositionsPx) p -= jitterPx;
         std::vector<DebugLayer> layers;
         resolved(geometryOnly(), f, {}, &layers);
         bool seen = false;
         for (int x = 0; x < 48; x++) seen = seen || layer(layers, "dissimilarity").at(x, 28) > 0;
-        EXPECT_TRUE(seen) << "a wrong jitter sign must show";
+        EXPECT_TRUE(seen) << "sub-samples that were taken to stay at the pixel centres must show";
     }
 }
 // Positions 1e5 times farther away than apart: float keeps the direction because depths are subtracted, not positions.

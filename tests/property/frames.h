@@ -76,9 +76,8 @@ inline Frame renderFrame(const Scene& scene, int w, int h, int number, glm::dvec
             f.edgeXPx.at(x, y) = 0.5f;
             f.edgeYPx.at(x, y) = 0.5f;
             uint32_t mask = 0;
-            const Surface centre = scene(x + 0.5, y + 0.5);
             for (size_t k = 0; k < f.subSamples.size(); k++) {
-                const auto o = f.subSamplePositionsPx[k];
+                const auto o = jitterPx + f.subSamplePositionsPx[k];
                 const Surface t = scene(x + 0.5 + o.x, y + 0.5 + o.y);
                 for (int c = 0; c < 3; c++) {
                     f.subSamples[k].colorLinear.c[size_t(c)].at(x, y) = t.color[c];
@@ -86,7 +85,7 @@ inline Frame renderFrame(const Scene& scene, int w, int h, int number, glm::dvec
                 }
                 f.subSamples[k].depthView.at(x, y) = t.depthView;
                 f.subSamples[k].objectId.at(x, y) = t.objectId;
-                if (t.objectId == centre.objectId) mask |= 1u << k;
+                if (t.objectId == s.objectId) mask |= 1u << k;
             }
             f.subSampleMask.at(x, y) = mask;
         }
