@@ -121,11 +121,10 @@ def is_cycles_available() -> bool:
     return hasattr(bpy.types.Scene, "cycles")
 
 
-def draw_progress(layout: bpy.types.UILayout, fraction: float, text: str) -> None:
+def draw_progress(layout: bpy.types.UILayout, fraction: float) -> None:
     """A progress bar, or its percentage where layouts have none (before 4.0)."""
     if hasattr(layout, "progress"):
-        layout.progress(factor=fraction, text=text)
+        layout.progress(factor=fraction, text=f"{100 * fraction:.0f} %")
     else:
         filled = int(round(20 * fraction))
         layout.label(text=f"[{'#' * filled}{'.' * (20 - filled)}] {100 * fraction:.0f} %")
-        layout.label(text=text)

@@ -111,7 +111,7 @@ def build_parser() -> argparse.ArgumentParser:
         "--subsamples",
         default=None,
         metavar="PATTERN",
-        help=f"sub-sample pattern: {', '.join(jitter.D3D_PATTERNS)} or gridN (default: what a method asks for, else d3d8)",
+        help=f"sub-sample pattern: {', '.join(jitter.D3D_PATTERNS)} or gridN, around pixel centre + jitter (default: what serves the methods, else d3d8)",
     )
     add(
         "--lighting",

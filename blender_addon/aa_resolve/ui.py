@@ -56,7 +56,7 @@ class AA_RESOLVE_OT_add_preset(AddPresetBase, bpy.types.Operator):
 def draw_text(layout: bpy.types.UILayout, context, text: str) -> None:
     """A sentence in as many lines as the width of the panel asks for: labels would cut it off."""
     scale = context.preferences.system.ui_scale
-    letters = max(20, int((context.region.width - 50 * scale) / (6.6 * scale)))
+    letters = max(20, int((context.region.width - 50 * scale) / (6.2 * scale)))
     column = layout.column(align=True)
     column.scale_y = 0.8
     for line in textwrap.wrap(text, letters):
@@ -95,18 +95,18 @@ class AA_RESOLVE_PT_main(_Panel, bpy.types.Panel):
             row.prop(settings, "last", text="")
         column.prop(settings, "use_resolution")
         if settings.use_resolution:
-            column.prop(settings, "resolution", text="")
+            column.prop(settings, "resolution")
         running = State.running
         if running is not None:
-            compat.draw_progress(layout, running.fraction, running.message)
-            layout.label(text="Esc stops; finished frames stay", icon="INFO")
+            compat.draw_progress(layout, running.fraction)
+            draw_text(layout, context, running.message)
+            draw_text(layout, context, "Esc stops; finished frames stay")
             return
-        row = layout.row(align=True)
-        row.operator(AA_RESOLVE_OT_export.bl_idname, icon="RENDER_ANIMATION")
-        row.operator(AA_RESOLVE_OT_compare.bl_idname, icon="VIEWZOOM")
-        row = layout.row(align=True)
-        row.operator(AA_RESOLVE_OT_estimate.bl_idname, icon="TIME")
-        row.operator(AA_RESOLVE_OT_open_report.bl_idname, icon="URL")
+        buttons = layout.grid_flow(columns=0, even_columns=True, align=True)  # one below the other where it is narrow
+        buttons.operator(AA_RESOLVE_OT_export.bl_idname, icon="RENDER_ANIMATION")
+        buttons.operator(AA_RESOLVE_OT_compare.bl_idname, icon="VIEWZOOM")
+        buttons.operator(AA_RESOLVE_OT_estimate.bl_idname, icon="TIME")
+        buttons.operator(AA_RESOLVE_OT_open_report.bl_idname, icon="URL")
         for text in (State.estimate, State.result):
             draw_text(layout, context, text)
 
@@ -123,7 +123,7 @@ class AA_RESOLVE_PT_methods(_Panel, bpy.types.Panel):
         for family, names in families.items():
             box = self.layout.box()
             box.label(text=family.replace("-", " ").capitalize())
-            grid = box.grid_flow(columns=2, even_columns=True, align=True)
+            grid = box.grid_flow(columns=0, even_columns=True, align=True)
             for name in names:
                 grid.prop(settings, method_property(name))
         chosen = settings.chosen()

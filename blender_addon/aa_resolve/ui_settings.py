@@ -47,7 +47,7 @@ class AAResolveSettings(bpy.types.PropertyGroup):
     first: IntProperty(name="First", description="First frame", default=1)
     last: IntProperty(name="Last", description="Last frame", default=16)
     use_resolution: BoolProperty(
-        name="Own Resolution", description="Export at another size than the scene's", default=False
+        name="Own Size", description="Export at another size than the scene's", default=False
     )
     resolution: IntVectorProperty(
         name="Resolution",
@@ -98,7 +98,7 @@ class AAResolveSettings(bpy.types.PropertyGroup):
         name="Sub-samples",
         description="Pattern of the geometry within a pixel, for methods that read it",
         items=[
-            ("AUTO", "As Methods Need", "The pattern that serves all chosen methods, else 8 points"),
+            ("AUTO", "Automatic", "The pattern that serves all chosen methods, else 8 points"),
             *(
                 (name, name.upper(), f"{len(jitter.pattern_positions(name))} points per pixel")
                 for name in jitter.D3D_PATTERNS[1:]
@@ -143,7 +143,7 @@ class AAResolveSettings(bpy.types.PropertyGroup):
         default="float",
     )
     overwrite: BoolProperty(
-        name="Replace Other Export",
+        name="Replace Old",
         description="Replace an export with other settings",
         default=False,
     )

@@ -9,7 +9,7 @@ struct SubSampleArgs {
     RgbIn normalWorld;
     const uint32_t* objectId;
     RgbIn color;
-    float offsetPx[2];  // from the centre sample, which is off the pixel centre by the jitter
+    float offsetPx[2];  // from the centre sample; both are moved by the jitter
 };
 struct GeometryArgs {
     int stride, width, height;

@@ -82,6 +82,46 @@ print("PANEL OK")
 """
 
 
+def digest(path: str) -> str:
+    with open(path, "rb") as file:
+        return hashlib.sha256(file.read()).hexdigest()
+
+
+def test_manifests_agree() -> None:
+    """blender_manifest.toml (4.2 and later) keeps the rules of extensions and says what bl_info says."""
+    import tomllib
+
+    import aa_resolve
+
+    folder = os.path.join(t.ROOT, "blender_addon", "aa_resolve")
+    with open(os.path.join(folder, "blender_manifest.toml"), "rb") as file:
+        manifest = tomllib.load(file)
+    for name in ("schema_version", "id", "version", "name", "tagline", "maintainer", "type"):
+        assert isinstance(manifest[name], str) and manifest[name], name
+    assert manifest["schema_version"] == "1.0.0" and manifest["type"] == "add-on"
+    assert manifest["id"] == os.path.basename(folder) and manifest["id"].isidentifier()
+    assert len(manifest["tagline"]) <= 64 and manifest["tagline"][-1].isalnum()
+    assert tuple(map(int, manifest["version"].split("."))) == aa_resolve.bl_info["version"]
+    assert tuple(map(int, manifest["blender_version_min"].split("."))) >= (4, 2, 0)
+    assert all(text.startswith("SPDX:") for text in manifest["license"])
+    assert set(manifest["tags"]) <= {"Animation", "Import-Export", "Render"}  # of Blender's own list
+    for permission, reason in manifest["permissions"].items():
+        assert permission in ("files", "network", "clipboard", "camera", "microphone")
+        assert len(reason) <= 64 and reason[-1].isalnum(), reason
+    assert aa_resolve.bl_info["blender"] == (3, 4, 0)
+
+
+def test_only_compat_knows_versions() -> None:
+    """Names that differ between Blender versions are asked for in one file."""
+    folder = os.path.join(t.ROOT, "blender_addon", "aa_resolve")
+    for name in sorted(os.listdir(folder)):
+        if name.endswith(".py") and name != "compat.py":
+            with open(os.path.join(folder, name), encoding="utf-8") as file:
+                text = file.read()
+            assert "app.version " not in text and "app.version[" not in text, name
+            assert "hasattr(" not in text, f"{name}: ask compat.py"
+
+
 def test_installed_from_zip() -> None:
     scene = t.new_scene(32, 18)
     t.add_camera(scene)
@@ -120,6 +160,7 @@ def test_job_reports_and_cancels() -> None:
     t.add_sun(scene)
     t.key(t.add_object(scene, "Cube"), "location", {1: (-1, 0, 0.5), 11: (1, 0.4, 0.8)})
     t.save(scene, os.path.join(FOLDER, "job.blend"))
+    before = digest(os.path.join(FOLDER, "job.blend"))
     out = os.path.join(FOLDER, "job_shot")
     folder, blend = job.copy_of_open_file()
     assert bpy.data.filepath == os.path.join(
@@ -135,6 +176,7 @@ def test_job_reports_and_cancels() -> None:
     assert 0.0 < work.fraction < 0.5 and not work.error, (work.fraction, work.error)
     work.cancel()
     assert not os.path.exists(folder), "the copy is gone"
+    assert digest(os.path.join(FOLDER, "job.blend")) == before, "the user's file is as it was"
     with open(os.path.join(out, "shot.json"), encoding="utf-8") as file:
         shot = json.load(file)
     assert len(shot["frames"]) >= 3
@@ -150,4 +192,9 @@ def test_job_reports_and_cancels() -> None:
 
 
 if __name__ == "__main__":
-    t.main(test_installed_from_zip, test_job_reports_and_cancels)
+    t.main(
+        test_manifests_agree,
+        test_only_compat_knows_versions,
+        test_installed_from_zip,
+        test_job_reports_and_cancels,
+    )

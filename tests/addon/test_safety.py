@@ -121,6 +121,9 @@ def test_kill_and_resume() -> None:
     done = t.run_headless(BLEND, "--out", whole, "--frames", "1-4", *COMMON, "--json")
     assert done.returncode == 0, done.stderr
     events = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
+    told = {event["pass"]: event for event in events if event["event"] == "cost"}
+    assert {"color", "depth", "motion", "object", "truth"} <= set(told), told
+    assert told["color"]["seconds"] > 0 and told["truth"]["bytes"] > 0, told
     assert [event["event"] for event in events if event["event"] in ("frame", "truth", "done")] == [
         "frame", "truth", "frame", "frame", "frame", "truth", "done",
     ]  # fmt: skip
@@ -181,6 +184,7 @@ def test_interrupt_stops_cleanly() -> None:
         process.returncode == 1 and errors.startswith("error: stopped") and errors.count("\n") == 1
     ), errors
     assert not os.listdir(os.path.join(out, ".aa", "claims"))
+    assert digest(BLEND) == BEFORE
     assert [entry["frame"] for entry in t.read_manifest(out)["frames"]] == [1]
 
 

@@ -1,13 +1,55 @@
-"""From a Blender scene to figures, small: build the scene, export, check, run. The published order must hold."""
+"""From Blender scenes to figures, small: build or import the scene, export, check, run. The published order must hold."""
 
 from __future__ import annotations
 
 import hashlib
 import json
 import os
+import struct
 import subprocess
+import zlib
+from pathlib import Path
 
-from program import ROOT, ProgramTest, main
+from program import PROGRAM, ROOT, ProgramTest, main
+
+ALL_PASSES = "albedo,depth,normal,object,motion,subsamples,edges,segments"
+OBJ = """# as other programs write it: y up, quads, groups, two materials, texture coordinates
+mtllib model.mtl
+o fence
+v -2 0 0\nv 2 0 0\nv 2 2.4 0\nv -2 2.4 0
+vt 0 0\nvt 3 0\nvt 3 2\nvt 0 2
+vn 0 0 1
+usemtl leaves
+f 1/1/1 2/2/1 3/3/1 4/4/1
+o house
+v -1.5 0 -3\nv 1.5 0 -3\nv 1.5 2 -3\nv -1.5 2 -3\nv -1.5 0 -5\nv 1.5 0 -5\nv 1.5 2 -5\nv -1.5 2 -5\nv 0 3.2 -3\nv 0 3.2 -5
+usemtl bricks
+f 5/1 6/2 7/3 8/4
+f 6/1 10/2 11/3 7/4
+f 9/1 5/2 8/3 12/4
+f 8/1 7/2 13/3
+f 7/1 11/2 14/3 13/4
+f 12/1 8/2 13/3 14/4
+o ground
+v -12 0 6\nv 12 0 6\nv 12 0 -14\nv -12 0 -14
+f 15/1 16/2 17/3 18/4
+"""
+MTL = """newmtl leaves
+Kd 1 1 1\nmap_Kd leaves.png\nmap_d leaves.png
+newmtl bricks
+Kd 0.8 0.8 0.8\nmap_Kd bricks.png
+"""
+
+
+def write_png(path: Path, size: int, pixel) -> None:
+    """A square RGBA picture; ``pixel(x, y)`` gives four bytes."""
+    rows = b"".join(b"\0" + b"".join(bytes(pixel(x, y)) for x in range(size)) for y in range(size))
+
+    def chunk(kind: bytes, content: bytes) -> bytes:
+        return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
+
+    header = struct.pack(">IIBBBBB", size, size, 8, 6, 0, 0, 0)
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
 
 class FromBlender(ProgramTest):
@@ -17,6 +59,74 @@ class FromBlender(ProgramTest):
         command = ["blender", "-b", *map(str, arguments)]
         done = subprocess.run(command, capture_output=True, text=True, timeout=600, env={**os.environ, "PATH": path})
         self.assertEqual(done.returncode, 0, done.stdout[-2000:] + done.stderr[-2000:])
+
+    def export(self, blend: Path, shot: Path, *options: object) -> None:
+        before = hashlib.sha256(blend.read_bytes()).hexdigest()
+        self.blender(
+            blend, "--python-exit-code", 9, "-P", ROOT / "blender_addon/aa_resolve/headless.py", "--", "--out", shot, *options
+        )
+        self.assertEqual(before, hashlib.sha256(blend.read_bytes()).hexdigest(), "the user's file was changed")
+
+    def test_foreign_scene(self) -> None:
+        """A model of another program, with textures and cut-outs: every pass of it passes every check."""
+        (self.folder / "model.obj").write_text(OBJ)
+        (self.folder / "model.mtl").write_text(MTL)
+        write_png(self.folder / "bricks.png", 16, lambda x, y: (200, 90 + 60 * ((x // 4 + y // 2) % 2), 60, 255))
+        leaf = lambda x, y: (40, 140, 60, 255 if (x - 16) ** 2 + (y - 16) ** 2 < 150 else 0)  # noqa: E731
+        write_png(self.folder / "leaves.png", 32, leaf)
+        blend, shot = self.folder / "scene.blend", self.folder / "shot"
+        script = Path(__file__).parent / "foreign_scene.py"
+        self.blender("--factory-startup", "--python-exit-code", 9, "-P", script, "--", self.folder / "model.obj", blend)
+        self.export(
+            blend, shot, "--frames", "1-3", "--for", "uncharted,rsaa", "--passes", ALL_PASSES, "--resolution", 160, 90,
+            "--truth-samples", 16,
+        )  # fmt: skip
+        manifest = json.loads((shot / "shot.json").read_text())
+        self.assertEqual(sorted(manifest["objects"].values()), ["fence", "ground", "house"])
+        self.assertFalse(manifest["static"])
+        self.aaresolve("check", shot)
+        self.aaresolve("run", shot, "-m", "noaa", "-m", "uncharted", "-m", "rsaa", "-o", self.folder / "out", "-q")
+
+    def test_scenes_pass_the_check(self) -> None:
+        """Fibres, cut-outs, wires with a skeleton: every scene of scenes/ in small, with every pass it can have."""
+        for name, variants in (("hairball", ("--rotating", "--fibres", 200)), ("flowers", ("--sway",)), ("wires", ())):
+            with self.subTest(name):
+                blend, shot = self.folder / f"{name}.blend", self.folder / name
+                self.blender(
+                    "--factory-startup", "--python-exit-code", 9, "-P", ROOT / f"scenes/{name}.py", "--", "--out", blend, *variants
+                )
+                self.export(
+                    blend, shot, "--frames", "1-2", "--for", "uncharted", "--passes", ALL_PASSES, "--resolution", 96, 54,
+                    "--truth-frames", "none", "--subsamples", "d3d2",
+                )  # fmt: skip
+                self.aaresolve("check", shot)
+
+    def test_export_and_compare(self) -> None:
+        """The panel's button: export, run the methods, contact sheet in the image editor's place, report."""
+        blend, shot = self.folder / "scene.blend", self.folder / "shot"
+        self.blender("--factory-startup", "--python-exit-code", 9, "-P", ROOT / "scenes/moving_sphere.py", "--", "--out", blend)
+        script = self.folder / "compare.py"
+        script.write_text(f"""
+import sys, bpy
+sys.path.insert(0, {str(ROOT / "blender_addon")!r})
+import aa_resolve
+from aa_resolve import job, ui_operators
+aa_resolve.register()
+job.find_resolver = lambda _preferred: {str(PROGRAM)!r}
+settings = bpy.context.scene.aa_resolve
+settings.out, settings.first, settings.last = {str(shot)!r}, 1, 3
+settings.use_resolution, settings.resolution = True, (96, 54)
+settings.truth_samples, settings.method_fxaa311 = 4, True
+assert bpy.ops.aa_resolve.compare() == {{"FINISHED"}}, ui_operators.State.result
+assert ui_operators.State.report.endswith("report.html"), ui_operators.State.report
+sheet = [image for image in bpy.data.images if image.name.startswith("sheet")]
+assert sheet and sheet[0].size[0] > 96, list(bpy.data.images)
+assert bpy.ops.aa_resolve.open_report.poll()
+aa_resolve.unregister()
+""")
+        self.blender(blend, "--python-exit-code", 9, "-P", script)
+        results = json.loads((self.folder / "shot_results/results.json").read_text())
+        self.assertEqual([m["text"] for m in results["methods"]], ["noaa", "fxaa311", "taaSimplest"])
 
     def test_hard_edges(self) -> None:
         blend, shot, out = self.folder / "scene.blend", self.folder / "shot", self.folder / "out"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import importlib.util
 import json
 import math
 
@@ -52,6 +53,27 @@ class Pipeline(ProgramTest):
     def test_addon_ships_the_registry(self) -> None:
         shipped = json.loads((ROOT / "blender_addon/aa_resolve/methods.json").read_text())
         self.assertEqual(shipped, json.loads(self.aaresolve("list", "--json").stdout), "run `make docs`")
+
+    def test_addon_and_program_jitter_alike(self) -> None:
+        """Sequences and sub-sample patterns exist in both; the same name means the same places."""
+        spec = importlib.util.spec_from_file_location("addon_jitter", ROOT / "blender_addon/aa_resolve/jitter.py")
+        addon = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(addon)
+        listed = self.aaresolve("synth", "--list").stdout.split("jitter sequences:")[1]
+        self.assertEqual([line.split()[0] for line in listed.splitlines() if line.strip()], list(addon.SEQUENCES))
+        pattern = dict.fromkeys((*addon.D3D_PATTERNS, "grid3"))
+        for name in addon.SEQUENCES:
+            shot = self.folder / name
+            wanted = next(iter(pattern), "d3d8")
+            pattern.pop(wanted, None)
+            self.aaresolve("synth", "moving", "-o", shot, "--resolution", "8", "8", "--frames", "9", "--jitter", name, "--period", "7", "--subsamples", wanted)
+            manifest = json.loads((shot / "shot.json").read_text())
+            for index, entry in enumerate(manifest["frames"]):
+                there = addon.jitter_at(name, index, manifest["jitter"]["period"])
+                for one, other in zip(entry["jitter"], there):
+                    self.assertAlmostEqual(one, other, 12, f"{name} {index}")
+            self.assertEqual(manifest["jitter"]["start"], addon.start_of(name), name)
+            self.assertEqual(manifest["subsamples"]["positions"], [list(p) for p in addon.pattern_positions(wanted)])
 
     def test_docs_are_generated_from_the_registry(self) -> None:
         self.assertEqual((ROOT / "docs/methods.md").read_text(), self.aaresolve("list", "--markdown").stdout, "run `make docs`")
