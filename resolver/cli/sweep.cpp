@@ -81,6 +81,10 @@ std::vector<MethodSpec> variantsOf(const Options& o) {
     for (const auto& text : o.with)
         if (text != "none") add(text);
     for (const auto& method : o.methods)
+        for (const auto& [name, value] : parseMethod(method).given)
+            if (varied.contains(name))
+                throw UsageError("--vary: parameter '" + name + "' is varied and fixed by -m " + method);
+    for (const auto& method : o.methods)
         for (const auto& text : combinations(method, variations)) add(text);
     return specs;
 }

@@ -244,7 +244,8 @@ class ShotCheck {
                 const auto p = picturesOf(reader_.read(i, pictures));
                 FrameEntry entry = manifest_.frames[i];
                 entry.jitterPx -= meanJitter;  // which is where the mean picture is sampled
-                jitter_.add(entry, registerSamples(pointers(p), pointers(mean), samples, rests));
+                // A mean of n samples knows where an edge lies to within half of their spacing.
+                jitter_.add(entry, registerSamples(pointers(p), pointers(mean), samples, rests), 0.5 / double(count));
             }
         } catch (const InputError&) {  // has been reported
         }

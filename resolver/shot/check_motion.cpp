@@ -9,7 +9,7 @@ using glm::dvec2;
 namespace {
 constexpr double kLeastMotionPx = 0.75;      // slower pixels cannot tell the variants apart
 constexpr double kOccluderRatio = 0.99;      // nearer by 1 %: something hid the surface in the frame before
-constexpr double kSameDepth = 0.03;          // relative: without ids, what a surface moves along the view axis
+constexpr double kOtherSurfaceRatio = 0.85;  // the same without ids: a surface itself comes nearer from frame to frame
 constexpr double kStaticTolerancePx = 1e-3;  // Cycles' Vector pass: 2e-4 px
 constexpr double kLeastHitRate = 0.93;       // shadows of ids: hair and wires thinner than a pixel miss now and then
 
@@ -51,10 +51,8 @@ Lookup lookUp(const Frame& previous, const Frame& frame, int x, int y, dvec2 q) 
     for (int j = 0; j <= 1; j++)
         for (int i = 0; i <= 1; i++) {
             const int px = int(bx) + i, py = int(by) + j;
-            hidden = hidden || previous.depthView.at(px, py) < kOccluderRatio * double(z);
-            if (ids ? previous.objectId.at(px, py) != id
-                    : !(std::abs(previous.depthView.at(px, py) - z) <= kSameDepth * double(z)))
-                continue;
+            hidden = hidden || previous.depthView.at(px, py) < (ids ? kOccluderRatio : kOtherSurfaceRatio) * double(z);
+            if (ids && previous.objectId.at(px, py) != id) continue;
             r.outcome = Outcome::hit;
             if (previous.colorLinear.empty() || frame.colorLinear.empty()) continue;
             double error = 0;
@@ -64,7 +62,7 @@ Lookup lookUp(const Frame& previous, const Frame& frame, int x, int y, dvec2 q) 
             best = std::min(best, error);
         }
     if (r.outcome == Outcome::hit && std::isfinite(best)) r.colourError = best;
-    if (r.outcome == Outcome::miss && hidden) r.outcome = Outcome::unknown;
+    if ((r.outcome == Outcome::miss || !ids) && hidden) r.outcome = Outcome::unknown;
     return r;
 }
 }  // namespace
@@ -116,7 +114,10 @@ void MotionCheck::judge(CheckReport& report) const {
         return;
     }
     report.measured.push_back({"motion.pixels", double(moving_)});
-    report.measured.push_back({ids_ ? "motion.sameObjectShare" : "motion.sameDepthShare", rate(stated)});
+    if (ids_)
+        report.measured.push_back({"motion.sameObjectShare", rate(stated)});
+    else
+        report.measured.push_back({"motion.colourError", colour(stated)});
     // Judged by misses first: the ids are exact. By colour where the ids say the same of all (a wall fills the
     // picture).
     size_t winner = 0;
@@ -142,7 +143,7 @@ void MotionCheck::judge(CheckReport& report) const {
                                    ids_ ? "p - motion on the same object in the frame before"
                                         : "p - motion on the same surface in the frame before",
                                    found, adviceFor(winner), stated.misses});
-    } else if (rate(stated) < kLeastHitRate && ids_) {  // the depth of a surface seen at a low angle says too little
+    } else if (rate(stated) < kLeastHitRate && ids_) {
         std::snprintf(found, sizeof found, "%.2f %% of %llu moving pixels do (object %u became %u)", 100 * rate(stated),
                       static_cast<unsigned long long>(stated.hits + stated.misses), firstMiss_->expected,
                       firstMiss_->found);

@@ -1,6 +1,6 @@
 // Does p - motion land where the surface was? On every pixel that moves, the sample position minus the motion is looked
 // up in the frame before: the same object must be among the four samples around it, or something nearer must have
-// hidden it. Without ids a surface of the same depth takes the object's place. All eight sign and axis variants of the
+// hidden it. Without ids the colour alone decides. All eight sign and axis variants of the
 // vectors compete; the stated one must win.
 #pragma once
 #include <array>

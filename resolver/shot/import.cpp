@@ -282,7 +282,8 @@ class Import {
             counts.noIndex += f.counts.noIndex;
             counts.idOnBackground += f.counts.idOnBackground;
         }
-        const bool rests = motionMax <= kRestsPx && changed <= kChangedShare;
+        const double mostChanged = jitter_ ? kChangedShareJittered : kChangedShare;
+        const bool rests = motionMax <= kRestsPx && changed <= mostChanged;
         m.isStatic = o_.isStatic || rests;
         if (m.isStatic) shareTruth(m);
         nameObjects(ids);
@@ -306,10 +307,10 @@ class Import {
                 std::to_string(100 * edges.blended / (edges.sharp + edges.blended)) +
                 " % of the edge pixels lie between their two sides: the picture is anti-aliased already, "
                 "and no method can be judged on it; render with 1 sample per pixel");
-        if (plan_.vector && motionMax == 0 && changed > kChangedShare && !o_.isStatic)
+        if (plan_.vector && motionMax == 0 && changed > mostChanged && !o_.isStatic)
             warnings.push_back(
                 "every motion vector is 0 although the pictures change: motion blur was on (Vector is empty "
-                "then), or only the light changes (then pass --static); switch it off and render again");
+                "then), or only noise or the light changes (then pass --static); switch it off and render again");
         if (plan_.vector && !camera_ && motionMax > kRestsPx)
             notes.push_back(
                 "without --camera: motion of the background is 0, and a change of lens is not in the vectors");

@@ -24,6 +24,7 @@ EdgeCounts countEdges(const Rgb& colour);
 // Share of the pixels whose colour (or id, where both frames have ids) lies outside of what their 3x3 neighbourhood
 // showed in the frame before: jitter does not do that, motion does.
 double changedShare(const Frame& previous, const Frame& frame);
-inline constexpr double kChangedShare = 0.005;  // above, something moves or flickers
+// Above, something moves or flickers. Jitter makes wires that are thinner than a pixel come and go.
+inline constexpr double kChangedShare = 0.002, kChangedShareJittered = 0.02;
 
 }  // namespace aa

@@ -31,8 +31,12 @@ class Sweep(ProgramTest):
         figures = [{m["text"]: (m["pooled"], m["temporal"]) for m in self.results(o)["methods"]} for o in (out, again)]
         self.assertEqual(figures[0], figures[1])
         self.assertEqual(self.results(out)["pairs"], self.results(again)["pairs"])
-        with (out / "results.csv").open() as file:
-            self.assertEqual(len(list(csv.DictReader(file))), 5 * 5)
+        tables = []
+        for folder in (out, again):
+            with (folder / "results.csv").open() as file:
+                tables.append([(row["method"], row["frame"], row["psnr"]) for row in csv.DictReader(file)])
+        self.assertGreaterEqual(len(tables[0]), 5 * 5)
+        self.assertEqual(tables[0], tables[1])
         self.aaresolve("sheet", out, "-o", self.folder / "sheet.png")
         self.aaresolve("report", out, "-o", self.folder / "report.html")
         self.assertIn("kmin=0.9", (self.folder / "report.html").read_text())
@@ -62,7 +66,7 @@ class Sweep(ProgramTest):
         refuse("did you mean 'kmin'", "kmni=0.5")
         refuse("0 to 1", "kmin=0.5,2")
         refuse("more than 256", "kmin=" + ",".join(str(i / 1000) for i in range(300)))
-        refuse("kmin", "kmin=0.1,0.2", method="uncharted:kmin=0.5")
+        refuse("varied and fixed", "kmin=0.1,0.2", method="uncharted:kmin=0.5")
         self.assertFalse((self.folder / "o").exists(), "a refused sweep leaves nothing behind")
 
 
