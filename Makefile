@@ -5,7 +5,7 @@ BLENDER ?= blender
 # A compiler cache is used where there is one.
 LAUNCHER := $(if $(shell command -v ccache 2>/dev/null),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache,)
 
-.PHONY: help deps configure build program demo test sanitize bench addon docs reproduce format clean
+.PHONY: help deps configure build program demo test fuzz sanitize bench addon docs reproduce format clean
 help:
 	@echo "make demo       build, render two scenes in Blender, run the methods, make contact sheets and reports"
 	@echo "make test       build and run every test"
@@ -13,6 +13,7 @@ help:
 	@echo "make addon      the Blender add-on as one zip, at build/aa_resolve.zip"
 	@echo "make bench      speed of every method, ns per pixel, and of the exporter, CPU seconds"
 	@echo "make reproduce  render the study's scenes, run every method on each, write docs/results (QUICK=1: a short form)"
+	@echo "make fuzz       damaged input through the program, FUZZ_SECONDS=300, SEED=1"
 	@echo "make sanitize   unit and property tests under AddressSanitizer and UndefinedBehaviorSanitizer"
 	@echo "make deps, docs, format, clean"
 
@@ -33,6 +34,11 @@ demo: program
 
 test: build
 	@ctest --preset release -j $(JOBS)
+
+FUZZ_SECONDS ?= 300
+SEED ?= 1
+fuzz: program
+	@python3 tests/fuzz/fuzz.py build/aaresolve --seconds $(FUZZ_SECONDS) --seed $(SEED) --jobs $(JOBS)
 
 sanitize: deps
 	@cmake --preset sanitize $(LAUNCHER) >/dev/null

@@ -37,5 +37,7 @@ void addReport(CLI::App& app, Context& context);
 void addLearnRsaa(CLI::App& app, Context& context);
 void addSynth(CLI::App& app, Context& context);
 void addCheck(CLI::App& app, Context& context);
+void addImport(CLI::App& app, Context& context);
+void addSweep(CLI::App& app, Context& context);
 
 }  // namespace aa

@@ -5,19 +5,18 @@
 #include <set>
 
 #include "cli/cli.h"
-#include "cli/runner.h"
+#include "cli/run_arguments.h"
 #include "image/error.h"
 
 namespace aa {
 namespace {
 
 struct Options {
-    std::string shot, out, frames, write = "exr", writeFrames = "truth", toneMap = "none", input = "sanitise";
+    RunArguments run;
     std::vector<std::string> methods;
-    double exposure = 0;
-    bool json = false, quiet = false, debugLayers = false;
-    WorkOptions work;
+    bool debugLayers = false;
 };
+}  // namespace
 
 void printTable(const RunResults& r) {
     std::vector<const MethodResult*> rows;
@@ -53,6 +52,7 @@ void printTable(const RunResults& r) {
             std::printf("replaced input values: %s %llu\n", what.c_str(), static_cast<unsigned long long>(count));
 }
 
+namespace {
 // Figures over time; only what the shot gives.
 void printTemporal(const RunResults& r) {
     const auto has = [&](auto member) {
@@ -98,31 +98,19 @@ void execute(const Options& o, Context& context) {
         if (!folders.insert(run.methods.back().folderName()).second)
             throw UsageError("method '" + text + "' is given twice");
     }
-    run.exec = o.work.exec();
-    run.threads = o.work.threads;
-    run.display = {float(o.exposure), o.toneMap == "aces"       ? ToneMap::aces
-                                      : o.toneMap == "reinhard" ? ToneMap::reinhard
-                                                                : ToneMap::none};
-    run.out = o.out;
-    run.writeExr = o.write.find("exr") != std::string::npos;
-    run.writePng = o.write.find("png") != std::string::npos;
-    if (!run.writeExr && !run.writePng && o.write != "none")
-        throw UsageError("--write: expected exr, png, exr,png or none, found '" + o.write + "'");
-    run.writeAllFrames = o.writeFrames == "all";
     run.debugLayers = o.debugLayers;
-    const ShotReader shot(o.shot, o.input == "strict" ? InputPolicy::strict : InputPolicy::sanitise);
-    run.frames = selectFrames(shot.manifest(), o.frames);
+    const ShotReader shot = openShot(o.run, run);
     RunResults results;
-    withThreads(o.work.threads, [&] {
-        Progress progress(shot.manifest().name, run.frames.size(), o.quiet);
+    withThreads(o.run.work.threads, [&] {
+        Progress progress(shot.manifest().name, run.frames.size(), o.run.quiet);
         results = aa::run(shot, run, progress);
         if (progress.interrupted()) context.exitCode = 130;
     });
-    if (o.json)
+    if (o.run.json)
         std::cout << toJsonText(results) << "\n";
     else
         printTable(results), printTemporal(results);
-    if (!o.json) std::printf("results: %s\n", (run.out / "results.json").c_str());
+    if (!o.run.json) std::printf("results: %s\n", (run.out / "results.json").c_str());
 }
 
 }  // namespace
@@ -130,24 +118,11 @@ void execute(const Options& o, Context& context) {
 void addRun(CLI::App& app, Context& context) {
     auto o = std::make_shared<Options>();
     auto* c = app.add_subcommand("run", "Run methods on a shot and measure them against its ground truth");
-    c->add_option("SHOT", o->shot, "the shot's folder")->required();
     c->add_option("-m,--method", o->methods, "a method, `id` or `id:name=value,name=value`; repeat for more")
         ->required()
         ->allow_extra_args(false);
-    c->add_option("-o,--out", o->out, "folder for images, results.json and results.csv")->required();
-    c->add_option("--frames", o->frames, "frames, as 1-16,20; default all");
-    c->add_option("--write", o->write, "image files: exr (linear), png (8-bit sRGB), exr,png or none");
-    c->add_option("--write-frames", o->writeFrames,
-                  "truth = frames that have their own truth (of a static shot the last), all")
-        ->check(CLI::IsMember({"truth", "all"}));
-    c->add_option("--exposure", o->exposure, "display exposure, EV")->check(CLI::Range(-20.0, 20.0));
-    c->add_option("--tone-map", o->toneMap, "display tone map")->check(CLI::IsMember({"none", "reinhard", "aces"}));
-    c->add_option("--input", o->input, "NaN and Inf in the input: sanitise = replace and count, strict = refuse")
-        ->check(CLI::IsMember({"sanitise", "strict"}));
+    addRunArguments(*c, o->run);
     c->add_flag("--debug-layers", o->debugLayers, "also write each method's intermediate images");
-    c->add_flag("--json", o->json, "print results.json instead of the table");
-    c->add_flag("-q,--quiet", o->quiet, "no progress");
-    addWorkOptions(*c, o->work);
     c->callback([o, &context] { execute(*o, context); });
 }
 

@@ -23,22 +23,6 @@ std::string frameName(int frame, const char* extension) {
     return text;
 }
 
-// A method that asks for a pass which the shot lacks is named together with the pass.
-void requirePasses(const ShotReader& shot, const std::vector<MethodSpec>& methods) {
-    const PassSet jittered = shot.offered();
-    const PassSet centre = shot.hasCentreFrames() ? shot.offered(Sampling::centre) : jittered;
-    for (const auto& m : methods)
-        if (const auto missing =
-                names(m.passes().without(m.method->sampling() == Sampling::centre ? centre : jittered));
-            !missing.empty()) {
-            std::string all;
-            for (const auto& s : methods) all += (all.empty() ? "" : ",") + std::string(s.method->id);
-            throw InputError(shot.manifest().folder.string() + ": method '" + m.text + "' needs the pass '" +
-                             std::string(missing[0]) + "', which the shot does not have; export again with --for " +
-                             all);
-        }
-}
-
 // All of `asked`, or nothing: the figures along the motion need every one of them.
 PassSet passesThatAreThere(PassSet asked, PassSet offered) {
     return asked.without(offered).empty() ? asked : PassSet{};
@@ -143,6 +127,21 @@ std::string writeImage(const RunningMethod& m, int frame, const RunOptions& o) {
 
 }  // namespace
 
+void requirePasses(const ShotReader& shot, const std::vector<MethodSpec>& methods) {
+    const PassSet jittered = shot.offered();
+    const PassSet centre = shot.hasCentreFrames() ? shot.offered(Sampling::centre) : jittered;
+    for (const auto& m : methods)
+        if (const auto missing =
+                names(m.passes().without(m.method->sampling() == Sampling::centre ? centre : jittered));
+            !missing.empty()) {
+            std::string all;
+            for (const auto& s : methods) all += (all.empty() ? "" : ",") + std::string(s.method->id);
+            throw InputError(shot.manifest().folder.string() + ": method '" + m.text + "' needs the pass '" +
+                             std::string(missing[0]) + "', which the shot does not have; export again with --for " +
+                             all);
+        }
+}
+
 std::vector<size_t> selectFrames(const Manifest& manifest, const std::string& list) {
     std::vector<size_t> chosen;
     if (list.empty()) {
@@ -177,6 +176,15 @@ std::vector<size_t> selectFrames(const Manifest& manifest, const std::string& li
 }
 
 RunResults run(const ShotReader& shot, const RunOptions& o, Progress& progress) {
+    std::vector<TileErrors> errors;
+    RunResults results = runMethods(shot, o, progress, errors);
+    finish(results, errors);
+    writeResults(results, o.out);
+    return results;
+}
+
+RunResults runMethods(const ShotReader& shot, const RunOptions& o, Progress& progress,
+                      std::vector<TileErrors>& errors) {
     const Manifest& manifest = shot.manifest();
     requirePasses(shot, o.methods);
     std::vector<RunningMethod> methods;
@@ -189,7 +197,7 @@ RunResults run(const ShotReader& shot, const RunOptions& o, Progress& progress) 
     makeWritableFolder(o.out / "truth");
 
     RunResults results = describeRun(manifest, o);
-    std::vector<TileErrors> errors(methods.size());
+    errors.assign(methods.size(), {});
     double noise = 0;
     size_t withTruth = 0;
     // A static shot has one truth for all its frames: decoded and encoded once.
@@ -250,15 +258,16 @@ RunResults run(const ShotReader& shot, const RunOptions& o, Progress& progress) 
         progress.step("frame " + std::to_string(frame->number));
         if (progress.interrupted()) break;
     }
-    if (withTruth > 0) results.truthNoise = noise / double(withTruth);
+    // Of a truth with one half only (an imported render) nobody knows the noise.
+    if (const auto t = manifest.extra.find("truth");
+        withTruth > 0 && !(t != manifest.extra.end() && t->value("halves", 2) == 1))
+        results.truthNoise = noise / double(withTruth);
     if (const SanitiseCounts& n = stream.counts(); n.total() > 0)
         results.sanitised = {
             {"colourNan", n.colourNan}, {"colourInf", n.colourInf}, {"colourNegative", n.colourNegative},
             {"depth", n.depth},         {"normal", n.normal},       {"motion", n.motion},
             {"edges", n.edges},         {"segments", n.segments}};
     for (size_t k = 0; judgeTime && k < methods.size(); k++) results.methods[k].temporal = judges[k].result();
-    finish(results, errors);
-    writeResults(results, o.out);
     return results;
 }
 

@@ -27,6 +27,13 @@ struct RunOptions {
 // Runs, measures and writes OUT/<method>/<frame>.*, OUT/truth/<frame>.exr, results.json and results.csv. When
 // interrupted, the results cover the frames that were finished. Throws InputError, UsageError.
 RunResults run(const ShotReader& shot, const RunOptions& options, Progress& progress);
+// The same without what needs all methods together: figures are not pooled, no results are written. `errors` receives
+// the tile errors that finish() asks for.
+RunResults runMethods(const ShotReader& shot, const RunOptions& options, Progress& progress,
+                      std::vector<TileErrors>& errors);
+
+// Throws InputError naming the first method that asks for a pass which the shot lacks.
+void requirePasses(const ShotReader& shot, const std::vector<MethodSpec>& methods);
 
 // Frames as a list `1-16,20` (frame numbers of the manifest; empty = all). Throws UsageError, InputError (no such
 // frame).

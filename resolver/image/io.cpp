@@ -7,16 +7,16 @@
 #include <fstream>
 
 #include "image/error.h"
+#include "image/no_date.h"
 
 namespace aa {
 namespace fs = std::filesystem;
+constexpr int kLargestSide = 16384;  // methods/08 s.8.2
+
 using OIIO::ImageInput;
 using OIIO::ImageOutput;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
-
-// OpenImageIO would stamp the time of day: the same image must give the same file.
-constexpr const char* kNoDate = "2000:01:01 00:00:00";
 
 fs::path temporaryName(const fs::path& file) {
     std::string name = ".";
@@ -64,6 +64,9 @@ LoadedImage readImage(const fs::path& file) {
     }
     const ImageSpec& spec = in->spec();
     if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) throw InputError(file.string() + ": has no pixels");
+    if (spec.width > kLargestSide || spec.height > kLargestSide)
+        throw InputError(file.string() + ": " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
+                         " pixels; expected 1..16384 a side");
     const int channels = std::min(spec.nchannels, 3);
     std::vector<float> pixels(size_t(spec.width) * size_t(spec.height) * size_t(channels));
     if (!in->read_image(0, 0, 0, channels, TypeDesc::FLOAT, pixels.data())) {

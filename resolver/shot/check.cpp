@@ -6,6 +6,7 @@
 
 #include "image/error.h"
 #include "shot/check_depth.h"
+#include "shot/check_ids.h"
 #include "shot/check_jitter.h"
 #include "shot/check_motion.h"
 #include "shot/reader.h"
@@ -44,8 +45,10 @@ class ShotCheck {
             std::optional<Frame> frame = frameAt(i);
             centreAt(i);
             const bool follows = i > 0 && previous && frame && !frame->reset && frame->number == previous->number + 1;
-            if (frame && follows && !manifest_.isStatic && has(*frame, Pass::motion | Pass::object | Pass::depth))
-                motion_.add(*previous, *frame);
+            if (frame && follows && has(*frame, Pass::motion | Pass::depth)) {
+                const bool sameIds = !has(*frame, Pass::object) || ids_.add(*previous, *frame, report_);
+                if (sameIds && !manifest_.isStatic) motion_.add(*previous, *frame);
+            }
             if (frame && !manifest_.isStatic && has(*frame, Pass::motion | Pass::depth)) depth_.addMotion(*frame);
             previous = std::move(frame);
             if (goOn && !goOn(manifest_.frames[i].frame)) break;
@@ -233,8 +236,8 @@ class ShotCheck {
     // beside the colour.
     void registerWithoutTruth() {
         const size_t count = manifest_.frames.size();
-        const PassSet pictures =
-            (Pass::object | Pass::color).without((Pass::object | Pass::color).without(report_.passes));
+        const PassSet all = ids_.changed() ? PassSet(Pass::color) : Pass::object | Pass::color;
+        const PassSet pictures = all.without(all.without(report_.passes));
         if (count < kFewestForMean || pictures.empty() || !report_.passes.has(Pass::motion)) {
             report_.notChecked.push_back(
                 "jitter: no truth, and without it at least 4 frames with motion and ids or colour are needed");
@@ -254,7 +257,8 @@ class ShotCheck {
                 const auto p = picturesOf(reader_.read(i, pictures));
                 FrameEntry entry = manifest_.frames[i];
                 entry.jitterPx -= meanJitter;  // which is where the mean picture is sampled
-                jitter_.add(entry, registerSamples(pointers(p), pointers(mean), samples, rests));
+                // A mean of n samples knows where an edge lies to within half of their spacing.
+                jitter_.add(entry, registerSamples(pointers(p), pointers(mean), samples, rests), 0.5 / double(count));
             }
         } catch (const InputError&) {  // has been reported
         }
@@ -299,6 +303,7 @@ class ShotCheck {
     const Manifest& manifest_;
     CheckReport report_;
     JitterCheck jitter_;
+    IdCheck ids_;
     MotionCheck motion_;
     DepthCheck depth_;
     PassSet centrePasses_;

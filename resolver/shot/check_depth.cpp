@@ -119,6 +119,7 @@ void DepthCheck::addBounds(const Frame& f, const FrameEntry& entry, CheckReport&
         if (value.is_array() && value.size() == 2 && value[0].is_number() && value[1].is_number() &&
             id.find_first_not_of("0123456789") == std::string::npos && id.size() < 11)
             range[uint32_t(std::stoull(id))] = {value[0].get<double>(), value[1].get<double>()};
+    boundsSeen_ = boundsSeen_ || !range.empty();
     uint64_t outside = 0;
     glm::ivec2 first;
     for (int y = 0; y < f.height; y++)
@@ -259,8 +260,12 @@ void DepthCheck::judge(CheckReport& report) const {
     if (report.findings.size() == before) known = scale(parallaxScale_, "parallax") || known;
     if (!known)
         report.notChecked.push_back(
-            "scale of depth beyond near..far: needs a moving camera, sub-samples, or slanted surfaces seen "
-            "orthographically");
+            boundsSeen_
+                ? "scale of depth beyond near..far and depth_bounds: through a resting perspective camera a scaled "
+                  "depth looks the same"
+                : "scale of depth beyond near..far: through a resting perspective camera a scaled depth looks the "
+                  "same; a moving camera, sub-samples, depth_bounds in shot.json, or slanted surfaces seen "
+                  "orthographically would show it");
 }
 
 }  // namespace aa

@@ -29,7 +29,7 @@ class DepthCheck {
     std::vector<float> orthographicScale_;  // stated slope / true slope
     std::vector<float> parallaxScale_;      // stated depth / depth that explains the motion
     std::vector<float> subSampleScale_;     // stated depth / depth of the same surface's sub-samples
-    bool rangeFound_ = false, boundsFound_ = false;
+    bool rangeFound_ = false, boundsFound_ = false, boundsSeen_ = false;
 };
 
 }  // namespace aa

@@ -25,6 +25,7 @@ struct Edge {
     size_t channel = 0;
     double contrast = 0;  // 0: none
     dvec2 normal{0.0};    // unit, towards the brighter side
+    double share = 0;     // of the brighter side in the pixel
 };
 double bilinear(const PlaneF& p, double x, double y) {  // in units of pixel indices
     const int i = int(std::floor(x)), j = int(std::floor(y));
@@ -49,7 +50,7 @@ Edge edgeAt(const std::vector<const PlaneF*>& mean, int x, int y) {
         if (!(contrast > kLeastContrast && contrast > e.contrast && contrast > 0.1 * high)) continue;
         const bool flat = std::abs(along(2.5) - high) < 0.1 * contrast && std::abs(along(-2.5) - low) < 0.1 * contrast;
         const bool crossed = at(0, 0) > low + 0.02 * contrast && at(0, 0) < high - 0.02 * contrast;
-        if (flat && crossed) e = {c, contrast, n};
+        if (flat && crossed) e = {c, contrast, n, (at(0, 0) - low) / contrast};
     }
     return e;
 }
@@ -70,10 +71,10 @@ Registration registerSamples(const std::vector<const PlaneF*>& sample, const std
     struct Sample {
         dvec2 v;
         double difference;
-        size_t direction;
+        size_t direction, half;
     };
     std::vector<Sample> samples;
-    std::array<size_t, kDirections> count{};
+    std::array<std::array<size_t, 2>, kDirections> count{};
     const int w = mean[0]->width(), h = mean[0]->height();
     for (int y = 1; y + 1 < h; y++)
         for (int x = 1; x + 1 < w; x++) {
@@ -85,16 +86,24 @@ Registration registerSamples(const std::vector<const PlaneF*>& sample, const std
             const double turn =
                 std::atan2(e.normal.y, e.normal.x) / std::numbers::pi;  // a line is the same after half a turn
             const size_t direction = size_t((turn - std::floor(turn)) * kDirections) % kDirections;
-            samples.push_back({e.normal / extentAlong(e.normal, meanOver), difference, direction});
-            count[direction]++;
+            const size_t half = e.share > 0.5;
+            samples.push_back({e.normal / extentAlong(e.normal, meanOver), difference, direction, half});
+            count[direction][half]++;
         }
     // Every direction counts the same, however many edges run that way: one wall of stripes must not drown the rest.
+    // And pixels that an edge covers by less than half count as much as those it covers by more: a level horizon lies
+    // at one offset in all its pixels, which would look like jitter.
+    const auto counts = [&](const Sample& s) {
+        const auto& halves = count[s.direction];
+        return std::min(halves[0], halves[1]) >= kFewestOfADirection / 3 &&
+               halves[0] + halves[1] >= kFewestOfADirection;
+    };
     glm::dmat2 normalMatrix(0.0), weightSquares(0.0);
     dvec2 right(0.0);
     Registration r;
     for (const Sample& s : samples) {
-        if (count[s.direction] < kFewestOfADirection) continue;
-        const double weight = 1.0 / double(count[s.direction]);
+        if (!counts(s)) continue;
+        const double weight = 0.5 / double(count[s.direction][s.half]);
         normalMatrix += weight * glm::outerProduct(s.v, s.v);
         weightSquares += weight * weight * glm::outerProduct(s.v, s.v);
         right += weight * s.difference * s.v;
@@ -107,14 +116,14 @@ Registration registerSamples(const std::vector<const PlaneF*>& sample, const std
     r.offsetPx = inverse * right;
     double squares = 0;
     for (const Sample& s : samples)
-        if (count[s.direction] >= kFewestOfADirection) squares += std::pow(s.difference - glm::dot(s.v, r.offsetPx), 2);
+        if (counts(s)) squares += std::pow(s.difference - glm::dot(s.v, r.offsetPx), 2);
     const glm::dmat2 covariance = inverse * weightSquares * inverse * (squares / double(r.pixels - 2));
     r.sigmaPx = {std::sqrt(covariance[0][0]), std::sqrt(covariance[1][1])};
     return r;
 }
 
-void JitterCheck::add(const FrameEntry& entry, const Registration& found) {
-    frames_.push_back({entry.frame, entry.jitterPx, found});
+void JitterCheck::add(const FrameEntry& entry, const Registration& found, double slackPx) {
+    frames_.push_back({entry.frame, entry.jitterPx, found, slackPx});
 }
 
 void JitterCheck::judge(CheckReport& report) const {
@@ -130,7 +139,8 @@ void JitterCheck::judge(CheckReport& report) const {
     for (const auto& f : good) {
         const dvec2 error = f.found.offsetPx - f.statedPx;
         sum += glm::length(error);
-        const dvec2 tolerance = glm::max(dvec2(kTolerancePx) + 0.3 * glm::abs(f.statedPx), kSigmas * f.found.sigmaPx);
+        const dvec2 tolerance =
+            glm::max(dvec2(kTolerancePx + f.slackPx) + 0.3 * glm::abs(f.statedPx), kSigmas * f.found.sigmaPx);
         if (!(std::abs(error.x) <= tolerance.x && std::abs(error.y) <= tolerance.y)) wrong.push_back(&f);
     }
     report.measured.push_back({"jitter.frames", double(good.size())});

@@ -27,7 +27,8 @@ Registration registerSamples(const std::vector<const PlaneF*>& sample, const std
 // Compares what was found in the pixels with the manifest.
 class JitterCheck {
   public:
-    void add(const FrameEntry& entry, const Registration& found);
+    // `slackPx`: how far the mean picture itself may lie off.
+    void add(const FrameEntry& entry, const Registration& found, double slackPx = 0);
     size_t size() const { return frames_.size(); }
     void judge(CheckReport& report) const;
 
@@ -36,6 +37,7 @@ class JitterCheck {
         int frame;
         glm::dvec2 statedPx;
         Registration found;
+        double slackPx;
     };
     bool judgeTogether(const std::vector<Registered>& good, CheckReport& report) const;
     std::vector<Registered> frames_;

@@ -9,6 +9,7 @@ using glm::dvec2;
 namespace {
 constexpr double kLeastMotionPx = 0.75;      // slower pixels cannot tell the variants apart
 constexpr double kOccluderRatio = 0.99;      // nearer by 1 %: something hid the surface in the frame before
+constexpr double kOtherSurfaceRatio = 0.85;  // the same without ids: a surface itself comes nearer from frame to frame
 constexpr double kStaticTolerancePx = 1e-3;  // Cycles' Vector pass: 2e-4 px
 constexpr double kLeastHitRate = 0.93;       // shadows of ids: hair and wires thinner than a pixel miss now and then
 
@@ -41,16 +42,17 @@ Lookup lookUp(const Frame& previous, const Frame& frame, int x, int y, dvec2 q) 
     const dvec2 base = q - previous.jitterPx - 0.5;  // in units of its samples
     const double bx = std::floor(base.x), by = std::floor(base.y);
     if (!(bx >= 0 && by >= 0 && bx + 1 < frame.width && by + 1 < frame.height)) return {};
-    const uint32_t id = frame.objectId.at(x, y);
+    const bool ids = !frame.objectId.empty() && !previous.objectId.empty();
+    const uint32_t id = ids ? frame.objectId.at(x, y) : 0;
     const float z = frame.depthView.at(x, y);
-    Lookup r{Outcome::miss, previous.objectId.at(int(std::lround(base.x)), int(std::lround(base.y))), 0};
+    Lookup r{Outcome::miss, ids ? previous.objectId.at(int(std::lround(base.x)), int(std::lround(base.y))) : 0, 0};
     bool hidden = false;
     double best = INFINITY;
     for (int j = 0; j <= 1; j++)
         for (int i = 0; i <= 1; i++) {
             const int px = int(bx) + i, py = int(by) + j;
-            hidden = hidden || previous.depthView.at(px, py) < kOccluderRatio * double(z);
-            if (previous.objectId.at(px, py) != id) continue;
+            hidden = hidden || previous.depthView.at(px, py) < (ids ? kOccluderRatio : kOtherSurfaceRatio) * double(z);
+            if (ids && previous.objectId.at(px, py) != id) continue;
             r.outcome = Outcome::hit;
             if (previous.colorLinear.empty() || frame.colorLinear.empty()) continue;
             double error = 0;
@@ -60,7 +62,7 @@ Lookup lookUp(const Frame& previous, const Frame& frame, int x, int y, dvec2 q) 
             best = std::min(best, error);
         }
     if (r.outcome == Outcome::hit && std::isfinite(best)) r.colourError = best;
-    if (r.outcome == Outcome::miss && hidden) r.outcome = Outcome::unknown;
+    if ((r.outcome == Outcome::miss || !ids) && hidden) r.outcome = Outcome::unknown;
     return r;
 }
 }  // namespace
@@ -81,12 +83,13 @@ void MotionCheck::addStatic(const Frame& frame, CheckReport& report) {
 }
 
 void MotionCheck::add(const Frame& previous, const Frame& frame) {
+    ids_ = !frame.objectId.empty() && !previous.objectId.empty();
     const double widest = 2.0 * std::max(frame.width, frame.height);
     for (int y = 0; y < frame.height; y++)
         for (int x = 0; x < frame.width; x++) {
             const dvec2 mv(frame.motionXPx.at(x, y), frame.motionYPx.at(x, y));
             const double length = std::hypot(mv.x, mv.y);
-            if (!(length >= kLeastMotionPx && length <= widest) || frame.objectId.at(x, y) == 0) continue;
+            if (!(length >= kLeastMotionPx && length <= widest) || frame.depthView.at(x, y) >= 1e9f) continue;
             moving_++;
             const dvec2 p = dvec2(x + 0.5, y + 0.5) + frame.jitterPx;
             for (size_t v = 0; v < variants_.size(); v++) {
@@ -94,7 +97,8 @@ void MotionCheck::add(const Frame& previous, const Frame& frame) {
                 if (l.outcome == Outcome::hit) variants_[v].hits++, variants_[v].colourError += l.colourError;
                 if (l.outcome != Outcome::miss) continue;
                 variants_[v].misses++;
-                if (v == 0 && !firstMiss_) firstMiss_ = Miss{frame.number, {x, y}, frame.objectId.at(x, y), l.found};
+                if (v == 0 && !firstMiss_)
+                    firstMiss_ = Miss{frame.number, {x, y}, ids_ ? frame.objectId.at(x, y) : 0, l.found};
             }
         }
 }
@@ -106,11 +110,14 @@ void MotionCheck::judge(CheckReport& report) const {
     const auto colour = [](const Variant& v) { return v.colourError / double(std::max<uint64_t>(v.hits, 1)); };
     const Variant& stated = variants_[0];
     if (stated.hits + stated.misses < 50) {
-        report.notChecked.push_back("motion: fewer than 50 pixels of objects move by more than 0.75 px");
+        report.notChecked.push_back("motion: fewer than 50 pixels of surfaces move by more than 0.75 px");
         return;
     }
     report.measured.push_back({"motion.pixels", double(moving_)});
-    report.measured.push_back({"motion.sameObjectShare", rate(stated)});
+    if (ids_)
+        report.measured.push_back({"motion.sameObjectShare", rate(stated)});
+    else
+        report.measured.push_back({"motion.colourError", colour(stated)});
     // Judged by misses first: the ids are exact. By colour where the ids say the same of all (a wall fills the
     // picture).
     size_t winner = 0;
@@ -133,9 +140,10 @@ void MotionCheck::judge(CheckReport& report) const {
                       "%.2f %% as stated, %.2f %% with another sign or axis (colour error %.4f against %.4f)",
                       100 * rate(stated), 100 * rate(variants_[winner]), colour(stated), colour(variants_[winner]));
         report.findings.push_back({"motion", frame, "motion.X motion.Y", at,
-                                   "p - motion on the same object in the frame before", found, adviceFor(winner),
-                                   stated.misses});
-    } else if (rate(stated) < kLeastHitRate) {
+                                   ids_ ? "p - motion on the same object in the frame before"
+                                        : "p - motion on the same surface in the frame before",
+                                   found, adviceFor(winner), stated.misses});
+    } else if (rate(stated) < kLeastHitRate && ids_) {
         std::snprintf(found, sizeof found, "%.2f %% of %llu moving pixels do (object %u became %u)", 100 * rate(stated),
                       static_cast<unsigned long long>(stated.hits + stated.misses), firstMiss_->expected,
                       firstMiss_->found);

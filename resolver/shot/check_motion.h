@@ -1,6 +1,7 @@
 // Does p - motion land where the surface was? On every pixel that moves, the sample position minus the motion is looked
 // up in the frame before: the same object must be among the four samples around it, or something nearer must have
-// hidden it. All eight sign and axis variants of the vectors compete; the stated one must win.
+// hidden it. Without ids the colour alone decides. All eight sign and axis variants of the
+// vectors compete; the stated one must win.
 #pragma once
 #include <array>
 
@@ -10,7 +11,7 @@ namespace aa {
 
 class MotionCheck {
   public:
-    // Both frames need object, depth and motion; colour breaks ties where it is present.
+    // Both frames need depth and motion; ids and colour tell more where they are present.
     void add(const Frame& previous, const Frame& frame);
     // A static shot may carry motion, but only zeros.
     void addStatic(const Frame& frame, CheckReport& report);
@@ -29,7 +30,7 @@ class MotionCheck {
         uint32_t expected = 0, found = 0;
     };
     std::optional<Miss> firstMiss_;
-    bool staticFound_ = false;
+    bool staticFound_ = false, ids_ = false;
 };
 
 }  // namespace aa

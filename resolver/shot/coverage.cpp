@@ -1,10 +1,9 @@
 #include "shot/coverage.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <optional>
+#include <numbers>
 
 namespace aa {
 using glm::dvec2;
@@ -39,26 +38,119 @@ double discTriangle(dvec2 a, dvec2 b, double r) {
     return (t0 > 0 ? sector(a, enter) : 0.0) + 0.5 * cross(enter, leave) + (t1 < 1 ? sector(leave, b) : 0.0);
 }
 
-// A convex polygon, within a disc when there is one, that counts `weight` times.
-struct Piece {
-    Polygon polygon;
-    const Disc* disc = nullptr;
-    double weight = 1;
-    double area() const { return weight * (disc ? aa::area(polygon, *disc) : aa::area(polygon)); }
+// The part of the segment a..b within the disc, as an interval of its parameter; empty: first > second.
+std::pair<double, double> withinDisc(dvec2 a, dvec2 b, const Disc& disc) {
+    const dvec2 d = b - a, from = a - disc.centre;
+    const double dd = glm::dot(d, d), half = glm::dot(from, d);
+    const double root2 = half * half - dd * (glm::dot(from, from) - disc.radius * disc.radius);
+    if (dd == 0 || root2 <= 0) return {1, 0};
+    const double root = std::sqrt(root2);
+    return {std::max(0.0, (-half - root) / dd), std::min(1.0, (-half + root) / dd)};
+}
+
+// Area of (polygon within the union of the discs) by Green's theorem: the integral of (x dy - y dx) / 2 along its
+// boundary, which consists of the pieces of the polygon's edges within some disc and of the arcs of each circle within
+// the polygon and outside of all other discs. Positions are taken from `origin`, against cancellation.
+class DiscUnion {
+  public:
+    DiscUnion(const Polygon& polygon, std::span<const Disc> discs) : polygon_(polygon), origin_(polygon[0]) {
+        if (orientation(polygon) < 0) std::reverse(polygon_.begin(), polygon_.end());
+        for (const Disc& d : discs)  // of equal discs one: their circles would count twice
+            if (d.radius > 0 && std::none_of(discs_.begin(), discs_.end(), [&](const Disc& o) {
+                    return o.centre == d.centre && o.radius == d.radius;
+                }))
+                discs_.push_back(d);
+    }
+    double area() const {
+        double sum = 0;
+        for (size_t i = 0; i < polygon_.size(); i++) sum += alongEdge(polygon_[i], polygon_[(i + 1) % polygon_.size()]);
+        for (size_t i = 0; i < discs_.size(); i++) sum += alongCircle(i);
+        return std::max(sum, 0.0);
+    }
+
+  private:
+    double alongEdge(dvec2 a, dvec2 b) const {
+        std::vector<std::pair<double, double>> inside;
+        for (const Disc& d : discs_)
+            if (const auto part = withinDisc(a, b, d); part.first < part.second) inside.push_back(part);
+        std::sort(inside.begin(), inside.end());
+        double covered = 0, end = 0;  // of the parameter
+        for (const auto& [first, last] : inside) {
+            covered += std::max(0.0, last - std::max(first, end));
+            end = std::max(end, last);
+        }
+        return 0.5 * cross(a - origin_, b - a) * covered;
+    }
+    double alongCircle(size_t i) const {
+        const Disc& disc = discs_[i];
+        std::vector<double> angles = {-std::numbers::pi, std::numbers::pi};
+        const auto add = [&](double angle) { angles.push_back(std::remainder(angle, 2 * std::numbers::pi)); };
+        for (size_t k = 0; k < polygon_.size(); k++) {  // where the lines of the polygon's edges cut the circle
+            const dvec2 a = polygon_[k] - disc.centre, d = polygon_[(k + 1) % polygon_.size()] - polygon_[k];
+            const double length = glm::length(d), distance = length > 0 ? cross(a, d) / length : INFINITY;
+            if (!(std::abs(distance) < disc.radius)) continue;
+            const double towards = std::atan2(-d.x, d.y), half = std::acos(distance / disc.radius);
+            add(towards - half), add(towards + half);
+        }
+        for (size_t k = 0; k < discs_.size(); k++) {  // where the other circles do
+            const dvec2 to = discs_[k].centre - disc.centre;
+            const double distance = glm::length(to), r = disc.radius, s = discs_[k].radius;
+            if (k == i || distance >= r + s || distance <= std::abs(r - s)) continue;
+            const double towards = std::atan2(to.y, to.x);
+            const double half =
+                std::acos(std::clamp((distance * distance + r * r - s * s) / (2 * distance * r), -1.0, 1.0));
+            add(towards - half), add(towards + half);
+        }
+        std::sort(angles.begin(), angles.end());
+        const dvec2 centre = disc.centre - origin_;
+        double sum = 0;
+        for (size_t k = 0; k + 1 < angles.size(); k++) {
+            const double from = angles[k], to = angles[k + 1], middle = (from + to) / 2;
+            if (!(to > from) || !isBoundary(disc.centre + disc.radius * dvec2(std::cos(middle), std::sin(middle)), i))
+                continue;
+            sum += 0.5 * disc.radius *
+                   (disc.radius * (to - from) + centre.x * (std::sin(to) - std::sin(from)) -
+                    centre.y * (std::cos(to) - std::cos(from)));
+        }
+        return sum;
+    }
+    // Whether a point of circle `own` lies on the boundary of the area.
+    bool isBoundary(dvec2 p, size_t own) const {
+        for (size_t i = 0; i < polygon_.size(); i++)
+            if (cross(polygon_[(i + 1) % polygon_.size()] - polygon_[i], p - polygon_[i]) < 0) return false;
+        for (size_t k = 0; k < discs_.size(); k++)
+            if (k != own && contains(discs_[k], p)) return false;
+        return true;
+    }
+    Polygon polygon_;
+    std::vector<Disc> discs_;
+    dvec2 origin_;
 };
 
-// piece = piece within `polygon` + the convex remainders, cut off edge by edge.
-Polygon split(const Piece& piece, const Polygon& polygon, std::vector<Piece>& outside) {
+// A convex polygon without some discs: what is left of the pixel.
+struct Piece {
+    Polygon polygon;
+    std::vector<Disc> without;
+    double removed = 0;  // area of the polygon that the discs cover
+    double area() const { return aa::area(polygon) - removed; }
+};
+Piece makePiece(Polygon polygon, const std::vector<Disc>& without) {
+    const double removed = aa::area(polygon, without);
+    return {std::move(polygon), without, removed};
+}
+
+// piece = piece within `polygon`, which is returned, + the convex remainders, cut off edge by edge.
+Piece split(const Piece& piece, const Polygon& polygon, std::vector<Piece>& outside) {
     Polygon inside = piece.polygon;
     const double orient = orientation(polygon);
     for (size_t i = 0; i < polygon.size() && !inside.empty(); i++) {
         if (polygon[i] == polygon[(i + 1) % polygon.size()]) continue;  // no side at all
         const HalfPlane inner = innerSide(polygon, i, orient);
         Polygon cut = clip(inside, opposite(inner));
-        if (!cut.empty()) outside.push_back({std::move(cut), piece.disc, piece.weight});
+        if (!cut.empty()) outside.push_back(makePiece(std::move(cut), piece.without));
         inside = clip(inside, inner);
     }
-    return inside;
+    return makePiece(std::move(inside), piece.without);
 }
 }  // namespace
 
@@ -92,6 +184,11 @@ double area(const Polygon& p, const Disc& disc) {
     return std::abs(sum);
 }
 
+double area(const Polygon& p, std::span<const Disc> discs) {
+    if (p.size() < 3 || discs.empty()) return 0;
+    return discs.size() == 1 ? area(p, discs[0]) : DiscUnion(p, discs).area();
+}
+
 bool contains(const Region& region, dvec2 p) {
     if (const auto* disc = std::get_if<Disc>(&region)) {
         const dvec2 d = p - disc->centre;
@@ -118,25 +215,23 @@ Bounds bounds(const Region& region) {
 
 std::vector<double> visibleAreas(const Polygon& pixel, std::span<const Region* const> frontToBack) {
     std::vector<double> areas;
-    std::vector<Piece> left = {{pixel}};
+    std::vector<Piece> left = {makePiece(pixel, {})};
     for (const Region* region : frontToBack) {
         double covered = 0;
         std::vector<Piece> rest;
-        for (const Piece& piece : left) {
+        for (Piece& piece : left) {
             if (const auto* polygon = std::get_if<Polygon>(region)) {
-                const Piece inside{split(piece, *polygon, rest), piece.disc, piece.weight};
-                covered += inside.area();
+                covered += split(piece, *polygon, rest).area();
                 continue;
             }
-            // P \ D = P - (P within D): the second piece counts negatively from here on.
             const Disc& disc = std::get<Disc>(*region);
-            const double inside = aa::area(piece.polygon, disc);
-            rest.push_back(piece);
-            if (inside == 0) continue;
-            assert(!piece.disc || aa::area(piece.polygon, *piece.disc) == 0);
-            if (piece.disc) continue;
-            covered += piece.weight * inside;
-            rest.push_back({piece.polygon, &disc, -piece.weight});
+            if (area(piece.polygon, disc) > 0) {
+                const double before = piece.removed;
+                piece.without.push_back(disc);
+                piece.removed = area(piece.polygon, piece.without);
+                covered += std::max(piece.removed - before, 0.0);
+            }
+            rest.push_back(std::move(piece));
         }
         areas.push_back(covered);
         left = std::move(rest);

@@ -26,14 +26,16 @@ Polygon rectangle(double x0, double y0, double x1, double y1);
 Polygon clip(const Polygon& polygon, const HalfPlane& side);  // Sutherland-Hodgman; fewer than 3 points: empty
 double area(const Polygon& polygon);
 double area(const Polygon& polygon, const Disc& disc);  // of the intersection
-bool contains(const Region& region, glm::dvec2 p);      // boundary included
+// Of what several discs, which may overlap each other, cover of the polygon together.
+double area(const Polygon& polygon, std::span<const Disc> discs);
+bool contains(const Region& region, glm::dvec2 p);  // boundary included
 struct Bounds {
     glm::dvec2 min, max;
 };
 Bounds bounds(const Region& region);
 
 // Visible area in `pixel` of each region, the first being in front, and last what none covers. The areas sum to the
-// area of `pixel`. Two discs must not overlap each other within the pixel.
+// area of `pixel`.
 std::vector<double> visibleAreas(const Polygon& pixel, std::span<const Region* const> frontToBack);
 
 }  // namespace aa

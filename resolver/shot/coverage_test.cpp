@@ -66,6 +66,40 @@ TEST(Coverage, LayersAgreeWithCountingAndFillThePixel) {
     }
 }
 
+TEST(Coverage, OverlappingDiscsAgreeWithCountingAndFillThePixel) {
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> u(-0.3, 1.3);
+    for (int trial = 0; trial < 60; trial++) {
+        const auto p = [&] { return dvec2(3 + u(random), 7 + u(random)); };
+        const auto disc = [&] { return Region(Disc{p(), 0.1 + 0.5 * std::abs(u(random))}); };
+        const Region a = disc(), b = disc(), c = Polygon{p(), p(), p()}, d = disc(), e = disc();
+        const Region* orders[][6] = {{&a, &b, &c, &d, &e, &a}, {&c, &a, &b, &d, &d, &e}, {&a, &b, &d, &e, &c, &b}};
+        const auto regions = std::span<const Region* const>(orders[trial % 3]);
+        const auto exact = visibleAreas(kPixel, regions), counted = countedAreas(regions);
+        double sum = 0;
+        for (size_t i = 0; i < exact.size(); i++) {
+            EXPECT_NEAR(exact[i], counted[i], 3e-3) << trial << " " << i;
+            EXPECT_GE(exact[i], -1e-12);
+            sum += exact[i];
+        }
+        EXPECT_NEAR(sum, 1, 1e-12);
+    }
+}
+
+TEST(Coverage, UnionsOfKnownArea) {
+    // Two unit discs one radius apart: 2 pi - (2 pi / 3 - sqrt(3) / 2).
+    const Disc two[] = {{{20, 20}, 1}, {{21, 20}, 1}};
+    const double lens = 2 * std::numbers::pi / 3 - std::sqrt(3.0) / 2;
+    EXPECT_NEAR(area(rectangle(10, 10, 30, 30), two), 2 * std::numbers::pi - lens, 1e-12);
+    EXPECT_NEAR(area(rectangle(10, 10, 30, 20), two), std::numbers::pi - lens / 2, 1e-12);
+    const Disc nested[] = {{{20, 20}, 2}, {{20.3, 20.1}, 1}, {{20, 20}, 2}};
+    EXPECT_NEAR(area(rectangle(10, 10, 30, 30), nested), 4 * std::numbers::pi, 1e-12);
+    const Disc apart[] = {{{15, 20}, 1}, {{25, 20}, 2}};
+    EXPECT_NEAR(area(rectangle(10, 10, 30, 30), apart), 5 * std::numbers::pi, 1e-12);
+    const Disc around[] = {{{20, 20}, 50}, {{21, 20}, 50}};
+    EXPECT_NEAR(area(rectangle(10, 10, 30, 30), around), 400, 1e-10);
+}
+
 TEST(Coverage, AbuttingRegionsLeaveNoGap) {
     const HalfPlane h{{0.3, 0.95}, 8.4};
     const Region a = clip(rectangle(0, 0, 10, 10), h), b = clip(rectangle(0, 0, 10, 10), {-h.normal, -h.offset});

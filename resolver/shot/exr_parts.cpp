@@ -9,6 +9,7 @@
 
 #include "image/error.h"
 #include "image/io.h"
+#include "image/no_date.h"
 #include "shot/manifest.h"
 
 namespace aa {
@@ -111,7 +112,14 @@ ExrFile::ExrFile(const fs::path& file) : path_(file), input_(std::make_unique<In
                              "); export the frame again");
         for (int i = 0; input_->image->seek_subimage(i, 0); i++) {
             const ImageSpec& s = input_->image->spec();
-            ExrPart part{s.get_string_attribute("oiio:subimagename"), s.width, s.height, {}};
+            ExrPart part;
+            part.name = s.get_string_attribute("oiio:subimagename");
+            part.width = s.width;
+            part.height = s.height;
+            part.compression = s.get_string_attribute("compression", "none");
+            part.cropped = s.x != s.full_x || s.y != s.full_y || s.width != s.full_width || s.height != s.full_height;
+            for (const auto& a : s.extra_attribs)
+                if (a.type() == TypeDesc::STRING) part.texts[a.name().string()] = a.get_string();
             for (int c = 0; c < s.nchannels; c++)
                 part.channels.push_back({s.channel_name(c), typeOf(s.channelformat(c))});
             parts_.push_back(std::move(part));
@@ -214,6 +222,7 @@ void writeParts(const fs::path& file, const std::vector<PartSource>& parts) {
         spec.full_height = specs.empty() ? h : specs[0].full_height;
         spec.attribute("oiio:subimagename", part.name);
         spec.attribute("compression", "zip");
+        spec.attribute("DateTime", kNoDate);
         specs.push_back(std::move(spec));
     }
     const auto attempt = [&]() -> std::string {

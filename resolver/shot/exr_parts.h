@@ -4,6 +4,7 @@
 // Types are converted only without loss: half -> float; uint stays uint; an id stored as float must be a whole number.
 #pragma once
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <variant>
@@ -24,6 +25,9 @@ struct ExrPart {
     std::string name;
     int width = 0, height = 0;
     std::vector<ExrChannel> channels;
+    std::string compression;                   // "zip", "dwaa:45", ...
+    bool cropped = false;                      // the pixels stored are not the picture: a border, overscan
+    std::map<std::string, std::string> texts;  // attributes that are texts
     const ExrChannel* find(std::string_view channel) const;
 };
 

@@ -7,6 +7,7 @@
 
 #include "image/error.h"
 #include "image/io.h"
+#include "shot/frame_notes.h"
 
 namespace aa {
 namespace fs = std::filesystem;
@@ -258,19 +259,9 @@ std::string lineAndColumn(const std::string& text, size_t byte) {
     return "line " + std::to_string(line) + ", column " +
            std::to_string(at - (lineStart == std::string::npos ? 0 : lineStart + 1) + 1);
 }
-}  // namespace
-
-const FrameEntry* Manifest::find(int frame) const {
-    for (const auto& f : frames)
-        if (f.frame == frame) return &f;
-    return nullptr;
-}
-
-Manifest parseManifest(const std::string& text, const fs::path& file) {
-    const std::string name = file.string();
-    json doc;
+json parseJson(const std::string& text, const std::string& name) {
     try {
-        doc = json::parse(text, [&](int depth, json::parse_event_t, json&) {
+        return json::parse(text, [&](int depth, json::parse_event_t, json&) {
             if (depth > kMaxDepth)
                 throw InputError(name + ": nested deeper than " + std::to_string(kMaxDepth) +
                                  " levels; export the shot again");
@@ -283,6 +274,28 @@ Manifest parseManifest(const std::string& text, const fs::path& file) {
         throw InputError(name +
                          ": holds a number that does not fit into a double; correct it or export the shot again");
     }
+}
+
+std::string readText(const fs::path& file) {
+    std::error_code ignored;
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    if (!in || fs::is_directory(file, ignored))
+        throw InputError(file.string() + ": cannot be read; check its permissions");
+    return text.str();
+}
+}  // namespace
+
+const FrameEntry* Manifest::find(int frame) const {
+    for (const auto& f : frames)
+        if (f.frame == frame) return &f;
+    return nullptr;
+}
+
+Manifest parseManifest(const std::string& text, const fs::path& file) {
+    const std::string name = file.string();
+    const json doc = parseJson(text, name);
     Manifest m = parseDocument(Member(doc, "", name));
     m.folder = file.parent_path();
     return m;
@@ -293,12 +306,34 @@ Manifest readManifest(const fs::path& shot) {
     const fs::path file = fs::is_directory(shot, ignored) ? shot / "shot.json" : shot;
     if (!fs::exists(file, ignored))
         throw InputError(file.string() + ": no such file; expected a shot (a folder with shot.json)");
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    if (!in || fs::is_directory(file, ignored))
-        throw InputError(file.string() + ": cannot be read; check its permissions");
-    return parseManifest(text.str(), file);
+    return parseManifest(readText(file), file);
+}
+
+FrameNotes readFrameNotes(const fs::path& file) {
+    std::error_code ignored;
+    if (!fs::exists(file, ignored)) throw InputError(file.string() + ": no such file");
+    const std::string name = file.string();
+    const json document = parseJson(readText(file), name);
+    const Member doc(document, "", name);
+    FrameNotes notes;
+    if (const auto j = doc.find("jitter")) {
+        if (const auto v = j->find("sequence")) notes.jitterSequence = v->text();
+        if (const auto v = j->find("start")) notes.jitterStart = v->integer(0, INT32_MAX);
+        if (const auto v = j->find("period")) notes.jitterPeriod = v->integer(1, INT32_MAX);
+    }
+    const Member frames = doc["frames"];
+    json unused = json::object();
+    for (size_t i = 0; i < frames.arraySize(); i++) {
+        const Member f = frames.item(i);
+        FrameNotes::Note note;
+        if (const auto v = f.find("jitter")) note.jitterPx = v->offsetPx();
+        if (const auto v = f.find("camera")) note.camera = parseCamera(*v, unused);
+        if (const auto v = f.find("reset")) note.reset = v->flag();
+        const int number = f["frame"].integer(-1048574, 1048574);
+        if (!notes.frames.emplace(number, note).second)
+            f["frame"].fail("a frame number of its own", std::to_string(number) + " for the second time");
+    }
+    return notes;
 }
 
 json toJson(const Manifest& m) {

@@ -263,6 +263,26 @@ TEST(Synth, OddSizes) {
         }
 }
 
+// Discs of 0.3 px and more overlap within a pixel when 48 of them share a few pixels: their truth must stay exact.
+TEST(Synth, TinyPicturesHaveExactTruth) {
+    for (const auto& [w, h] : {std::pair{1, 1}, {2, 3}, {7, 5}, {16, 9}}) {
+        SynthOptions o;
+        o.scene = "circles";
+        o.width = w;
+        o.height = h;
+        o.frames = 1;
+        const SynthShot shot(o);
+        const Truth t = shot.truth(0);
+        const auto picture = shot.picture(0);
+        for (int y = 0; y < h; y++)
+            for (int x = 0; x < w; x++) {
+                const dvec3 expected = countedColor(picture, x, y, 128);
+                for (int c = 0; c < 3; c++)
+                    EXPECT_NEAR(t.a.c[size_t(c)].at(x, y), expected[c], 3e-3) << w << "x" << h << " " << x << "," << y;
+            }
+    }
+}
+
 TEST(Synth, WrittenShotReadsBackBitForBit) {
     const auto folder = std::filesystem::path(testing::TempDir()) / "aa_synth_test";
     for (const char* scene : {"moving", "two_planes"}) {

@@ -1,0 +1,226 @@
+"""Damaged input through the real program: every case must end in time with exit code 0, 2 or 3 (1 where a check or a
+comparison may find something) and, when refused, with one line that says why.
+
+    python3 tests/fuzz/fuzz.py build/aaresolve --runs 120             a fixed set of cases
+    python3 tests/fuzz/fuzz.py build/aaresolve --seconds 300 --seed 7 as many as there is time for
+    python3 tests/fuzz/fuzz.py build/aaresolve --case 4711 --seed 7   one case again, its files kept
+
+Each case is made from (seed, number) alone, so it is the same on every machine. Standard library only.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from pathlib import Path
+
+import exr
+import mutate
+
+HEADER_BYTES = 700
+METHODS = ["noaa", "fxaa311:preset=12", "smaa1x:preset=HIGH", "uncharted", "taaSimplest", "rsaa:S=2", "unchartedNorm+fill=fxaa311"]
+# A run needs some memory even for small pictures; a damaged size must not take the machine's.
+MEMORY_BYTES = 4 << 30
+FILE_BYTES = 64 << 20
+
+
+class Corpus:
+    """Whole files to damage, made by the program itself."""
+
+    def __init__(self, program: Path, folder: Path) -> None:
+        self.program, self.folder = program, folder
+        size = ["--resolution", "24", "16", "--frames", "2", "-q"]
+        self._call("synth", "two_planes", "-o", folder / "shot", "--subsamples", "d3d2", "--subsample-color", *size)
+        self._call("run", folder / "shot", "-m", "noaa", "-m", "taaSimplest", "-o", folder / "run", "-q", "--write", "exr,png")
+        values = [0.01 * i for i in range(24 * 16)]
+        names = ["Combined.R", "Combined.G", "Combined.B", "Combined.A", "Depth.Z", "Vector.X", "Vector.Y", "Vector.Z", "Vector.W"]
+        names += ["Normal.X", "Normal.Y", "Normal.Z", "Denoising Albedo.R", "Denoising Albedo.G", "Denoising Albedo.B"]
+        channels = {f"ViewLayer.{n}": values for n in names}
+        channels["ViewLayer.IndexOB.X"] = [float(i % 3) for i in range(24 * 16)]
+        (folder / "native").mkdir()
+        for frame in (1, 2):
+            exr.write(folder / "native" / f"{frame:04d}.exr", 24, 16, channels, {"Frame": str(frame), "cycles.ViewLayer.samples": "1"})
+        shutil.copy(folder / "shot/shot.json", folder / "notes.json")
+
+    def _call(self, *arguments) -> None:
+        subprocess.run([self.program, *map(str, arguments)], check=True, stdout=subprocess.DEVNULL)
+
+
+class Case:
+    """One damaged input and the command that reads it."""
+
+    def __init__(self, corpus: Corpus, seed: int, number: int, folder: Path) -> None:
+        self.rng = random.Random(f"{seed}/{number}")
+        self.number, self.folder, self.corpus = number, folder, corpus
+        self.allowed = {0, 2, 3}
+        self.arguments: list[str] = []
+        kinds = [self.manifest, self.manifest, self.frame, self.frame, self.frame, self.truth, self.image, self.native, self.native]
+        kinds += [self.notes, self.results, self.method, self.compare]
+        kinds[number % len(kinds)]()
+
+    def _copy(self, name: str) -> Path:
+        source, target = self.corpus.folder / name, self.folder / name
+        (shutil.copytree if source.is_dir() else shutil.copy)(source, target)
+        return target
+
+    def _damage(self, path: Path, header: int = HEADER_BYTES) -> None:
+        path.write_bytes(mutate.mutate_bytes(self.rng, path.read_bytes(), header))
+
+    def _read_shot(self, shot: Path) -> None:
+        if self.rng.random() < 0.5:
+            self.allowed.add(1)  # a check may find something
+            self.arguments = ["check", str(shot), "-q", "-j", "1"]
+        else:
+            chosen = self.rng.sample(METHODS, 2)
+            self.arguments = ["run", str(shot), "-m", chosen[0], "-m", chosen[1], "-o", str(self.folder / "out"), "-q", "-j", "1"]
+            if self.rng.random() < 0.3:
+                self.arguments += ["--input", "strict"]
+
+    def manifest(self) -> None:
+        shot = self._copy("shot")
+        path = shot / "shot.json"
+        path.write_text(mutate.mutate_json(self.rng, path.read_text()), encoding="utf-8", errors="surrogateescape")
+        self._read_shot(shot)
+
+    def frame(self) -> None:
+        shot = self._copy("shot")
+        self._damage(self.rng.choice(sorted((shot / "frames").iterdir()) + sorted((shot / "centre").iterdir())), 3000)
+        self._read_shot(shot)
+
+    def truth(self) -> None:
+        shot = self._copy("shot")
+        self._damage(next((shot / "truth").iterdir()))
+        self._read_shot(shot)
+
+    def image(self) -> None:
+        kind = self.rng.choice(["png", "exr"])
+        path = self.folder / f"in.{kind}"
+        shutil.copy(next((self.corpus.folder / "run/noaa").glob(f"*.{kind}")), path)
+        self._damage(path, 120 if kind == "png" else HEADER_BYTES)
+        self.arguments = ["filter", "fxaa311", str(path), str(self.folder / f"out.{kind}")]
+
+    def compare(self) -> None:
+        path = self.folder / "b.exr"
+        good = next((self.corpus.folder / "run/noaa").glob("*.exr"))
+        shutil.copy(good, path)
+        self._damage(path)
+        self.allowed.add(1)
+        self.arguments = ["compare", str(good), str(path), "--json"]
+
+    def native(self) -> None:
+        self._damage(self._copy("native") / "0002.exr", 1600)
+        if self.rng.random() < 0.5:
+            self._damage(self.folder / "native" / "0001.exr", 1600)
+        self.arguments = ["import", str(self.folder / "native"), "-o", str(self.folder / "shot"), "-q", "-j", "1"]
+        if self.rng.random() < 0.3:
+            self.arguments += ["--truth", str(self.folder / "native"), str(self.corpus.folder / "native")]
+
+    def notes(self) -> None:
+        path = self._copy("notes.json")
+        path.write_text(mutate.mutate_json(self.rng, path.read_text()), encoding="utf-8", errors="surrogateescape")
+        native = self.corpus.folder / "native"
+        self.arguments = ["import", str(native), "-o", str(self.folder / "shot"), "-q", "--jitter", str(path), "--camera", str(path)]
+
+    def results(self) -> None:
+        run = self._copy("run")
+        path = run / "results.json"
+        path.write_text(mutate.mutate_json(self.rng, path.read_text()), encoding="utf-8", errors="surrogateescape")
+        command = self.rng.choice(["report", "sheet"])
+        self.arguments = [command, str(run), "-o", str(self.folder / f"out.{'html' if command == 'report' else 'png'}")]
+
+    def method(self) -> None:
+        self.arguments = ["plan", mutate.mutate_text(self.rng, self.rng.choice(METHODS)).replace("\0", "")]
+        if self.rng.random() < 0.4:
+            varied = mutate.mutate_text(self.rng, "kmin=0.5,0.9")
+            shot = str(self.corpus.folder / "shot")
+            self.arguments = ["sweep", shot, "-m", "uncharted", "--vary", varied, "-o", str(self.folder / "out"), "-q", "-j", "1"]
+
+
+def limit(memory: bool) -> None:
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (FILE_BYTES, FILE_BYTES))
+    if memory:  # a sanitised program reserves terabytes of addresses
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
+
+
+def fault(case: Case, program: Path, timeout: float, memory: bool) -> str:
+    """What is wrong with the program's answer; empty when nothing is."""
+    try:
+        done = subprocess.run(
+            [str(program), *case.arguments], capture_output=True, timeout=timeout, preexec_fn=lambda: limit(memory), stdin=subprocess.DEVNULL
+        )
+    except subprocess.TimeoutExpired:
+        return f"no end within {timeout:.0f} s"
+    error = done.stderr.decode("utf-8", "replace")
+    if done.returncode not in case.allowed:
+        return f"exit code {done.returncode}: {error[-400:].strip()}"
+    if "Sanitizer" in error or "runtime error:" in error:
+        return error[:2000]
+    said = [line for line in error.splitlines() if line.startswith("aaresolve: ")]
+    if done.returncode in (2, 3) and len(said) != 1:
+        return f"exit code {done.returncode} with {len(said)} lines of explanation: {error[-400:].strip()}"
+    return ""
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program", type=Path)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--runs", type=int, help="number of cases")
+    parser.add_argument("--seconds", type=float, help="instead of --runs: until then")
+    parser.add_argument("--case", type=int, help="this case only; its files stay")
+    parser.add_argument("--keep", type=Path, default=Path("build/fuzz"), help="where failing inputs go")
+    parser.add_argument("--timeout", type=float, default=60, help="seconds until a case counts as hanging")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--no-memory-limit", action="store_true", help="for programs built with sanitisers")
+    o = parser.parse_args()
+    program = o.program.resolve()
+    numbers = iter([o.case]) if o.case is not None else iter(range(o.runs if o.runs else 10**9))
+    end = time.monotonic() + o.seconds if o.seconds else None
+    failures: list[str] = []
+    count = 0
+    lock = threading.Lock()
+    with tempfile.TemporaryDirectory() as root:
+        (Path(root) / "corpus").mkdir()
+        corpus = Corpus(program, Path(root) / "corpus")
+
+        def work() -> None:
+            nonlocal count
+            while end is None or time.monotonic() < end:
+                with lock:
+                    number = next(numbers, None)
+                if number is None:
+                    return
+                folder = Path(root) / f"case{number}"
+                folder.mkdir()
+                case = Case(corpus, o.seed, number, folder)
+                wrong = fault(case, program, o.timeout, not o.no_memory_limit)
+                with lock:
+                    count += 1
+                    if wrong:
+                        failures.append(f"case {number} (seed {o.seed}): aaresolve {' '.join(case.arguments)}\n    {wrong}")
+                        print(failures[-1], flush=True)
+                    if wrong or o.case is not None:
+                        kept = o.keep / f"seed{o.seed}_case{number}"
+                        shutil.rmtree(kept, ignore_errors=True)
+                        shutil.copytree(folder, kept)
+                shutil.rmtree(folder, ignore_errors=True)
+
+        threads = [threading.Thread(target=work) for _ in range(o.jobs)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    print(f"{count} cases, {len(failures)} failures (seed {o.seed})" + (f"; inputs in {o.keep}" if failures else ""))
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
