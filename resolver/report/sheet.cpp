@@ -190,13 +190,15 @@ class Sheet {
     void methodRow(size_t place, int y) {
         const MethodResult& m = run_.methods[order_[place]];
         panel(y);
-        const size_t colon = m.text.find(':');
+        // The parameters or the stages on a line of their own: smaa1x / preset=ULTRA, accumReject / +fill=smaa1x.
+        const size_t cut = m.text.find_first_of(":+");
         const int width = kLabelWidth - 26;
-        canvas_.text(kMargin + 14, y + 32, canvas_.fitted(m.text.substr(0, colon), width, 20, Font::bold), 20, kInk,
+        canvas_.text(kMargin + 14, y + 32, canvas_.fitted(m.text.substr(0, cut), width, 20, Font::bold), 20, kInk,
                      Font::bold);
         int line = y + 54;
-        if (colon != std::string::npos) {
-            canvas_.text(kMargin + 14, line, canvas_.fitted(m.text.substr(colon + 1), width, 14), 14, kInk);
+        if (cut != std::string::npos) {
+            const std::string rest = m.text.substr(m.text[cut] == ':' ? cut + 1 : cut);
+            canvas_.text(kMargin + 14, line, canvas_.fitted(rest, width, 14), 14, kInk);
             line += 20;
         }
         canvas_.text(kMargin + 14, line, canvas_.fitted(m.title, width, 13), 13, kQuiet);

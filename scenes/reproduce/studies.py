@@ -14,6 +14,8 @@ def _setup(run: Run) -> str:
     shot, truth = run.data["shot"], run.data["truth"]
     width, height = shot["resolution"]
     frames = len(run.data["methods"][0]["frames"])
+    if not run.noise > 0:
+        return f"{width} × {height}, {frames} frames, analytic, with exact truth."
     smallest = min(run.mse(m) for m in run.methods)
     share = 100 * run.noise / smallest
     return (
@@ -169,7 +171,7 @@ def motion_page(runs: dict[str, Run]) -> Page:
         "motion and counts what changes beyond what the truth changes, in 8-bit codes. ± are 95 % intervals over blocks of",
         "consecutive frames; differences are paired frame by frame.",
     )
-    for name in ("moving_sphere", "hairball_rotating", "wires"):
+    for name in ("moving_sphere", "hairball_rotating", "wires", "synth_moving", "synth_thin_motion"):
         if name not in runs:
             continue
         run = runs[name]
@@ -191,6 +193,7 @@ def _motion_answers(run: Run) -> list[str]:
         "And when neither sharpens? " + ghost("master:sharpen=none", "unchartedNoSharpen"),
         f"Does identity (`accumReject`: object ids and expected depth, no colour box) ghost less than the best colour box, "
         f"{code(box)}? " + ghost("accumReject", box),
+        _stale(run, "accumReject", box),
         "Is it nearer to the truth over the whole picture, too? " + verdict(run.gain("accumReject", box)),
         "Do object ids matter beside depth? " + ghost("accumReject", "accumReject:objectIds=off")
         + " Does depth beside object ids? " + ghost("accumReject", "accumReject:depthTest=off"),
@@ -211,6 +214,23 @@ def _motion_answers(run: Run) -> list[str]:
         + " Flicker less? " + verdict(run.over_time("raptor", "raptor:lumaDiff=printed", "flicker"), "less", "more")
     )  # fmt: skip
     return answers
+
+
+def _stale(run: Run, identity: str, box: str) -> str:
+    """How much of the colour that was there before is left one frame after a surface came into view."""
+    left = {m: (run.temporal(m, "ghostFraction") or [math.nan])[0] for m in (identity, box)}
+    less = abs(left[identity]) < abs(left[box])
+    ghosts = run.over_time(identity, box, "ghost")
+    text = (
+        f"Stale colour left one frame after a surface came into view: {code(identity)} {signed(left[identity])}, "
+        f"{code(box)} {signed(left[box])}."
+    )
+    if less and ghosts is not None and ghosts.resolved and ghosts.db < 0:
+        text += (
+            " So identity does forget what it should; its larger error there is not old colour of another surface but light"
+            " that changed on the same one, and fresh pixels without a history yet."
+        )
+    return text
 
 
 def _motion_table(run: Run) -> tuple[list[str], list[list[str]]]:
