@@ -109,7 +109,8 @@ RunResults overTime(double ghostOfB) {
 TEST(Caption, OverTime) {
     const RunResults run = overTime(0.04);
     EXPECT_TRUE(says(run, "is least for a (0.5 times) and largest for b (2 times).")) << allOf(captions(run));
-    EXPECT_TRUE(says(run, "a (2.6 codes of 255) flickers least and b (5.1 codes of 255) most.")) << allOf(captions(run));
+    EXPECT_TRUE(says(run, "a (2.6 codes of 255) flickers least and b (5.1 codes of 255) most."))
+        << allOf(captions(run));
     const PairResult& p = run.pairs[2];  // a and b
     EXPECT_NEAR(p.ghost->gainDb, 6.02, 0.3);
     EXPECT_TRUE(p.ghost->resolved);
@@ -120,7 +121,8 @@ TEST(Caption, OverTime) {
     EXPECT_FALSE(p.rejected);  // other methods, other pixels
 }
 TEST(Caption, GhostsThatCannotBeTold) {
-    EXPECT_TRUE(says(overTime(0.0102), "a difference that these frames cannot resolve.")) << allOf(captions(overTime(0.0102)));
+    EXPECT_TRUE(says(overTime(0.0102), "a difference that these frames cannot resolve."))
+        << allOf(captions(overTime(0.0102)));
 }
 TEST(Results, OverTimeSurvivesTheFile) {
     const fs::path folder = fs::temp_directory_path() / "aaresolve_results_time";

@@ -221,7 +221,8 @@ class Sheet {
         figure("time", shortNumber(m.nsPerPixel), "ns/px", kInk, 16);
         if (m.temporal) {
             const auto flicker = run_.isStatic ? m.temporal->flickerStatic : m.temporal->flickerMoving;
-            if (flicker) figure("flicker", shortNumber(*flicker), "codes", kInk, 16);
+            if (flicker && (*flicker > 0 || !run_.isStatic))
+                figure("flicker", shortNumber(*flicker), "codes", kInk, 16);
             if (m.temporal->ghostExcess && m.id != "noaa")
                 figure("ghosts", shortNumber(*m.temporal->ghostExcess), "x noaa",
                        *m.temporal->ghostExcess <= 1 ? kBetter : kWorse, 16);
@@ -243,8 +244,9 @@ class Sheet {
         std::string text = "Best PSNR first, noaa last. Details: unfiltered pixels, where the methods differ most. ";
         if (layout_.errors) text += "Figures and errors of display-encoded values. ";
         if (layout_.overTime)
-            text += run_.isStatic ? "Flicker: spread over time, 8-bit codes."
-                                  : "Flicker along the motion in 8-bit codes; ghosts: error where something came into view.";
+            text += run_.isStatic
+                        ? "Flicker: spread over time, 8-bit codes."
+                        : "Flicker along the motion in 8-bit codes; ghosts: error where something came into view.";
         canvas_.text(kMargin, y + 24, canvas_.fitted(text, canvas_.width() - 2 * kMargin - 220, 14), 14, kQuiet);
         canvas_.text(canvas_.width() - kMargin, y + 24, "AA Resolve " + run_.programVersion, 14, kQuiet, Font::regular,
                      Align::right);

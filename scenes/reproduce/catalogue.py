@@ -96,3 +96,6 @@ PICTURES = {
     ),
     "hairball": ("hairball", "noaa mlaa smaa1x:preset=ULTRA rsaa msaa unchartedNorm master accum:samples=16"),
 }
+
+# On half-planes, where the program has the command `angles`.
+ANGLES = f"{SPATIAL} {EDGES} {SUBSAMPLES} {RSAA} uncharted unchartedNorm unchartedNoSharpen master accumReject karis salvi"
