@@ -150,6 +150,10 @@ def main(argv: list[str]) -> int:
         "Written by `make reproduce` from its own renders; every sentence follows from the figures.",
         "This is the short form (`QUICK=1`): fewer frames and samples." if a.quick else "",
     )
+    if runs:
+        page.heading("In short")
+        page.points(studies.headlines(runs))
+        page.heading("Pages")
     page.points(index)
     page.say(
         "How to read them: gains are decibels of PSNR over no anti-aliasing on display-encoded values, where 3 dB is half the",

@@ -49,6 +49,43 @@ def _figure(value: float | None, digits: int = 3) -> str:
     return "–" if value is None else f"{value:.{digits}g}"
 
 
+# --- the index ---
+
+
+def headlines(runs: dict[str, Run]) -> list[str]:
+    """The main questions, each answered over all scenes."""
+    moving = [n for n in ("moving_sphere", "hairball_rotating", "wires", "synth_moving", "synth_thin_motion") if n in runs]
+    static = [n for n in ("hard_edges", "hairball", "hairball_unlit", "flowers") if n in runs]
+    sampled = [n for n in ("hard_edges", "hairball") if n in runs]
+    ghost = lambda a, b: lambda r: r.over_time(a, b, "ghost")  # noqa: E731
+    gain = lambda a, b: lambda r: r.gain(a, b)  # noqa: E731
+    box = lambda r: min((m for m in BOXES if m in r), key=lambda m: r.temporal(m, "ghostMse"))  # noqa: E731
+    filled = lambda m: lambda r: r.over_time(f"accumReject+fill={m}", "accumReject", "rejected")  # noqa: E731
+    asked = [
+        ("Is `master` better than `unchartedNorm` at rest?", static, gain("master", "unchartedNorm")),
+        ("Does its own sharpen filter help the Uncharted baseline at rest?", static, gain("uncharted", "unchartedNoSharpen")),
+        ("Does `master` ghost less than `unchartedNorm` (published: yes)?", moving, ghost("master", "unchartedNorm")),
+        ("Does identity ghost less than the best colour box?", moving, lambda r: r.over_time("accumReject", box(r), "ghost")),
+        ("Does a fill by SMAA help where history was rejected?", moving, filled("smaa1x")),
+        ("And by FXAA?", moving, filled("fxaa311")),
+        ("And by RSAA?", [n for n in moving if "accumReject+fill=rsaa" in runs[n]], filled("rsaa")),
+        ("Are the corrected weights of `raptor` better than the printed ones?", moving, gain("raptor", "raptor:lumaDiff=printed")),
+        ("Is RSAA with 8 sub-samples better than MSAA with 8?", sampled, gain("rsaa", "msaa")),
+        ("Is it better than MLAA?", sampled, gain("rsaa", "mlaa")),
+    ]  # fmt: skip
+    return [f"{question} {_over_scenes(scenes, runs, ask)}" for question, scenes, ask in asked if scenes]
+
+
+def _over_scenes(scenes: list[str], runs: dict[str, Run], ask) -> str:
+    found: dict[str, list[str]] = {"Yes": [], "No": [], "Not resolved": []}
+    for name in scenes:
+        d = ask(runs[name])
+        if d is not None:
+            answer = "Not resolved" if not d.resolved else "Yes" if d.db > 0 else "No"
+            found[answer].append(f"{name} ({signed(d.db)} dB)")
+    return " ".join(f"**{answer}** on {', '.join(where)}." for answer, where in found.items() if where)
+
+
 # --- 1: static protocol ---------------------------------------------------------------------------------------------
 
 
@@ -219,6 +256,8 @@ def _motion_answers(run: Run) -> list[str]:
 def _stale(run: Run, identity: str, box: str) -> str:
     """How much of the colour that was there before is left one frame after a surface came into view."""
     left = {m: (run.temporal(m, "ghostFraction") or [math.nan])[0] for m in (identity, box)}
+    if not all(abs(v) < 1 for v in left.values()):
+        return "How much of the old colour is left cannot be said here: it hardly differs from the new one."
     less = abs(left[identity]) < abs(left[box])
     ghosts = run.over_time(identity, box, "ghost")
     text = (
@@ -226,10 +265,7 @@ def _stale(run: Run, identity: str, box: str) -> str:
         f"{code(box)} {signed(left[box])}."
     )
     if less and ghosts is not None and ghosts.resolved and ghosts.db < 0:
-        text += (
-            " So identity does forget what it should; its larger error there is not old colour of another surface but light"
-            " that changed on the same one, and fresh pixels without a history yet."
-        )
+        text += " So identity forgets the old colour better, and its larger error there is of another kind."
     return text
 
 
@@ -330,7 +366,7 @@ def _against_the_talk(run: Run, by_s: dict[int, Run]) -> list[str]:
         answers.append(
             f"The reason is the scene: MSAA of the same samples, which knows every surface in the pixel, gains {ceiling.db:.2f} dB here"
             + (
-                f", {bound.db:.2f} dB more than RSAA: what RSAA lacks are surfaces that no neighbouring pixel shows."
+                f", {bound.db:.2f} dB more than RSAA, which can fetch only what some pixel's centre shows."
                 if bound.resolved and bound.db > 0
                 else f", {-bound.db:.2f} dB less than RSAA: the edges are isolated, where learned offsets beat plain coverage."
                 if bound.resolved
