@@ -134,8 +134,12 @@ def main(argv: list[str]) -> int:
     if unknown:
         parser.error(f"--only: no shot {sorted(unknown)[0]}; known: {', '.join(SHOTS)}")
 
+    sequences = (ROOT / "blender_addon/aa_resolve/jitter.py").read_text()
     runs: dict[str, Run] = {}
     for name, shot in SHOTS.items():
+        if f'"{shot.jitter}"' not in sequences:
+            print(f"  shot {name}: left out, the exporter does not know the jitter {shot.jitter}", flush=True)
+            continue
         if a.only and name not in a.only and SHOTS[name].name not in {SHOTS[o].truth_of for o in a.only}:
             continue
         if shot.truth:

@@ -114,7 +114,13 @@ def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
         command += ["--passes", shot.passes]
     if shot.truth_of or not shot.truth:
         command += ["--truth-frames", "none"]
-    said = shop.run(f"export.{shot.name}", command)
+    try:
+        said = shop.run(f"export.{shot.name}", command)
+    except SystemExit as refusal:  # the exporter never mixes two exports in one folder
+        if "holds an export with other settings" not in str(refusal):
+            raise
+        print(f"  shot {shot.name}: its settings have changed, rendered anew", flush=True)
+        said = shop.run(f"export.{shot.name}", [*command, "--overwrite"])
     if shot.truth_of:
         _lend_truth(make_folder(shop, shots[shot.truth_of]), folder)
     done = [line.split(": ", 1)[-1] for line in said.splitlines() if "pictures in" in line]

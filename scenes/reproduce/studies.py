@@ -450,6 +450,15 @@ def published_page(runs: dict[str, Run]) -> Page:
         db = 10 * math.log10(theirs["Uncharted"] / theirs["Master"])
         rows.append([f"{title} / {shot}", signed(db), str(run.gain("master", "uncharted")), str(run.gain("master", "unchartedNorm"))])
     page.table(["scene", "published, dB", "ours, dB", "ours, against `unchartedNorm`"], rows)
+    if {"hard_edges.t2msaa", "hard_edges.s2", "hard_edges.s4"} <= set(runs):
+        page.heading("T2MSAA lies between 2x and 4x MSAA (Linköping thesis)")
+        t2, s2, s4 = (runs[f"hard_edges.{n}"] for n in ("t2msaa", "s2", "s4"))
+        page.points(
+            f"{code(m)}: better than MSAA of 2? {verdict(across(t2, m, s2, 'msaa'))} Worse than MSAA of 4? "
+            f"{verdict(across(s4, 'msaa', t2, m), 'worse', 'better')}"
+            for m in t2.methods
+            if m != "noaa"
+        )
     return page
 
 
