@@ -106,10 +106,14 @@
 
   // ---- over time ----
   const time = (i) => methods[i].temporal || {};
-  // The stale colour is known only where the frame before has truth, too.
-  for (const m of methods) if (m.temporal && m.temporal.ghostFraction && m.temporal.ghostFraction.every((v) => v === 0)) {
-    delete m.temporal.ghostFraction;
-    delete m.temporal.ghostHalfLifeFrames;
+  // The stale colour is known only where the frame before has truth, too, and no age is older than the shot.
+  const oldest = Math.max(0, ...methods.map((m) => (m.temporal?.ghostFraction ?? []).findLastIndex((v) => v !== 0) + 1));
+  for (const m of methods) if (m.temporal?.ghostFraction) {
+    m.temporal.ghostFraction.length = Math.min(m.temporal.ghostFraction.length, oldest);
+    if (!oldest) {
+      delete m.temporal.ghostFraction;
+      delete m.temporal.ghostHalfLifeFrames;
+    }
   }
   const judged = order.filter((i) => methods[i].temporal);
   const flickerOf = (i) => value(run.shot.static ? time(i).flickerStatic : time(i).flickerMoving);
@@ -120,7 +124,7 @@
   const plusMinus = (key) => (m) => (m.temporal && m.temporal[key] > 0 ? "± " + Number(m.temporal[key].toPrecision(2)) : null);
   // Against noaa, over time: "fewer dB" reads better as a factor.
   const versusNoaa = (key) => (m, i) => { const p = i !== noaa && noaa >= 0 && pair(i, noaa); return p && p[key] && !p[key].resolved ? "not resolved from noaa" : null; };
-  const ghostAt = (age) => judgedHave("ghostFraction") && { title: `Stale at age ${age}`, better: "low",
+  const ghostAt = (age) => age <= oldest && { title: `Stale at age ${age}`, better: "low",
     get: (m) => (m.temporal && m.temporal.ghostFraction ? m.temporal.ghostFraction[age - 1] ?? null : null),
     show: (m) => (m.temporal && m.temporal.ghostFraction && m.temporal.ghostFraction[age - 1] != null ? minus(fixed(m.temporal.ghostFraction[age - 1], 2)) : "–") };
   const lasting = (t) => t.ghostFraction && Math.max(...t.ghostFraction.slice(0, 3)) > 0.05;
