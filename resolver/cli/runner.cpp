@@ -79,9 +79,10 @@ RunResults describeRun(const Manifest& m, const RunOptions& o) {
     return r;
 }
 
-// Squared error where history was rejected, of every method that rejects and keeps the mask (one with a fill) and of its
-// peers without or with another fill: they reject the same pixels.
-void judgeRejected(const std::vector<RunningMethod>& methods, const Rgb& truthEncoded, std::vector<MethodResult>& results) {
+// Squared error where history was rejected, of every method that rejects and keeps the mask (one with a fill) and of
+// its peers without or with another fill: they reject the same pixels.
+void judgeRejected(const std::vector<RunningMethod>& methods, const Rgb& truthEncoded,
+                   std::vector<MethodResult>& results) {
     const auto base = [](const RunningMethod& m) { return m.spec.text.substr(0, m.spec.text.find('+')); };
     for (size_t k = 0; k < methods.size(); k++) {
         const auto peer = std::find_if(methods.begin(), methods.end(), [&](const auto& m) {
@@ -94,7 +95,8 @@ void judgeRejected(const std::vector<RunningMethod>& methods, const Rgb& truthEn
             for (int x = 0; x < mask.width(); x++)
                 if (mask.at(x, y) != 0)
                     for (size_t c = 0; c < 3; c++, sum.count++) {
-                        const double e = double(methods[k].outEncoded.c[c].at(x, y)) - double(truthEncoded.c[c].at(x, y));
+                        const double e =
+                            double(methods[k].outEncoded.c[c].at(x, y)) - double(truthEncoded.c[c].at(x, y));
                         sum.sum += e * e;
                     }
         results[k].frames.back().rejected = sum;

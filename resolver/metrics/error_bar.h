@@ -20,11 +20,11 @@ MseInterval mseInterval(double raw, double noise);
 
 // Paired comparison of two methods over the same frames and truth.
 struct Comparison {
-    double mseDifference = 0;  // MSE(first) - MSE(second): negative when the first is nearer to the truth
-    double low = 0, high = 0;  // bootstrap 95 % interval of that difference over tiles of 32 x 32 px
-    double gainDb = 0;         // PSNR(first) - PSNR(second)
+    double mseDifference = 0;          // MSE(first) - MSE(second): negative when the first is nearer to the truth
+    double low = 0, high = 0;          // bootstrap 95 % interval of that difference over tiles of 32 x 32 px
+    double gainDb = 0;                 // PSNR(first) - PSNR(second)
     double gainLow = 0, gainHigh = 0;  // its bootstrap 95 % interval, widened by what the truth's noise may hide
-    bool resolved = false;     // |difference| exceeds the truth's noise and the interval excludes zero
+    bool resolved = false;             // |difference| exceeds the truth's noise and the interval excludes zero
 };
 // `noise` is truthNoise of the same frames. 1000 resamples with a fixed seed; same input, same result.
 Comparison compareMethods(const TileErrors& first, const TileErrors& second, double noise);
@@ -33,8 +33,8 @@ Comparison compareMethods(const TileErrors& first, const TileErrors& second, dou
 struct FrameSum {
     double sum = 0, count = 0;
 };
-// 95 % intervals of figures over time by the jackknife: up to 8 blocks of consecutive frames are left out in turn. Blocks,
-// because frames that follow each other share their history. Absent below 3 blocks, and where a figure is zero.
+// 95 % intervals of figures over time by the jackknife: up to 8 blocks of consecutive frames are left out in turn.
+// Blocks, because frames that follow each other share their history. Absent below 3 blocks, and where a figure is zero.
 std::optional<double> errorOverTime(std::span<const FrameSum> frames);  // half width, in the figure's unit
 struct TimeComparison {
     double gainDb = 0;  // 10 log10(second / first): positive when the first has less of it

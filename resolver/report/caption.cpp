@@ -130,7 +130,8 @@ std::string ghostSentence(const RunResults& run) {
     const auto times = [&](size_t i) {
         return run.methods[i].text + " (" + significant(*run.methods[i].temporal->ghostExcess, 2) + " times)";
     };
-    std::string s = "Where something comes into view, the error of the methods with history against no anti-aliasing is ";
+    std::string s =
+        "Where something comes into view, the error of the methods with history against no anti-aliasing is ";
     if (order.size() == 1) return s + significant(*run.methods[order[0]].temporal->ghostExcess, 2) + " times.";
     const size_t least = order.front(), most = order.back();
     s += "least for " + times(least) + " and largest for " + times(most);

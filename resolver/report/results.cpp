@@ -150,8 +150,8 @@ json toJson(const TemporalFrame& t) {
             {"flickerPixels", t.flickerPixels}};
 }
 TemporalFrame temporalFrame(const json& j) {
-    return {j.at("ghostSquares").get<double>(), j.at("ghostValues").get<double>(),
-            j.at("flickerSquares").get<double>(), j.at("flickerPixels").get<double>()};
+    return {j.at("ghostSquares").get<double>(), j.at("ghostValues").get<double>(), j.at("flickerSquares").get<double>(),
+            j.at("flickerPixels").get<double>()};
 }
 json toJson(const TimeComparison& c) {
     return {{"gainDb", c.gainDb}, {"low95", c.low}, {"high95", c.high}, {"resolved", c.resolved}};

@@ -16,10 +16,10 @@ namespace aa {
 
 struct FrameResult {
     int frame = 0;
-    double seconds = 0;                   // of this resolve
-    std::optional<FrameMetrics> metrics;  // only when the frame has ground truth
-    bool judged = true;                   // counts in the pooled figures; of a static shot only the last frame does
-    std::string image;                    // relative path of the written image; empty when none was
+    double seconds = 0;                       // of this resolve
+    std::optional<FrameMetrics> metrics;      // only when the frame has ground truth
+    bool judged = true;                       // counts in the pooled figures; of a static shot only the last frame does
+    std::string image;                        // relative path of the written image; empty when none was
     std::optional<TemporalFrame> temporal{};  // of a sequence, after the warm-up
     // Squared error where this method, or the one that it fills, rejected its history; not of a frame without history.
     std::optional<FrameSum> rejected{};

@@ -190,13 +190,15 @@ class Sheet {
     void methodRow(size_t place, int y) {
         const MethodResult& m = run_.methods[order_[place]];
         panel(y);
-        const size_t colon = m.text.find(':');
+        // The parameters or the stages on a line of their own: smaa1x / preset=ULTRA, accumReject / +fill=smaa1x.
+        const size_t cut = m.text.find_first_of(":+");
         const int width = kLabelWidth - 26;
-        canvas_.text(kMargin + 14, y + 32, canvas_.fitted(m.text.substr(0, colon), width, 20, Font::bold), 20, kInk,
+        canvas_.text(kMargin + 14, y + 32, canvas_.fitted(m.text.substr(0, cut), width, 20, Font::bold), 20, kInk,
                      Font::bold);
         int line = y + 54;
-        if (colon != std::string::npos) {
-            canvas_.text(kMargin + 14, line, canvas_.fitted(m.text.substr(colon + 1), width, 14), 14, kInk);
+        if (cut != std::string::npos) {
+            const std::string rest = m.text.substr(m.text[cut] == ':' ? cut + 1 : cut);
+            canvas_.text(kMargin + 14, line, canvas_.fitted(rest, width, 14), 14, kInk);
             line += 20;
         }
         canvas_.text(kMargin + 14, line, canvas_.fitted(m.title, width, 13), 13, kQuiet);
@@ -219,7 +221,8 @@ class Sheet {
         figure("time", shortNumber(m.nsPerPixel), "ns/px", kInk, 16);
         if (m.temporal) {
             const auto flicker = run_.isStatic ? m.temporal->flickerStatic : m.temporal->flickerMoving;
-            if (flicker) figure("flicker", shortNumber(*flicker), "codes", kInk, 16);
+            if (flicker && (*flicker > 0 || !run_.isStatic))
+                figure("flicker", shortNumber(*flicker), "codes", kInk, 16);
             if (m.temporal->ghostExcess && m.id != "noaa")
                 figure("ghosts", shortNumber(*m.temporal->ghostExcess), "x noaa",
                        *m.temporal->ghostExcess <= 1 ? kBetter : kWorse, 16);
@@ -241,8 +244,9 @@ class Sheet {
         std::string text = "Best PSNR first, noaa last. Details: unfiltered pixels, where the methods differ most. ";
         if (layout_.errors) text += "Figures and errors of display-encoded values. ";
         if (layout_.overTime)
-            text += run_.isStatic ? "Flicker: spread over time, 8-bit codes."
-                                  : "Flicker along the motion in 8-bit codes; ghosts: error where something came into view.";
+            text += run_.isStatic
+                        ? "Flicker: spread over time, 8-bit codes."
+                        : "Flicker along the motion in 8-bit codes; ghosts: error where something came into view.";
         canvas_.text(kMargin, y + 24, canvas_.fitted(text, canvas_.width() - 2 * kMargin - 220, 14), 14, kQuiet);
         canvas_.text(canvas_.width() - kMargin, y + 24, "AA Resolve " + run_.programVersion, 14, kQuiet, Font::regular,
                      Align::right);

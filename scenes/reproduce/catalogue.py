@@ -55,10 +55,18 @@ SHOTS = _shots(
     Shot("hard_edges.grid2", "hard_edges", "noaa ssaa", pattern="grid2", truth_of="hard_edges", **STILL),
     Shot("hard_edges.grid4", "hard_edges", "noaa ssaa", pattern="grid4", truth_of="hard_edges", **STILL),
     Shot(
-        "hard_edges.t2x", "hard_edges", "noaa smaaT2x smaa4x", pattern="d3d4", truth_of="hard_edges",
+        "hard_edges.t2x", "hard_edges", "noaa smaaT2x", truth_of="hard_edges",
         jitter="smaaT2x", period=2, frames=8, quick_frames=8,
     ),
-    Shot(
+    Shot(  # alternates between two opposite ones of the four sub-samples
+        "hard_edges.4x", "hard_edges", "noaa smaa4x", pattern="d3d4", truth_of="hard_edges",
+        jitter="none", period=1, frames=8, quick_frames=8,
+    ),
+    Shot(  # as published: two sub-samples, frames moved by 0.25 px
+        "hard_edges.t2msaa2", "hard_edges", "noaa t2msaa", pattern="d3d2", truth_of="hard_edges",
+        jitter="t2msaa", period=2, frames=8, quick_frames=8,
+    ),
+    Shot(  # any offset: each frame takes the nearest of sixteen recorded sub-samples
         "hard_edges.t2msaa", "hard_edges", "noaa t2msaa t2msaa:offset=0.1875 t2msaa:offset=0.125",
         pattern="d3d16", truth_of="hard_edges", jitter="none", period=1, frames=8, quick_frames=8,
     ),
@@ -78,6 +86,8 @@ SHOTS = _shots(
     Shot("moving_sphere", "moving_sphere", frames=32, quick_frames=16, **MOVING),
     Shot("hairball_rotating", "hairball", variant=("--rotating",), frames=24, quick_frames=12, **MOVING),
     Shot("wires", "wires", frames=24, quick_frames=12, **MOVING),
+    Shot("synth_moving", "synth:moving", f"{SPATIAL} {TEMPORAL}", frames=40, quick_frames=24),
+    Shot("synth_thin_motion", "synth:thin_motion", f"{SPATIAL} {TEMPORAL}", frames=40, quick_frames=24),
     # For timing alone.
     Shot(
         "moving_sphere_1080p", "moving_sphere",
@@ -94,3 +104,6 @@ PICTURES = {
     ),
     "hairball": ("hairball", "noaa mlaa smaa1x:preset=ULTRA rsaa msaa unchartedNorm master accum:samples=16"),
 }
+
+# On half-planes, where the program has the command `angles`.
+ANGLES = f"{SPATIAL} {EDGES} {SUBSAMPLES} {RSAA} uncharted unchartedNorm unchartedNoSharpen master accumReject karis salvi"

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import Iterable
 
 
 class Page:
@@ -20,7 +21,7 @@ class Page:
     def heading(self, text: str) -> None:
         self.lines += [f"## {text}", ""]
 
-    def points(self, items: list[str]) -> None:
+    def points(self, items: Iterable[str]) -> None:
         self.lines += [*(f"- {item}" for item in items), ""]
 
     def picture(self, file: str, text: str) -> None:

@@ -24,7 +24,7 @@ class Shot:
     """One export. Samples are per pixel and half of the truth; `quick_*` serve the short form of the study."""
 
     name: str
-    scene: str
+    scene: str  # of the folder scenes, or synth:NAME for an analytic one with exact truth
     methods: str  # methods it must serve, separated by blanks: they decide the passes
     variant: tuple[str, ...] = ()  # flags of the scene
     frames: int = 16
@@ -88,6 +88,13 @@ def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
     wish = _identity(shot, shop)
     if stamp.exists() and stamp.read_text() == wish and (folder / "shot.json").exists():
         return folder
+    frames = shot.quick_frames if shop.quick else shot.frames
+    if shot.scene.startswith("synth:"):
+        command = [shop.program, "synth", shot.scene.split(":")[1], "-o", folder, "--frames", frames, "-q"]
+        command += ["--resolution", *shot.size, "--jitter", shot.jitter, "--period", shot.period]
+        command += ["--subsamples", shot.pattern] if shot.pattern else []
+        shop.run(f"synth.{shot.name}", command)
+        return _ready(shot, stamp, wish, started, "exact truth", folder)
     blend = shop.out / "scenes" / f"{'_'.join([shot.scene, *(v.strip('-') for v in shot.variant)])}.blend"
     headless = ROOT / "blender_addon/aa_resolve/headless.py"
     shop.run(
@@ -95,7 +102,6 @@ def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
         [shop.blender, "-b", "--factory-startup", "--python-exit-code", 9, "-P", ROOT / f"scenes/{shot.scene}.py"]
         + ["--", "--out", blend, *shot.variant],
     )  # fmt: skip
-    frames = shot.quick_frames if shop.quick else shot.frames
     samples = shot.quick_truth_samples if shop.quick else shot.truth_samples
     ids = [m.split("+")[0] for m in shot.methods.split() if shop.serves(m)]
     command = [shop.blender, "-b", blend, "--python-exit-code", 9, "-P", headless, "--"]
@@ -108,23 +114,35 @@ def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
         command += ["--passes", shot.passes]
     if shot.truth_of or not shot.truth:
         command += ["--truth-frames", "none"]
-    said = shop.run(f"export.{shot.name}", command)
+    try:
+        said = shop.run(f"export.{shot.name}", command)
+    except SystemExit as refusal:  # the exporter never mixes two exports in one folder
+        if "holds an export with other settings" not in str(refusal):
+            raise
+        print(f"  shot {shot.name}: its settings have changed, rendered anew", flush=True)
+        said = shop.run(f"export.{shot.name}", [*command, "--overwrite"])
     if shot.truth_of:
         _lend_truth(make_folder(shop, shots[shot.truth_of]), folder)
+    done = [line.split(": ", 1)[-1] for line in said.splitlines() if "pictures in" in line]
+    return _ready(shot, stamp, wish, started, done[-1] if done else "ready", folder)
+
+
+def _ready(shot: Shot, stamp: Path, wish: str, started: float, what: str, folder: Path) -> Path:
     stamp.parent.mkdir(exist_ok=True)
     stamp.write_text(wish)
-    done = [line for line in said.splitlines() if "pictures in" in line]
-    print(f"  shot {shot.name}: {done[-1].split(': ', 1)[-1] if done else 'ready'}"
-          f" ({time.monotonic() - started:.0f} s)", flush=True)  # fmt: skip
+    print(f"  shot {shot.name}: {what} ({time.monotonic() - started:.0f} s)", flush=True)
     return folder
 
 
 def _identity(shot: Shot, shop: Workshop) -> str:
     """What decides the shot's content: its description and the sources of scene and exporter."""
     digest = hashlib.sha256(f"{shot} {shop.quick} {sorted(shop.known)}".encode())
-    sources = [ROOT / f"scenes/{shot.scene}.py", ROOT / "scenes/common.py"]
-    sources += sorted((ROOT / "blender_addon/aa_resolve").glob("*.py"))
-    sources += [ROOT / "blender_addon/aa_resolve/methods.json"]
+    if shot.scene.startswith("synth:"):
+        sources = [shop.program]
+    else:
+        sources = [ROOT / f"scenes/{shot.scene}.py", ROOT / "scenes/common.py"]
+        sources += sorted((ROOT / "blender_addon/aa_resolve").glob("*.py"))
+        sources += [ROOT / "blender_addon/aa_resolve/methods.json"]
     for path in sources:
         digest.update(path.read_bytes())
     return digest.hexdigest()

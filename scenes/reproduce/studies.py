@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 
 import published
-from figures import Difference, Run, across, signed, verdict
+from figures import Difference, Run, across, number, signed, verdict
 from page import Page, code
 
 
@@ -14,6 +14,8 @@ def _setup(run: Run) -> str:
     shot, truth = run.data["shot"], run.data["truth"]
     width, height = shot["resolution"]
     frames = len(run.data["methods"][0]["frames"])
+    if not run.noise > 0:
+        return f"{width} × {height}, {frames} frames, analytic, with exact truth."
     smallest = min(run.mse(m) for m in run.methods)
     share = 100 * run.noise / smallest
     return (
@@ -45,6 +47,43 @@ def _ranking(run: Run, over_time: bool = True) -> tuple[list[str], list[list[str
 
 def _figure(value: float | None, digits: int = 3) -> str:
     return "–" if value is None else f"{value:.{digits}g}"
+
+
+# --- the index ---
+
+
+def headlines(runs: dict[str, Run]) -> list[str]:
+    """The main questions, each answered over all scenes."""
+    moving = [n for n in ("moving_sphere", "hairball_rotating", "wires", "synth_moving", "synth_thin_motion") if n in runs]
+    static = [n for n in ("hard_edges", "hairball", "hairball_unlit", "flowers") if n in runs]
+    sampled = [n for n in ("hard_edges", "hairball") if n in runs]
+    ghost = lambda a, b: lambda r: r.over_time(a, b, "ghost")  # noqa: E731
+    gain = lambda a, b: lambda r: r.gain(a, b)  # noqa: E731
+    box = lambda r: min((m for m in BOXES if m in r), key=lambda m: r.temporal(m, "ghostMse"))  # noqa: E731
+    filled = lambda m: lambda r: r.over_time(f"accumReject+fill={m}", "accumReject", "rejected")  # noqa: E731
+    asked = [
+        ("Is `master` better than `unchartedNorm` at rest?", static, gain("master", "unchartedNorm")),
+        ("Does its own sharpen filter help the Uncharted baseline at rest?", static, gain("uncharted", "unchartedNoSharpen")),
+        ("Does `master` ghost less than `unchartedNorm` (published: yes)?", moving, ghost("master", "unchartedNorm")),
+        ("Does identity ghost less than the best colour box?", moving, lambda r: r.over_time("accumReject", box(r), "ghost")),
+        ("Does a fill by SMAA help where history was rejected?", moving, filled("smaa1x")),
+        ("And by FXAA?", moving, filled("fxaa311")),
+        ("And by RSAA?", [n for n in moving if "accumReject+fill=rsaa" in runs[n]], filled("rsaa")),
+        ("Are the corrected weights of `raptor` better than the printed ones?", moving, gain("raptor", "raptor:lumaDiff=printed")),
+        ("Is RSAA with 8 sub-samples better than MSAA with 8?", sampled, gain("rsaa", "msaa")),
+        ("Is it better than MLAA?", sampled, gain("rsaa", "mlaa")),
+    ]  # fmt: skip
+    return [f"{question} {_over_scenes(scenes, runs, ask)}" for question, scenes, ask in asked if scenes]
+
+
+def _over_scenes(scenes: list[str], runs: dict[str, Run], ask) -> str:
+    found: dict[str, list[str]] = {"Yes": [], "No": [], "Not resolved": []}
+    for name in scenes:
+        d = ask(runs[name])
+        if d is not None:
+            answer = "Not resolved" if not d.resolved else "Yes" if d.db > 0 else "No"
+            found[answer].append(f"{name} ({signed(d.db)} dB)")
+    return " ".join(f"**{answer}** on {', '.join(where)}." for answer, where in found.items() if where)
 
 
 # --- 1: static protocol ---------------------------------------------------------------------------------------------
@@ -169,7 +208,7 @@ def motion_page(runs: dict[str, Run]) -> Page:
         "motion and counts what changes beyond what the truth changes, in 8-bit codes. ± are 95 % intervals over blocks of",
         "consecutive frames; differences are paired frame by frame.",
     )
-    for name in ("moving_sphere", "hairball_rotating", "wires"):
+    for name in ("moving_sphere", "hairball_rotating", "wires", "synth_moving", "synth_thin_motion"):
         if name not in runs:
             continue
         run = runs[name]
@@ -191,6 +230,7 @@ def _motion_answers(run: Run) -> list[str]:
         "And when neither sharpens? " + ghost("master:sharpen=none", "unchartedNoSharpen"),
         f"Does identity (`accumReject`: object ids and expected depth, no colour box) ghost less than the best colour box, "
         f"{code(box)}? " + ghost("accumReject", box),
+        _stale(run, "accumReject", box),
         "Is it nearer to the truth over the whole picture, too? " + verdict(run.gain("accumReject", box)),
         "Do object ids matter beside depth? " + ghost("accumReject", "accumReject:objectIds=off")
         + " Does depth beside object ids? " + ghost("accumReject", "accumReject:depthTest=off"),
@@ -211,6 +251,22 @@ def _motion_answers(run: Run) -> list[str]:
         + " Flicker less? " + verdict(run.over_time("raptor", "raptor:lumaDiff=printed", "flicker"), "less", "more")
     )  # fmt: skip
     return answers
+
+
+def _stale(run: Run, identity: str, box: str) -> str:
+    """How much of the colour that was there before is left one frame after a surface came into view."""
+    left = {m: (run.temporal(m, "ghostFraction") or [math.nan])[0] for m in (identity, box)}
+    if not all(abs(v) < 1 for v in left.values()):
+        return "How much of the old colour is left cannot be said here: it hardly differs from the new one."
+    less = abs(left[identity]) < abs(left[box])
+    ghosts = run.over_time(identity, box, "ghost")
+    text = (
+        f"Stale colour left one frame after a surface came into view: {code(identity)} {signed(left[identity])}, "
+        f"{code(box)} {signed(left[box])}."
+    )
+    if less and ghosts is not None and ghosts.resolved and ghosts.db < 0:
+        text += " So identity forgets the old colour better, and its larger error there is of another kind."
+    return text
 
 
 def _motion_table(run: Run) -> tuple[list[str], list[list[str]]]:
@@ -310,7 +366,7 @@ def _against_the_talk(run: Run, by_s: dict[int, Run]) -> list[str]:
         answers.append(
             f"The reason is the scene: MSAA of the same samples, which knows every surface in the pixel, gains {ceiling.db:.2f} dB here"
             + (
-                f", {bound.db:.2f} dB more than RSAA: what RSAA lacks are surfaces that no neighbouring pixel shows."
+                f", {bound.db:.2f} dB more than RSAA, which can fetch only what some pixel's centre shows."
                 if bound.resolved and bound.db > 0
                 else f", {-bound.db:.2f} dB less than RSAA: the edges are isolated, where learned offsets beat plain coverage."
                 if bound.resolved
@@ -323,29 +379,41 @@ def _against_the_talk(run: Run, by_s: dict[int, Run]) -> list[str]:
 # --- 4 to 6: angles, speed, published -------------------------------------------------------------------------------
 
 
-def angles_page(angles: list[dict]) -> Page:
-    page = Page("Half-planes at 64 angles")
+def angles_page(study: dict) -> Page:
+    degrees = study["degrees"]
+    page = Page(f"Half-planes at {len(degrees)} angles")
     page.say(
-        "PSNR gain over no anti-aliasing on analytic half-planes, whose truth is exact. A method that knows edges only along",
-        "rows and columns is strong near 0° and 90° and weak at 45°.",
+        "PSNR gain over no anti-aliasing on analytic half-planes, whose truth is exact, so without error bars. Mirrored, turned:",
+        "the largest difference of the gain between an edge and its mirror image or quarter turn; 0 = the method treats them",
+        "alike.",
     )
-    page.table(
-        ["method", "mean gain, dB", "weakest, dB", "at", "strongest, dB", "at"],
-        [[code(a["method"]), signed(a["mean"]), signed(a["worst"][1]), f"{a['worst'][0]:.0f}°", signed(a["best"][1]), f"{a['best'][0]:.0f}°"]
-         for a in sorted(angles, key=lambda a: -a["mean"])],
-    )  # fmt: skip
+    rows = []
+    for m in sorted(study["methods"], key=lambda m: -number(m["pooledGainDb"])):
+        gains = [number(g) for g in m["gainDb"]]
+        least, most = min(range(len(gains)), key=gains.__getitem__), max(range(len(gains)), key=gains.__getitem__)
+        rows.append(
+            [code(m["text"]), signed(number(m["pooledGainDb"])), f"{signed(gains[least])} at {degrees[least]:.0f}°",
+             f"{signed(gains[most])} at {degrees[most]:.0f}°", f"{number(m['mirrorDb']):.3f}", f"{number(m['turnDb']):.3f}",
+             m["subsamples"] or "–"]
+        )  # fmt: skip
+    page.table(["method", "gain, dB", "least", "most", "mirrored, dB", "turned, dB", "sub-samples"], rows)
     return page
 
 
-def speed_page(rows: list[dict], where: str) -> Page:
+def speed_page(rows: list[dict], where: str, size: tuple[int, int]) -> Page:
     page = Page("Speed, memory, and the error of the fast form")
     page.say(
         f"One thread, {where}. ns per pixel: median and minimum over the frames. Kept: history and working memory at this",
         "size. Error: the fast form (float lanes) against the same method in double, over all pixels and frames.",
     )
+    shares = [number(r["edgeShare"]) for r in rows if r.get("edgeShare") is not None]
+    by_edge = bool(shares)
+    if by_edge:
+        page.say(f"{100 * max(shares):.0f} % of the pixels lie at an edge; ns per edge pixel spreads a method's time over these alone.")
     page.table(
-        ["method", "ns/px", "min", "ms per frame", "kept, MB", "max error", "rms error"],
-        [[code(r["method"]), f"{r['nsPerPixel']:.1f}", f"{r['nsPerPixelMin']:.1f}", f"{r['nsPerPixel'] * 1920 * 1080 * 1e-6:.1f}",
+        ["method", "ns/px", "min", *(["per edge pixel"] if by_edge else []), "ms per frame", "kept, MB", "max error", "rms error"],
+        [[code(r["method"]), f"{r['nsPerPixel']:.1f}", f"{r['nsPerPixelMin']:.1f}",
+          *([_figure(number(r.get("nsPerEdgePixel")))] if by_edge else []), f"{r['nsPerPixel'] * size[0] * size[1] * 1e-6:.1f}",
           f"{r['stateBytes'] / 2**20:.1f}", f"{r['maxError']:.2g}", f"{r['rmsError']:.2g}"]
          for r in sorted(rows, key=lambda r: r["nsPerPixel"])],
     )  # fmt: skip
@@ -382,6 +450,15 @@ def published_page(runs: dict[str, Run]) -> Page:
         db = 10 * math.log10(theirs["Uncharted"] / theirs["Master"])
         rows.append([f"{title} / {shot}", signed(db), str(run.gain("master", "uncharted")), str(run.gain("master", "unchartedNorm"))])
     page.table(["scene", "published, dB", "ours, dB", "ours, against `unchartedNorm`"], rows)
+    if {"hard_edges.t2msaa", "hard_edges.s2", "hard_edges.s4"} <= set(runs):
+        page.heading("T2MSAA lies between 2x and 4x MSAA (Linköping thesis)")
+        t2, s2, s4 = (runs[f"hard_edges.{n}"] for n in ("t2msaa", "s2", "s4"))
+        page.points(
+            f"{code(m)}: better than MSAA of 2? {verdict(across(t2, m, s2, 'msaa'))} Worse than MSAA of 4? "
+            f"{verdict(across(s4, 'msaa', t2, m), 'worse', 'better')}"
+            for m in t2.methods
+            if m != "noaa"
+        )
     return page
 
 

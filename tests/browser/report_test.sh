@@ -38,6 +38,9 @@ expect "sortable columns" 'aria-sort="none"' 6
 expect "a sorted column" 'aria-sort="descending"' 1
 expect "sentences" '<li>' 2
 expect "charts that were drawn" '<canvas id="(scatter|gain|frames)"[^>]*style="[^"]*(width|height)' 3
+expect "figures over time" 'Flicker in motion' 1
+expect "charts over time" '<canvas id="(flicker|ghost)"[^>]*style="[^"]*(width|height)' 2
+expect "memory" 'Kept, MB at 1080p' 1
 expect "slider that was set up" '<img-comparison-slider[^>]*rendered' 1
 expect "pictures in the slider" '<img id="(left|right)-image"[^>]*src="data:image/png' 2
 expect "the error map, swapped to the right" '<img id="right-image"[^>]*alt="error of noaa"[^>]*width: 1440px' 1

@@ -15,6 +15,7 @@
   const minus = (text) => (/^-0\.?0*$/.test(text) ? text.slice(1) : text.replace("-", "−"));
   const signed = (v) => (value(v) > 0 ? "+" : "") + fixed(v, 2).replace("-", "−");
   const short = (v) => (v == null ? "–" : Number.isFinite(value(v)) ? Number(value(v).toPrecision(4)).toString() : fixed(v, 0));
+  const millionths = (v) => { const n = value(v) * 1e6; return Number.isFinite(n) ? (n >= 1000 ? n.toFixed(0) : Number(n.toPrecision(3)).toString()) : fixed(v, 0); };
   const psnr = (mse) => (mse > 0 ? -10 * Math.log10(mse) : Infinity);
 
   const element = (name, attributes = {}, ...children) => {
@@ -50,8 +51,8 @@
     { title: "SSIM", better: "high", get: pooled("ssimLuma"), show: (m) => (m.pooled ? fixed(m.pooled.ssimLuma, 6) : "–") },
     has("ssimRgb") && { title: "SSIM RGB", better: "high", get: pooled("ssimRgb"), show: (m) => (m.pooled ? fixed(m.pooled.ssimRgb, 6) : "–") },
     has("flip") && { title: "FLIP", better: "low", get: pooled("flip"), show: (m) => (m.pooled ? short(m.pooled.flip) : "–") },
-    { title: "MSE", better: "low", get: pooled("mse"), show: (m) => (m.pooled ? short(m.pooled.mse) : "–"),
-      small: () => (run.truth.noiseMse > 0 ? "± " + short(run.truth.noiseMse) : null) },
+    { title: "MSE, 10⁻⁶", better: "low", get: pooled("mse"), show: (m) => (m.pooled ? millionths(m.pooled.mse) : "–"),
+      small: () => (run.truth.noiseMse > 0 ? "± " + millionths(run.truth.noiseMse) : null) },
     { title: "SNR, dB", better: "high", get: pooled("snr"), show: (m) => (m.pooled ? fixed(m.pooled.snr, 2) : "–") },
     has("relMse") && { title: "relMSE", better: "low", get: pooled("relMse"), show: (m) => (m.pooled ? short(m.pooled.relMse) : "–") },
     { title: "Time, ns/px", better: "low", get: (m) => m.nsPerPixel, show: (m) => short(m.nsPerPixel),
@@ -105,10 +106,14 @@
 
   // ---- over time ----
   const time = (i) => methods[i].temporal || {};
-  // The stale colour is known only where the frame before has truth, too.
-  for (const m of methods) if (m.temporal && m.temporal.ghostFraction && m.temporal.ghostFraction.every((v) => v === 0)) {
-    delete m.temporal.ghostFraction;
-    delete m.temporal.ghostHalfLifeFrames;
+  // The stale colour is known only where the frame before has truth, too, and no age is older than the shot.
+  const oldest = Math.max(0, ...methods.map((m) => (m.temporal?.ghostFraction ?? []).findLastIndex((v) => v !== 0) + 1));
+  for (const m of methods) if (m.temporal?.ghostFraction) {
+    m.temporal.ghostFraction.length = Math.min(m.temporal.ghostFraction.length, oldest);
+    if (!oldest) {
+      delete m.temporal.ghostFraction;
+      delete m.temporal.ghostHalfLifeFrames;
+    }
   }
   const judged = order.filter((i) => methods[i].temporal);
   const flickerOf = (i) => value(run.shot.static ? time(i).flickerStatic : time(i).flickerMoving);
@@ -119,14 +124,15 @@
   const plusMinus = (key) => (m) => (m.temporal && m.temporal[key] > 0 ? "± " + Number(m.temporal[key].toPrecision(2)) : null);
   // Against noaa, over time: "fewer dB" reads better as a factor.
   const versusNoaa = (key) => (m, i) => { const p = i !== noaa && noaa >= 0 && pair(i, noaa); return p && p[key] && !p[key].resolved ? "not resolved from noaa" : null; };
-  const ghostAt = (age) => judgedHave("ghostFraction") && { title: `Stale at age ${age}`, better: "low",
+  const ghostAt = (age) => age <= oldest && { title: `Stale at age ${age}`, better: "low",
     get: (m) => (m.temporal && m.temporal.ghostFraction ? m.temporal.ghostFraction[age - 1] ?? null : null),
     show: (m) => (m.temporal && m.temporal.ghostFraction && m.temporal.ghostFraction[age - 1] != null ? minus(fixed(m.temporal.ghostFraction[age - 1], 2)) : "–") };
   const lasting = (t) => t.ghostFraction && Math.max(...t.ghostFraction.slice(0, 3)) > 0.05;
   const timeColumns = [
     timeColumn("Flicker at rest", "flickerStatic", 3),
     timeColumn("Flicker in motion", "flickerMoving", 3, { small: plusMinus("flickerError") }),
-    timeColumn("Ghost MSE", "ghostMse", null, { small: plusMinus("ghostMseError") }),
+    timeColumn("Ghost MSE, 10⁻⁶", "ghostMse", null, { show: (m) => (m.temporal && m.temporal.ghostMse != null ? millionths(m.temporal.ghostMse) : "–"),
+      small: (m) => (m.temporal && m.temporal.ghostMseError > 0 ? "± " + millionths(m.temporal.ghostMseError) : null) }),
     timeColumn("Ghosts, × noaa", "ghostExcess", 2, { small: versusNoaa("ghost") }),
     ghostAt(1), ghostAt(4), ghostAt(16),
     timeColumn("Half-life, frames", "ghostHalfLifeFrames", 1, { show: (m) => (m.temporal && m.temporal.ghostHalfLifeFrames != null && lasting(m.temporal) ? fixed(m.temporal.ghostHalfLifeFrames, 1) : "–") }),
@@ -144,7 +150,10 @@
       " tPSNR pools the error over these frames.";
     $("flicker-title").textContent = run.shot.static ? "Flicker of a scene at rest: shorter is steadier" : "Flicker along the motion: shorter is steadier";
     $("flicker-note").textContent = (run.shot.static ? "Mean standard deviation over time, 8-bit codes." : "Root mean square of the change that the truth does not have, 8-bit codes; whiskers: 95 % interval.") +
-      " A spatial method flickers when edges step from pixel to pixel; a heavy history hardly flickers, but blurs and lags.";
+      (run.shot.static
+        ? " Methods without history read the same picture in every frame of a scene at rest, so they do not flicker here; in motion they do."
+        : " A spatial method flickers when edges step from pixel to pixel; a heavy history hardly flickers, but blurs and lags.");
+    $("flicker").closest("figure").classList.toggle("wide", !judgedHave("ghostFraction"));
     $("frames-title").textContent = run.shot.static ? "Convergence: PSNR against the frame number" : "PSNR of every frame";
     $("frames-note").textContent = (run.shot.static
       ? "A method with history gets better from frame to frame until its history is full; “converged” is the frame from which it stays within 0.5 dB of its last value."
@@ -152,14 +161,13 @@
   }
 
   // ---- the price in full ----
-  // Render seconds by pass group: colour, depth, normals, ids, motion and albedo come from one render.
+  // Render seconds by pass group: what has no group of its own comes with the colour's render.
   const renderSeconds = run.shot.renderSeconds || {};
-  const groupsOf = (m) => ["color", ...(m.passes.some((p) => p.startsWith("subsample")) ? ["subsamples"] : []), ...(m.passes.includes("edges") ? ["edges"] : [])];
   const priceOf = (i) => {
     const m = methods[i], centre = m.sampling === "centre" && renderSeconds["centre.color"] != null ? "centre." : "";
-    const seconds = groupsOf(m).map((g) => renderSeconds[centre + g]);
-    if (seconds.some((v) => v == null)) return null;
-    const render = seconds.reduce((a, b) => a + b, 0);
+    const groups = new Set(["color", ...m.passes.map((p) => (p.startsWith("subsample") ? "subsamples" : p))]);
+    if (renderSeconds[centre + "color"] == null) return null;
+    const render = [...groups].reduce((sum, g) => sum + (renderSeconds[centre + g] ?? 0), 0);
     return { render, all: render + m.secondsMedian };
   };
   // Bytes per pixel of each pass in memory, 32-bit floats and ids; S = sub-samples of the shot.
@@ -263,7 +271,7 @@
       const byFrame = new Map(measured(methods[i]).map((f) => [f.frame, finite(f.metrics.psnr)]));
       return numbers.map((n) => byFrame.get(n) ?? null);
     }, "frame", axis("PSNR, dB", { grace: "5%" }), (v) => v.toFixed(2) + " dB");
-    bars("flicker", judged.filter((i) => flickerOf(i) != null).sort((a, b) => flickerOf(a) - flickerOf(b)), flickerOf, "8-bit codes",
+    bars("flicker", judged.filter((i) => (run.shot.static ? flickerOf(i) > 0 : flickerOf(i) != null)).sort((a, b) => flickerOf(a) - flickerOf(b)), flickerOf, "8-bit codes",
       (i) => (i === noaa ? css("--quiet") : css("--accent")), (v, i) => `${v.toPrecision(3)}${flickerError(i) ? " ± " + flickerError(i).toPrecision(2) : ""} codes`, flickerError);
     const ages = Math.max(0, ...judged.map((i) => (time(i).ghostFraction || []).length));
     const ghosting = ages ? judged.filter((i) => time(i).ghostFraction).sort((a, b) => value(time(a).ghostMse) - value(time(b).ghostMse)) : [];
