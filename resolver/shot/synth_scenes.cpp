@@ -226,6 +226,33 @@ SynthSceneContents moving(int w, int h, uint32_t seed) {
     return s;
 }
 
+// Triangles and wires all over the picture, so dense that 10 to 15 % of the pixels lie on an edge at any resolution.
+SynthSceneContents clutter(int w, int h, uint32_t seed) {
+    SynthSceneContents s;
+    Palette palette(seed);
+    constexpr double kTile = 32;
+    const int columns = std::max(1, int(w / kTile)), rows = std::max(1, int(h / kTile));
+    uint32_t id = 2, index = 0;
+    const auto next = [&](double lo, double hi) { return lo + (hi - lo) * hashed(seed ^ 0x51EDu, index++); };
+    for (const Tile& t : tiles(w, h, columns, rows)) {
+        const dvec2 at(next(t.x0, t.x1), next(t.y0, t.y1));
+        const double angle = next(0, 2 * kPi);
+        const dvec3 color = t.index % 3 == 0 ? palette.dark() : t.index % 3 == 1 ? palette.light() : palette.middle();
+        Polygon shape;
+        if (t.index % 4 == 3) {
+            shape = bar(at, angle, next(30, 80), next(0.6, 2.5));
+        } else {
+            for (int k = 0; k < 3; k++) shape.push_back(at + direction(angle + 2.1 * k) * next(12, 34));
+        }
+        s.shapes.push_back(flat(shape, id, color, 5 + 1e-3 * id));
+        s.objects[id] = "shape " + std::to_string(id);
+        id++;
+    }
+    s.shapes.push_back(flat(rectangle(-1, -1, w + 1, h + 1), 1, palette.middle(), 60));
+    s.objects[1] = "wall";
+    return s;
+}
+
 // Wires and poles before an empty sky and a field.
 SynthSceneContents thinMotion(int w, int h, uint32_t seed) {
     SynthSceneContents s;
@@ -298,6 +325,7 @@ const std::vector<SynthScene>& synthScenes() {
         {"zone_plate", "rings up to the Nyquist limit and beyond"},
         {"moving", "shapes that translate and turn by fractions of a pixel over a striped wall"},
         {"two_planes", "a crease, a plane behind, sky; perspective, for the methods that read geometry"},
+        {"clutter", "triangles and wires everywhere: one pixel in eight lies on an edge, for timing"},
         {"thin_motion", "wires that move before sky, field and poles"},
     };
     return table;
@@ -319,6 +347,7 @@ SynthSceneContents makeScene(std::string_view name, int w, int h, uint32_t seed)
     if (name == "zone_plate") return with(zonePlate(w, h, seed));
     if (name == "moving") return with(moving(w, h, seed));
     if (name == "two_planes") return with(twoPlanes(w, h, seed));
+    if (name == "clutter") return with(clutter(w, h, seed));
     if (name == "thin_motion") return with(thinMotion(w, h, seed));
     std::string known;
     for (const auto& s : synthScenes()) known += (known.empty() ? "" : ", ") + std::string(s.name);
