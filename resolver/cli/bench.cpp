@@ -93,8 +93,7 @@ double edgeShare(const std::vector<Frame>& frames) {
 // Seconds on one thread: of its processor time, which other programs on the machine do not lengthen. On several: of
 // wall time.
 double secondsNow(bool oneThread) {
-    if (!oneThread)
-        return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    if (!oneThread) return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
     timespec t{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
     return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
@@ -165,7 +164,8 @@ void execute(const Options& o) {
             const double ms = row.nsMedian * 1e-6 * info.width * info.height;
             if (!o.json)
                 std::printf("%-32s %9.2f %9.2f %9.1f %9.3f %9.2f %12.3g %12.3g\n", row.text.c_str(), row.nsMedian,
-                            row.nsMin, row.nsPerEdgePixel, ms, double(row.stateBytes) / (1 << 20), row.maxError, row.rmsError);
+                            row.nsMin, row.nsPerEdgePixel, ms, double(row.stateBytes) / (1 << 20), row.maxError,
+                            row.rmsError);
             all.push_back({{"method", row.text},
                            {"nsPerPixel", row.nsMedian},
                            {"nsPerPixelMin", row.nsMin},

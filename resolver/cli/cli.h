@@ -37,5 +37,6 @@ void addReport(CLI::App& app, Context& context);
 void addLearnRsaa(CLI::App& app, Context& context);
 void addSynth(CLI::App& app, Context& context);
 void addCheck(CLI::App& app, Context& context);
+void addAngles(CLI::App& app, Context& context);
 
 }  // namespace aa

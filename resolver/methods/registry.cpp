@@ -1,5 +1,6 @@
 // One line per method; it then appears in `list`, every property test, sweeps and reports.
 #include "methods/accum.h"
+#include "methods/cmaa2.h"
 #include "methods/deaa.h"
 #include "methods/dlaa.h"
 #include "methods/dmsaa.h"
@@ -43,6 +44,7 @@ const std::vector<MethodDescriptor>& registry() {
         mlaaDescriptor(),
         smaa1xDescriptor(),
         smaaS2xDescriptor(),
+        cmaa2Descriptor(),
         dlaaDescriptor(),
         nfaaDescriptor(),
         ssssaaDescriptor(),

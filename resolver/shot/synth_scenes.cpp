@@ -116,6 +116,18 @@ Polygon bar(dvec2 centre, double angle, double half, double width) {
     return {centre - d - n, centre + d - n, centre + d + n, centre - d + n};
 }
 
+// Dark before light, with one edge; both reach far beyond the picture, so that it has no other.
+SynthSceneContents halfPlane(int w, int h, double angleDegrees, double offsetPx) {
+    SynthSceneContents s;
+    const dvec2 n = direction(angleDegrees * kPi / 180);
+    const double offset = glm::dot(n, dvec2(w / 2.0, h / 2.0)) + offsetPx;
+    const Polygon everything = rectangle(-w, -h, 2.0 * w, 2.0 * h);
+    s.shapes = {flat(clip(everything, {n, offset}), 1, dvec3(0.04), 8),
+                flat(clip(everything, {-n, -offset}), 2, dvec3(0.8), 12)};
+    s.objects = {{1, "dark side"}, {2, "light side"}};
+    return s;
+}
+
 // At least 64 tiles, each one edge at an angle and sub-pixel offset of its own.
 SynthSceneContents halfPlanes(int w, int h, uint32_t seed) {
     SynthSceneContents s;
@@ -319,6 +331,7 @@ SynthSceneContents twoPlanes(int w, int h, uint32_t seed) {
 
 const std::vector<SynthScene>& synthScenes() {
     static const std::vector<SynthScene> table = {
+        {"half_plane", "one edge through the middle, at a chosen angle and offset"},
         {"half_planes", "one edge per tile, at 64 or more angles"},
         {"circles", "discs from 0.3 px in radius to a large part of a tile"},
         {"thin_lines", "lines of 0.2 to 2 px at many angles"},
@@ -336,11 +349,15 @@ double zonePlateValue(dvec2 p, int w, int h) {
     return 0.5 + 0.5 * std::cos(kPi * r2 / std::min(w, h));
 }
 
-SynthSceneContents makeScene(std::string_view name, int w, int h, uint32_t seed) {
+SynthSceneContents makeScene(const SynthOptions& o) {
+    const std::string& name = o.scene;
+    const int w = o.width, h = o.height;
+    const uint32_t seed = o.seed;
     const auto with = [&](SynthSceneContents s) {
         if (s.camera.projection == glm::dmat4(1.0)) s.camera = orthographicCamera(w, h);
         return s;
     };
+    if (name == "half_plane") return with(halfPlane(w, h, o.angleDegrees, o.offsetPx));
     if (name == "half_planes") return with(halfPlanes(w, h, seed));
     if (name == "circles") return with(circles(w, h, seed));
     if (name == "thin_lines") return with(thinLines(w, h, seed));
@@ -351,7 +368,7 @@ SynthSceneContents makeScene(std::string_view name, int w, int h, uint32_t seed)
     if (name == "thin_motion") return with(thinMotion(w, h, seed));
     std::string known;
     for (const auto& s : synthScenes()) known += (known.empty() ? "" : ", ") + std::string(s.name);
-    throw UsageError("synth scene '" + std::string(name) + "': expected one of " + known);
+    throw UsageError("synth scene '" + name + "': expected one of " + known);
 }
 
 }  // namespace aa
