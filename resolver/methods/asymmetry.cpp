@@ -20,7 +20,6 @@ std::string_view knownAsymmetry(std::string_view method) {
         {"smaa1x",
          "an edge yields to stronger ones two pixels to the left or above but not to the right or below, the "
          "left search is one pixel shorter, and symmetric corners blend vertically"},
-        {"cmaa2", "where a pixel is the step of two equally good lines the horizontal one is taken"},
         {"dlaa",
          "vertical blurs count half of horizontal ones, and long edges are matched on the left and above first"},
     };
