@@ -252,9 +252,9 @@ SynthSceneContents clutter(int w, int h, uint32_t seed) {
         const dvec3 color = t.index % 3 == 0 ? palette.dark() : t.index % 3 == 1 ? palette.light() : palette.middle();
         Polygon shape;
         if (t.index % 4 == 3) {
-            shape = bar(at, angle, next(30, 80), next(0.6, 2.5));
+            shape = bar(at, angle, next(50, 120), next(0.6, 2.5));
         } else {
-            for (int k = 0; k < 3; k++) shape.push_back(at + direction(angle + 2.1 * k) * next(12, 34));
+            for (int k = 0; k < 3; k++) shape.push_back(at + direction(angle + 2.1 * k) * next(18, 46));
         }
         s.shapes.push_back(flat(shape, id, color, 5 + 1e-3 * id));
         s.objects[id] = "shape " + std::to_string(id);

@@ -142,7 +142,7 @@ TEST(ReachNegative, TooSmallAReachIsSeen) {
                                          {"nfaa", 1},
                                          {"ssssaa", 1},
                                          {"fxaaconsole", 1},
-                                         {"mlaa", 60}})
+                                         {"mlaa", 40}})
         EXPECT_GT(influencePx(text, std::max(tooSmall, reachOf(text)) + 20), tooSmall) << text;
     for (const auto& [text, tooSmall] : {std::pair{"dlaa", 0}, {"nfaa", 0}, {"ssssaa", 0}})
         EXPECT_GT(changePx(text, 20), tooSmall) << text;
