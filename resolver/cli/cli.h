@@ -39,5 +39,6 @@ void addSynth(CLI::App& app, Context& context);
 void addCheck(CLI::App& app, Context& context);
 void addImport(CLI::App& app, Context& context);
 void addSweep(CLI::App& app, Context& context);
+void addAngles(CLI::App& app, Context& context);
 
 }  // namespace aa

@@ -4,6 +4,7 @@
 #include "cli/cli.h"
 #include "cli/describe.h"
 #include "image/error.h"
+#include "methods/asymmetry.h"
 #include "methods/stage.h"
 
 namespace aa {
@@ -56,6 +57,8 @@ void printMarkdown() {
         std::printf("Passes: %s. Input %s, output %s%s. Source: %s.\n\n", passList(passesAtDefaults(m)).c_str(),
                     std::string(name(m.input)).c_str(), std::string(name(m.output)).c_str(),
                     m.temporal ? ", keeps history" : "", std::string(m.source).c_str());
+        if (const auto asymmetry = knownAsymmetry(m.id); !asymmetry.empty())
+            std::printf("Not symmetric: %s\n\n", std::string(asymmetry).c_str());
         if (m.params.empty()) continue;
         std::puts("| parameter | default | range | meaning | source of the default |\n|---|---|---|---|---|");
         for (const auto& p : m.params) {
@@ -120,6 +123,7 @@ nlohmann::ordered_json describe(const MethodDescriptor& m) {
                                 {"output", name(m.output)},
                                 {"temporal", m.temporal},
                                 {"sampling", m.sampling() == Sampling::jittered ? "jittered" : "centre"}};
+    if (const auto asymmetry = knownAsymmetry(m.id); !asymmetry.empty()) j["asymmetry"] = asymmetry;
     // Passes that a choice asks for beyond those at the defaults: {"edges=depth": ["depth"]}.
     j["passesWhen"] = nlohmann::ordered_json::object();
     for (const auto& p : m.params)

@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
     const auto commands = {
         aa::addList,  aa::addPlan,   aa::addCheck,   aa::addRun,   aa::addFilter,    aa::addBench,
         aa::addSheet, aa::addReport, aa::addCompare, aa::addSynth, aa::addLearnRsaa,
-        aa::addImport, aa::addSweep,
+        aa::addImport, aa::addSweep, aa::addAngles,
     };
     for (const auto add : commands) add(app, context);
     try {

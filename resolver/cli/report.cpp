@@ -2,6 +2,7 @@
 
 #include "cli/cli.h"
 #include "image/io.h"
+#include "report/angles.h"
 #include "report/html.h"
 
 namespace aa {
@@ -20,7 +21,7 @@ void writeReport(const Options& o) {
         std::vector<Pictures> pictures;
         for (const int frame : framesToShow(framesWithPictures(run)))
             pictures.push_back(loadPictures(run, o.run, frame, exec));
-        writeText(out, reportHtml(run, pictures));
+        writeText(out, reportHtml(run, pictures, anglesForReport(o.run)));
     });
     std::printf("%s\n", out.c_str());
 }

@@ -113,7 +113,7 @@ std::string writeImage(const RunningMethod& m, int frame, const RunOptions& o) {
     }
     if (o.writeExr) {
         written = (folder / frameName(frame, ".exr")).string();
-        if (m.spec.method->output == Space::linear) {
+        if (m.spec.outputSpace() == Space::linear) {
             writeExr(o.out / written, m.out, false);
         } else {
             Rgb linear;
@@ -242,7 +242,7 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, Progress& pro
             const bool centre = split && methods[k].spec.method->sampling() == Sampling::centre;
             result.seconds = methods[k].resolve(centre ? *stream.centre() : *frame, o.display, o.exec);
             if (reference) {
-                const bool linear = methods[k].spec.method->output == Space::linear;
+                const bool linear = methods[k].spec.outputSpace() == Space::linear;
                 result.metrics = measure(methods[k].outEncoded, linear ? &methods[k].out : nullptr, *reference,
                                          o.measure, o.exec, errors[k]);
             }

@@ -103,6 +103,8 @@ void addSynth(CLI::App& app, Context& context) {
     c->add_flag("--subsample-color", o->synth.subsampleColor, "colour at the sub-samples, too");
     c->add_option("--inject-nan", o->nanPixel, "x and y of a NaN in the colour of every frame")->expected(2);
     c->add_option("--seed", o->synth.seed, "of the colours");
+    c->add_option("--angle", o->synth.angleDegrees, "scene half_plane: direction of the edge's normal, degrees");
+    c->add_option("--offset", o->synth.offsetPx, "scene half_plane: distance of the edge from the middle, px");
     c->add_option("-j,--threads", o->threads, "threads; 0 = all processors")->check(CLI::Range(0, 1024));
     c->add_flag("-q,--quiet", o->quiet, "no progress");
     c->add_flag("--list", o->list, "names of the scenes and jitter sequences");

@@ -16,22 +16,32 @@ class Dlaa : public Method {
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         const Rgb& in = frame.colorEncoded;
         if (edge_.width() != in.width() || edge_.height() != in.height()) edge_ = PlaneF(in.width(), in.height());
+        strong_.resize(size_t((in.width() + 7) / 8) * size_t(in.height()));
         const auto& kernels = dlaaKernelsFor(exec.isa);
-        runKernel(kernels.edges, exec, DlaaEdgeArgs{view(in), edge_.row(0), in.stride(), in.width()}, in.height());
+        runKernel(kernels.edges, exec, DlaaEdgeArgs{view(in), edge_.row(0), strong_.data(), in.stride(), in.width()},
+                  in.height());
         edge_.fillBorder();
         args_.in = view(in);
         args_.edge = edge_.row(0);
         args_.out = view(out);
         args_.stride = in.stride();
+        args_.strong = strong_.data();
         args_.width = in.width();
+        args_.height = in.height();
         if (keepDebugLayers) {
             shortMask_ = longMask_ = PlaneF(in.width(), in.height());
             args_.shortMask = shortMask_.row(0);
             args_.longMask = longMask_.row(0);
         }
-        runKernel(kernels.filter, exec, args_, in.height());
+        // Larger blocks than usual: each counts the strong pixels of 17 rows first.
+        const auto& filter = kernels.filter;
+        const auto fn = exec.precision == Precision::fast     ? filter.fast
+                        : exec.precision == Precision::scalar ? filter.scalar
+                                                              : filter.oracle;
+        forRows(
+            exec, in.height(), [&](int y0, int y1) { fn(args_, y0, y1); }, 64);
     }
-    size_t stateBytes() const override { return edge_.bytes(); }
+    size_t stateBytes() const override { return edge_.bytes() + strong_.size(); }
     std::vector<DebugLayer> debugLayers() const override {
         if (!keepDebugLayers) return {};
         return {{"edges", {edge_}}, {"mask.short", {shortMask_}}, {"mask.long", {longMask_}}};
@@ -40,6 +50,7 @@ class Dlaa : public Method {
   private:
     DlaaArgs args_{};
     PlaneF edge_, shortMask_, longMask_;
+    std::vector<uint8_t> strong_;
 };
 
 }  // namespace

@@ -1,5 +1,7 @@
 // What the FXAA variants share on the host: the luma plane, debug planes and search patterns.
 #pragma once
+#include <cassert>
+
 #include "methods/fxaa_kernels.h"
 #include "methods/luma.h"
 #include "methods/method.h"
@@ -19,12 +21,48 @@ inline void setDistances(FxaaArgs& args, const std::vector<double>& stepsPx) {
     double sumPx = 0;
     args.steps = 0;
     for (const double step : stepsPx) args.distanceHalfPx[args.steps++] = int(2 * (sumPx += step));
+    for (int k = 0; k + 1 < args.steps; k++) {  // no pattern samples twice within a pixel, nor beyond 24 px
+        const int wholePx = args.distanceHalfPx[k] / 2, window = (wholePx - 1) / 8, bit = (wholePx - 1) % 8;
+        assert(window < kFxaaWindows && !(args.sampled[window] >> bit & 1));
+        args.sampled[window] |= 1u << bit;
+        args.half[window] |= unsigned(args.distanceHalfPx[k] & 1) << bit;
+        args.sampledMirrored[window] |= 0x80u >> bit;
+        args.halfMirrored[window] |= unsigned(args.distanceHalfPx[k] & 1) << 7 >> bit;
+        args.windows = window + 1;
+    }
 }
+
+// A luma plane with the border that searches need.
+class SearchedLuma {
+  public:
+    void resize(int width, int height) {
+        if (width == width_ && height == height_) return;
+        width_ = width, height_ = height;
+        stride_ = (width + 15) / 16 * 16 + 2 * kFxaaBorder;
+        data_.assign(size_t(stride_) * size_t(height + 2 * kFxaaBorder), 0.0f);
+    }
+    float* row(int y) { return data_.data() + ptrdiff_t(y + kFxaaBorder) * stride_ + kFxaaBorder; }
+    int stride() const { return stride_; }
+    size_t bytes() const { return data_.size() * sizeof(float); }
+    void repeatBorder() {  // one row above and below: searches look one pixel across their line
+        for (int y = 0; y < height_; y++) {
+            float* const r = row(y);
+            std::fill(r - kFxaaBorder, r, r[0]);
+            std::fill(r + width_, r - kFxaaBorder + stride_, r[width_ - 1]);
+        }
+        std::copy_n(row(0) - kFxaaBorder, stride_, row(-1) - kFxaaBorder);
+        std::copy_n(row(height_ - 1) - kFxaaBorder, stride_, row(height_) - kFxaaBorder);
+    }
+
+  private:
+    int width_ = 0, height_ = 0, stride_ = 0;
+    std::vector<float, AlignedAllocator<float>> data_;
+};
 
 // What every variant keeps: the luma plane and, on request, what it found at each edge pixel.
 class FxaaMethod : public Method {
   public:
-    size_t stateBytes() const override { return luma_.bytes(); }
+    size_t stateBytes() const override { return luma_.bytes() + transposed_.bytes(); }
     std::vector<DebugLayer> debugLayers() const override {
         if (!keepDebugLayers) return {};
         // Gold: horizontal; blue: vertical (methods/02 s.2.2).
@@ -40,9 +78,25 @@ class FxaaMethod : public Method {
     }
 
   protected:
+    void findLuma(const Rgb& color, LumaKind kind, const Exec& exec) {
+        luma_.resize(color.width(), color.height());
+        const LumaArgs args{view(color), luma_.row(0), color.stride(), luma_.stride(), color.width(), kind};
+        runKernel(lumaKernelsFor(exec.isa).luma, exec, args, color.height());
+        luma_.repeatBorder();
+    }
+    // The plane for searches along columns, which then read along rows as well.
+    void transposeLuma(int width, int height, const Exec& exec) {
+        transposed_.resize(height, width);
+        const FxaaTransposeArgs args{luma_.row(0), transposed_.row(0), luma_.stride(), transposed_.stride(), height};
+        runKernel(fxaaKernelsFor(exec.isa).transpose, exec, args, (width + 15) / 16);
+        transposed_.repeatBorder();
+    }
     // Points `args` at this frame's planes.
     void prepare(FxaaArgs& args, const Rgb& filtered, Rgb& out) {
         args.luma = luma_.row(0);
+        args.lumaStride = luma_.stride();
+        args.transposedLuma = transposed_.bytes() ? transposed_.row(0) : nullptr;
+        args.transposedStride = transposed_.stride();
         args.in = view(filtered);
         args.out = view(out);
         args.stride = filtered.stride();
@@ -57,9 +111,7 @@ class FxaaMethod : public Method {
             args.shiftPx = shiftPx_.row(0);
         }
     }
-    PlaneF luma_;
-
-  private:
+    SearchedLuma luma_, transposed_;
     PlaneF orientation_, negativePx_, positivePx_, shiftPx_;
 };
 

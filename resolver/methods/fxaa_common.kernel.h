@@ -9,6 +9,25 @@
 namespace AA_ARCH {
 using namespace aa;
 
+#ifdef __AVX512DQ__
+inline constexpr int kWide = 8;
+AA_INLINE unsigned sign_bits(Lanes<double, kWide>::V v) { return _mm512_movepi64_mask((__m512i)v); }
+#elif defined(__AVX2__)
+inline constexpr int kWide = 4;
+AA_INLINE unsigned sign_bits(Lanes<double, kWide>::V v) { return unsigned(_mm256_movemask_pd((__m256d)v)); }
+#else
+inline constexpr int kWide = 2;
+AA_INLINE unsigned sign_bits(Lanes<double, kWide>::V v) { return unsigned(_mm_movemask_pd((__m128d)v)); }
+#endif
+using Wide = Lanes<double, kWide>;  // one register of doubles
+AA_INLINE Wide load_wide(const float* p) {
+    typedef float Floats __attribute__((vector_size(kWide * 4)));
+    Floats f;
+    __builtin_memcpy(&f, p, sizeof f);
+    return __builtin_convertvector(f, Wide::V);
+}
+AA_INLINE unsigned mask_of(Mask<Wide> m) { return sign_bits((Wide::V)m); }
+
 struct Neighbourhood {
     double m, n, s, w, e, nw, ne, sw, se;
 };
@@ -17,73 +36,106 @@ AA_INLINE Neighbourhood neighbourhood(const float* luma, long o, int stride) {
     return {c[0], c[-stride], c[stride], c[-1], c[1], c[-stride - 1], c[-stride + 1], c[stride - 1], c[stride + 1]};
 }
 // Second differences across rows against those across columns. Where their signs agree the two sums are equal.
+template <class R>
+AA_INLINE Mask<R> runs_horizontally(R m, R n, R s, R w, R e, R nw, R ne, R sw, R se) {
+    const R two(Elem<R>(2));
+    const R acrossRows = abs(nw + sw - two * w) + two * abs(n + s - two * m) + abs(ne + se - two * e);
+    const R acrossColumns = abs(nw + ne - two * n) + two * abs(w + e - two * m) + abs(sw + se - two * s);
+    return acrossRows >= acrossColumns * R(Elem<R>(1 - 1e-6));
+}
 AA_INLINE bool horizontal_edge(const Neighbourhood& l) {
-    const double across_rows = abs(l.nw + l.sw - 2 * l.w) + 2 * abs(l.n + l.s - 2 * l.m) + abs(l.ne + l.se - 2 * l.e);
-    const double across_columns =
-        abs(l.nw + l.ne - 2 * l.n) + 2 * abs(l.w + l.e - 2 * l.m) + abs(l.sw + l.se - 2 * l.s);
-    return across_rows >= across_columns * (1 - 1e-6);
+    return runs_horizontally(l.m, l.n, l.s, l.w, l.e, l.nw, l.ne, l.sw, l.se);
 }
 AA_INLINE double range_of(const Neighbourhood& l) {
     return max(max(max(l.n, l.s), max(l.w, l.e)), l.m) - min(min(min(l.n, l.s), min(l.w, l.e)), l.m);
 }
-// How far the pixel stands out from the mean of its 3x3 neighbours, in units of the local range: 0..1.
-AA_INLINE double sub_pixel_contrast(const Neighbourhood& l, double range) {
-    const double mean = (2 * (l.n + l.s + l.w + l.e) + l.nw + l.ne + l.sw + l.se) * (1.0 / 12);
-    return saturate(abs(mean - l.m) / range);
+template <class R>
+AA_INLINE R smooth(R t) {
+    return t * t * (R(Elem<R>(3)) - R(Elem<R>(2)) * t);
 }
-AA_INLINE double smooth(double t) { return t * t * (3 - 2 * t); }
 
-// The line between a pixel and its neighbour on the side of the steeper gradient.
-struct EdgeLine {
-    const float* m;      // luma of the pixel
-    long along, across;  // to the next pixel along the line (right or down), and over it
-    int first, last;     // pixels along the line, relative to the pixel, that lie inside the image
-    double middle;       // mean luma of the pair
-    double gradient;     // |difference| of the pair
+// What the 3x3 neighbours say about 8 pixels of a row at a time: the edge's orientation, the luma differences to either
+// side of it, and how far the pixel stands out of the mean of its neighbours in units of the local range (0..1).
+struct Classes {
+    unsigned horizontal;
+    alignas(64) double negativeStep[8], positiveStep[8], contrast[8];
 };
-AA_INLINE EdgeLine edge_line(const FxaaArgs& a, int x, int y, bool horizontal, bool positiveSide,
-                             const Neighbourhood& l) {
-    EdgeLine line;
-    line.m = a.luma + long(y) * a.stride + x;
-    line.along = horizontal ? 1 : a.stride;
-    line.across = (horizontal ? a.stride : 1) * (positiveSide ? 1 : -1);
-    line.first = horizontal ? -x : -y;
-    line.last = (horizontal ? a.width - x : a.height - y) - 1;
-    const double side = double(line.m[line.across]);
-    line.middle = (side + l.m) * 0.5;
-    line.gradient = abs(side - l.m);
-    return line;
+AA_INLINE void classify(const float* l, long s, Classes& to) {
+    to.horizontal = 0;
+    for (int i = 0; i < 8; i += kWide) {
+        const float* const p = l + i;
+        const Wide m = load_wide(p), n = load_wide(p - s), so = load_wide(p + s), w = load_wide(p - 1),
+                   e = load_wide(p + 1), nw = load_wide(p - s - 1), ne = load_wide(p - s + 1),
+                   sw = load_wide(p + s - 1), se = load_wide(p + s + 1);
+        const auto horizontal = runs_horizontally(m, n, so, w, e, nw, ne, sw, se);
+        to.horizontal |= mask_of(horizontal) << i;
+        store(abs(select(horizontal, n, w) - m), to.negativeStep + i);
+        store(abs(select(horizontal, so, e) - m), to.positiveStep + i);
+        const Wide range = max(max(max(n, so), max(w, e)), m) - min(min(min(n, so), min(w, e)), m);
+        const Wide mean = (Wide(2.0) * (n + so + w + e) + nw + ne + sw + se) * Wide(1.0 / 12);
+        store(saturate(abs(mean - m) / range), to.contrast + i);
+    }
 }
-// Bilinear luma on the line at a whole or half number of pixels from the start.
-AA_INLINE double luma_on(const EdgeLine& line, int halfPx) {
-    const int a = halfPx >> 1, b = (halfPx + 1) >> 1;
-    const long i = (a < line.first ? line.first : a > line.last ? line.last : a) * line.along;
-    const long j = (b < line.first ? line.first : b > line.last ? line.last : b) * line.along;
-    return ((double(line.m[i]) + line.m[i + line.across]) + (double(line.m[j]) + line.m[j + line.across])) * 0.25;
-}
+
 struct LineEnds {
     int negativeHalfPx, positiveHalfPx;
-    double negative, positive;  // luma minus the pair's mean where each search stopped
+    bool negativeBelow, positiveBelow;  // is the luma below the pair's mean where each search stopped?
 };
+// The line between a pixel and its neighbour on the side of the steeper gradient, as two rows of lumas.
+struct EdgeLine {
+    const float *own, *side;  // the pixel and its neighbour; the next ones along the line lie beside them in memory
+    double middle;            // mean luma of the pair
+    double threshold;         // difference from it that ends the line
+};
+// Bit i set where the luma at the window's i-th address has left the pair's mean; `below` where it is below it.
+// `further` is the step in memory away from the pixel. All sums are kept fourfold: a scaling by 4 rounds nothing.
+AA_INLINE unsigned ended(const EdgeLine& line, const float* own, const float* side, int further, unsigned half,
+                         unsigned& below) {
+    const Wide middle(4 * line.middle), threshold(4 * line.threshold);
+    unsigned bits = 0;
+    below = 0;
+    for (int i = 0; i < 8; i += kWide) {
+        const Wide near = load_wide(own + i) + load_wide(side + i);
+        const Wide far = load_wide(own + i + further) + load_wide(side + i + further);
+#ifdef __AVX512DQ__
+        const Wide e =
+            Wide((Wide::V)_mm512_mask_blend_pd(__mmask8(half), (__m512d)near.v, (__m512d)far.v)) + near - middle;
+        bits = _mm512_cmp_pd_mask((__m512d)abs(e).v, (__m512d)threshold.v, _CMP_GE_OQ);
+        below = _mm512_movepi64_mask((__m512i)e.v);  // the sign; e is never -0, being a difference
+#else
+        Mask<Wide> isHalf;
+        for (int k = 0; k < kWide; k++) isHalf[k] = -(long long)(half >> (i + k) & 1);
+        const Wide e = select(isHalf, far, near) + near - middle;
+        bits |= mask_of(abs(e) >= threshold) << i;
+        below |= mask_of(e < Wide(0.0)) << i;
+#endif
+    }
+    return bits;
+}
 // Marches both ways until the luma leaves the pair's mean by a quarter of the gradient. The last distance is a jump
 // whose end is never sampled.
 AA_INLINE LineEnds find_ends(const FxaaArgs& a, const EdgeLine& line) {
-    // Half a pixel short of a clean end the luma is off by exactly a quarter: that counts as the end.
-    const double threshold = line.gradient * (0.25 * (1 - 1e-6));
     const int last = a.distanceHalfPx[a.steps - 1];
-    LineEnds ends{last, last, 0, 0};
-    int k = 0;
-    for (; k < a.steps - 1; k++) {
-        ends.negative = luma_on(line, -a.distanceHalfPx[k]) - line.middle;
-        if (abs(ends.negative) >= threshold) {
-            ends.negativeHalfPx = a.distanceHalfPx[k];
+    LineEnds ends{last, last, false, false};
+    for (int w = 0; w < a.windows; w++) {
+        unsigned below;
+        const unsigned bits =
+            ended(line, line.own + 8 * w + 1, line.side + 8 * w + 1, 1, a.half[w], below) & a.sampled[w];
+        const int at = bits ? __builtin_ctz(bits) : 31 - __builtin_clz(a.sampled[w]);
+        ends.positiveBelow = below >> at & 1;
+        if (bits) {
+            ends.positiveHalfPx = 2 * (8 * w + 1 + at) + int(a.half[w] >> at & 1);
             break;
         }
     }
-    for (k = 0; k < a.steps - 1; k++) {
-        ends.positive = luma_on(line, a.distanceHalfPx[k]) - line.middle;
-        if (abs(ends.positive) >= threshold) {
-            ends.positiveHalfPx = a.distanceHalfPx[k];
+    for (int w = 0; w < a.windows; w++) {
+        unsigned below;  // addresses ascend toward the pixel: the highest bit is nearest
+        const unsigned bits = ended(line, line.own - 8 * w - 8, line.side - 8 * w - 8, -1, a.halfMirrored[w], below) &
+                              a.sampledMirrored[w];
+        const int at = bits ? 31 - __builtin_clz(bits) : __builtin_ctz(a.sampledMirrored[w]);
+        ends.negativeBelow = below >> at & 1;
+        if (bits) {
+            ends.negativeHalfPx = 2 * (8 * w + 8 - at) + int(a.halfMirrored[w] >> at & 1);
             break;
         }
     }
@@ -92,7 +144,7 @@ AA_INLINE LineEnds find_ends(const FxaaArgs& a, const EdgeLine& line) {
 // Shift that makes the pixel pair follow the line: nothing unless the nearer end bends toward this pixel.
 AA_INLINE double edge_shift(const LineEnds& ends, bool pixelBelowMiddle) {
     const bool nearNegative = ends.negativeHalfPx < ends.positiveHalfPx;
-    const bool bends = ((nearNegative ? ends.negative : ends.positive) < 0) != pixelBelowMiddle;
+    const bool bends = (nearNegative ? ends.negativeBelow : ends.positiveBelow) != pixelBelowMiddle;
     const int nearest = nearNegative ? ends.negativeHalfPx : ends.positiveHalfPx;
     return bends ? 0.5 - double(nearest) / double(ends.negativeHalfPx + ends.positiveHalfPx) : 0.0;
 }
@@ -110,32 +162,51 @@ AA_INLINE void write_debug(const FxaaArgs& a, long o, bool horizontal, const Lin
     a.shiftPx[o] = float(shiftPx);
 }
 
-// Copies the row and lists its pixels whose local contrast reaches the threshold.
+// Copies 8 pixels and marks those whose local contrast reaches the threshold.
 template <class R>
-AA_INLINE int copy_and_mark(const FxaaArgs& a, int y, int x0, int x1, int* list) {
-    int count = 0;
+AA_INLINE unsigned copy_and_mark(const FxaaArgs& a, int x, int y) {
     const R thresholdMin(Elem<R>(a.edgeThresholdMin)), threshold(Elem<R>(a.edgeThreshold)), zero(Elem<R>(0));
-    for (int x = x0; x < x1; x += N<R>) {
-        const long o = long(y) * a.stride + x;
+    unsigned bits = 0;
+    for (int i = 0; i < 8; i += N<R>) {
+        const long o = long(y) * a.stride + x + i;
+        const float* const l = a.luma + long(y) * a.lumaStride + x + i;
         for (int c = 0; c < 3; c++) store(load<R>(a.in.c[c] + o), a.out.c[c] + o);
-        const R m = load<R>(a.luma + o), n = load<R>(a.luma + o - a.stride), s = load<R>(a.luma + o + a.stride),
-                w = load<R>(a.luma + o - 1), e = load<R>(a.luma + o + 1);
+        const R m = load<R>(l), n = load<R>(l - a.lumaStride), s = load<R>(l + a.lumaStride), w = load<R>(l - 1),
+                e = load<R>(l + 1);
         const R highest = max(max(max(n, s), max(w, e)), m), lowest = min(min(min(n, s), min(w, e)), m);
         const R range = highest - lowest;
-        const auto edge = both(range >= max(thresholdMin, highest * threshold), range > zero);
-        if (const unsigned bits = mask_bits<R>(edge)) count = append_marked(bits, x, a.width, list, count);
+        bits |= mask_bits<R>(both(range >= max(thresholdMin, highest * threshold), range > zero)) << i;
     }
-    return count;
+    return a.width - x < 8 ? bits & ((1u << (a.width - x)) - 1u) : bits;
 }
-// Runs pixel(x, y) on every listed pixel of the rows, after their copy.
+// Runs pixel(x, y) on every edge pixel of the rows, after the copy of its group.
 template <class R, class Pixel>
 AA_INLINE void for_edge_pixels(const FxaaArgs& a, int y0, int y1, const Pixel& pixel) {
-    int list[kSparseChunk + N<R>];
     for (int y = y0; y < y1; y++)
-        for (int x0 = 0; x0 < a.width; x0 += kSparseChunk) {
-            const int x1 = x0 + kSparseChunk < a.width ? x0 + kSparseChunk : a.width;
-            const int count = copy_and_mark<R>(a, y, x0, x1, list);
-            for (int i = 0; i < count; i++) pixel(list[i], y);
+        for (int x = 0; x < a.width; x += 8)
+            for (unsigned bits = copy_and_mark<R>(a, x, y); bits; bits &= bits - 1) pixel(x + __builtin_ctz(bits), y);
+}
+// The form for searches by windows: pixel(x, y, i, classes) gets the classes of its group, of which it is the i-th.
+template <class R, class Pixel>
+AA_INLINE void for_classified_pixels(const FxaaArgs& a, int y0, int y1, const Pixel& pixel) {
+    Classes classes;
+    for (int y = y0; y < y1; y++)
+        for (int x = 0; x < a.width; x += 8) {
+            unsigned bits = copy_and_mark<R>(a, x, y);
+            if (!bits) continue;
+            classify(a.luma + long(y) * a.lumaStride + x, a.lumaStride, classes);
+            for (; bits; bits &= bits - 1) {
+                const int i = __builtin_ctz(bits);
+                pixel(x + i, y, i, classes);
+            }
         }
+}
+AA_INLINE EdgeLine line_beside(const FxaaArgs& a, int x, int y, bool horizontal, bool positiveSide, double gradient) {
+    const float* const own =
+        horizontal ? a.luma + long(y) * a.lumaStride + x : a.transposedLuma + long(x) * a.transposedStride + y;
+    const long across = horizontal ? a.lumaStride : a.transposedStride;
+    const float* const side = own + (positiveSide ? across : -across);
+    // Half a pixel short of a clean end the luma is off by exactly a quarter: that counts as the end.
+    return {own, side, (double(*side) + double(*own)) * 0.5, gradient * (0.25 * (1 - 1e-6))};
 }
 }  // namespace AA_ARCH

@@ -3,22 +3,38 @@
 
 namespace aa {
 inline constexpr int kFxaaMaxSteps = 12;
+// Searches read 8 px at a time: at distances of 1 to 8, 9 to 16 and 17 to 24 px, and half a pixel further.
+inline constexpr int kFxaaWindows = 3;
+inline constexpr int kFxaaBorder = 32;  // repeated pixels around the lumas: more than a search overshoots the image
 
 // Common to the family: a luma plane with filled border, the colour to filter, thresholds (methods/02).
 struct FxaaArgs {
     const float* luma;
+    const float* transposedLuma;  // for searches along columns; null in the variants that search step by step
     RgbIn in;
     RgbOut out;
-    int stride, width, height;
+    int stride, lumaStride, transposedStride, width, height;
     float edgeThreshold, edgeThresholdMin;
     double subpix;
     int steps;
-    int distanceHalfPx[kFxaaMaxSteps];         // cumulative search distances in half pixels
-    float* orientation;                        // debug: 1 horizontal, 2 vertical, 0 no edge; null when not wanted
-    float *negativePx, *positivePx, *shiftPx;  // debug: distances to the two ends, and the shift across the edge
+    int distanceHalfPx[kFxaaMaxSteps];  // cumulative search distances in half pixels
+    // The same for searches by windows: which of its 8 distances are sampled, and which of those half a pixel further.
+    unsigned sampled[kFxaaWindows], half[kFxaaWindows];
+    unsigned sampledMirrored[kFxaaWindows], halfMirrored[kFxaaWindows];  // for the search toward smaller addresses
+    int windows;
+    float* orientation;  // debug: 1 horizontal, 2 vertical, 0 no edge; null when not wanted
+    // Debug: distances to the two ends, and the shift across the edge; of the console variant the direction of its
+    // taps, and whether the outer ones count.
+    float *negativePx, *positivePx, *shiftPx;
+};
+struct FxaaTransposeArgs {
+    const float* from;
+    float* to;
+    int fromStride, toStride, height;
 };
 struct FxaaKernels {
     RowKernel<FxaaArgs> fxaa311;
+    RowKernel<FxaaTransposeArgs> transpose;  // over blocks of 16 columns
 };
 
 // FXAA 1: sub-pixel aliasing is removed by mixing in a low-pass instead of by shifting further.

@@ -6,91 +6,13 @@
 #include <functional>
 
 #include "image/error.h"
+#include "methods/fxaa_reference.h"
 #include "methods/spatial_testing.h"
 
 namespace aa {
 namespace {
 using namespace aa::testing;
 
-// FXAA 3.11 written a second time, in the reference's control flow and in double: continuous positions, a general
-// bilinear fetch, both directions in one loop. `nearTie` counts pixels whose decision hangs on the last bits.
-class Reference311 {
-  public:
-    Reference311(const Rgb& image, std::vector<double> stepsPx, double subpix, double thr, double thrMin)
-        : image_(image), steps_(std::move(stepsPx)), subpix_(subpix), thr_(thr), thrMin_(thrMin) {}
-    int nearTies = 0;
-
-    std::array<double, 3> pixel(int x, int y) {
-        tie_ = false;
-        const auto result = filtered(x, y);
-        nearTies += tie_;
-        return result;
-    }
-    bool lastWasNearTie() const { return tie_; }
-
-  private:
-    double channel(size_t c, double px, double py) const {  // bilinear at a position, clamped taps
-        const double qx = px - 0.5, qy = py - 0.5, ax = std::floor(qx), ay = std::floor(qy), fx = qx - ax, fy = qy - ay;
-        double sum = 0;
-        for (int j = 0; j < 2; j++)
-            for (int i = 0; i < 2; i++)
-                sum += (i ? fx : 1 - fx) * (j ? fy : 1 - fy) * image_.c[c].clamped(int(ax) + i, int(ay) + j);
-        return sum;
-    }
-    double luma(double px, double py) const {
-        return 0.299 * channel(0, px, py) + 0.587 * channel(1, px, py) + 0.114 * channel(2, px, py);
-    }
-    void close(double a, double b) { tie_ = tie_ || std::abs(a - b) < 1e-6; }
-    void closeEnd(double e, double gradient) {  // exact ties have a rule, near ones do not
-        if (std::abs(std::abs(e) - gradient) > 1e-9) close(std::abs(e), gradient);
-    }
-    std::array<double, 3> filtered(int ix, int iy) {
-        const double x = ix + 0.5, y = iy + 0.5;
-        auto at = [&](int i, int j) { return luma(x + i, y + j); };
-        const double m = at(0, 0), n = at(0, -1), s = at(0, 1), w = at(-1, 0), e = at(1, 0);
-        const double highest = std::max({m, n, s, w, e}), range = highest - std::min({m, n, s, w, e});
-        auto colour = [&](double px, double py) {
-            return std::array{channel(0, px, py), channel(1, px, py), channel(2, px, py)};
-        };
-        close(range, std::max(thrMin_, highest * thr_));
-        if (range < std::max(thrMin_, highest * thr_)) return colour(x, y);
-        const double nw = at(-1, -1), ne = at(1, -1), sw = at(-1, 1), se = at(1, 1);
-        const double horz =
-            std::abs(-2 * w + (nw + sw)) + 2 * std::abs(-2 * m + (n + s)) + std::abs(-2 * e + (ne + se));
-        const double vert =
-            std::abs(-2 * s + (sw + se)) + 2 * std::abs(-2 * m + (w + e)) + std::abs(-2 * n + (nw + ne));
-        const bool horizontal = horz >= vert * (1 - 1e-6);
-        if (std::abs(horz - vert) > 1e-9) close(horz, vert * (1 - 1e-6));
-        const double average = ((n + s + w + e) * 2 + nw + ne + sw + se) / 12;
-        const double c = std::min(1.0, std::abs(average - m) / range), smooth = (3 - 2 * c) * c * c;
-        const double before = horizontal ? n : w, after = horizontal ? s : e;
-        const double gradBefore = std::abs(before - m), gradAfter = std::abs(after - m);
-        if (gradBefore != gradAfter) close(gradBefore, gradAfter);
-        const bool pairBefore = gradBefore >= gradAfter;
-        const double sign = pairBefore ? -1 : 1, gradient = std::max(gradBefore, gradAfter) / 4;
-        const double mean = ((pairBefore ? before : after) + m) / 2;
-        const double bx = x + (horizontal ? 0 : sign * 0.5), by = y + (horizontal ? sign * 0.5 : 0);
-        double dn = 0, dp = 0, en = 0, ep = 0;
-        bool doneN = false, doneP = false;
-        for (size_t k = 0; k < steps_.size(); k++) {
-            if (!doneN) dn += steps_[k];
-            if (!doneP) dp += steps_[k];
-            if (k + 1 == steps_.size() || (doneN && doneP)) continue;
-            auto end = [&](double d) { return horizontal ? luma(bx + d, by) - mean : luma(bx, by + d) - mean; };
-            if (!doneN) en = end(-dn), closeEnd(en, gradient), doneN = std::abs(en) >= gradient * (1 - 1e-6);
-            if (!doneP) ep = end(dp), closeEnd(ep, gradient), doneP = std::abs(ep) >= gradient * (1 - 1e-6);
-        }
-        const bool nearN = dn < dp;
-        const bool good = ((nearN ? en : ep) < 0) != (m - mean < 0);
-        const double pixelOffset = good ? 0.5 - std::min(dn, dp) / (dn + dp) : 0;
-        const double offset = std::max(pixelOffset, smooth * smooth * subpix_) * sign;
-        return horizontal ? colour(x, y + offset) : colour(x + offset, y);
-    }
-    const Rgb& image_;
-    std::vector<double> steps_;
-    double subpix_, thr_, thrMin_;
-    bool tie_ = false;
-};
 const std::vector<double> kSteps10 = {1.5, 3, 12}, kSteps12 = {1, 1.5, 2, 4, 12},
                           kSteps29 = {1, 1.5, 2, 2, 2, 2, 2, 2, 2, 2, 4, 8},
                           kSteps39 = {1, 1, 1, 1, 1, 1.5, 2, 2, 2, 2, 4, 8};

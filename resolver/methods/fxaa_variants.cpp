@@ -29,7 +29,7 @@ class Fxaa1 : public FxaaMethod {
         args_.crossLowPass = preset.cross;
     }
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
-        lumaPlane(frame.colorEncoded, LumaKind::redGreen, exec, luma_);
+        findLuma(frame.colorEncoded, LumaKind::redGreen, exec);
         prepare(args_, frame.colorEncoded, out);
         runKernel(fxaaVariantKernelsFor(exec.isa).fxaa1, exec, args_, frame.height);
     }
@@ -50,7 +50,8 @@ class FxaaCs : public FxaaMethod {
             setDistances(args_, {1, 1, 1, 1, 1, 1.5, 2, 2, 2, 2, 4, p.choice("longest") == "36.5" ? 18.0 : 8.0});
     }
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
-        lumaPlane(frame.colorLinear, LumaKind::log2Linear, exec, luma_);
+        findLuma(frame.colorLinear, LumaKind::log2Linear, exec);
+        transposeLuma(frame.width, frame.height, exec);
         prepare(args_, linear_ ? frame.colorLinear : frame.colorEncoded, out);
         runKernel(fxaaVariantKernelsFor(exec.isa).fxaaCs, exec, args_, frame.height);
     }
@@ -69,11 +70,15 @@ class FxaaConsole : public FxaaMethod {
         args_.sharpness = p.real("sharpness");
     }
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
-        lumaPlane(frame.colorEncoded, LumaKind::rec601, exec, luma_);
+        findLuma(frame.colorEncoded, LumaKind::rec601, exec);
         prepare(args_, frame.colorEncoded, out);
         runKernel(fxaaVariantKernelsFor(exec.isa).console, exec, args_, frame.height);
     }
-    std::vector<DebugLayer> debugLayers() const override { return {}; }  // it searches no edge
+    std::vector<DebugLayer> debugLayers() const override {
+        if (!keepDebugLayers) return {};
+        // Direction of the taps, and 1 where the outer ones count.
+        return {{"taps", {negativePx_, positivePx_, shiftPx_}}};
+    }
 
   private:
     FxaaConsoleArgs args_{};

@@ -6,7 +6,7 @@ namespace aa {
 
 void lumaPlane(const Rgb& color, LumaKind kind, const Exec& exec, PlaneF& luma) {
     if (luma.width() != color.width() || luma.height() != color.height()) luma = PlaneF(color.width(), color.height());
-    const LumaArgs args{view(color), luma.row(0), color.stride(), color.width(), kind};
+    const LumaArgs args{view(color), luma.row(0), color.stride(), luma.stride(), color.width(), kind};
     runKernel(lumaKernelsFor(exec.isa).luma, exec, args, color.height());
     luma.fillBorder();
 }

@@ -64,7 +64,7 @@ AA_INLINE void lumaRowsOf(const LumaArgs& a, int y0, int y1) {
         for (int x = 0; x < a.width; x += N<R>) {
             const long o = long(y) * a.stride + x;
             store(luma_of(vec3<R>(load<R>(a.in.c[0] + o), load<R>(a.in.c[1] + o), load<R>(a.in.c[2] + o)), kind),
-                  a.luma + o);
+                  a.luma + long(y) * a.lumaStride + x);
         }
 }
 template <class R>

@@ -16,7 +16,7 @@ enum class LumaKind {
 struct LumaArgs {
     RgbIn in;
     float* luma;
-    int stride, width;
+    int stride, lumaStride, width;
     LumaKind kind;
 };
 struct LumaKernels {

@@ -1,24 +1,54 @@
 #include "methods/mlaa.h"
 
-#include "methods/edge_plane.h"
+#include "methods/edge_bits.h"
 #include "methods/mlaa_kernels.h"
+#include "methods/smaa_kernels.h"
 
 namespace aa {
 namespace {
 
 class Mlaa : public Method {
   public:
-    explicit Mlaa(const Params& p) : rule_(MlaaRule(p.choiceIndex("edges"))) {}
+    explicit Mlaa(const Params& p)
+        : rule_(MlaaRule(p.choiceIndex("edges"))), areas_(9 * kMlaaTabled * kMlaaTabled * 2) {
+        Exec exec;
+        exec.parallel = false;
+        runKernel(mlaaKernelsFor(exec.isa).areas, exec, MlaaAreaArgs{areas_.data()}, 9);
+    }
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         findEdges(frame.colorEncoded, exec);
-        findWeights(exec);
-        const MlaaBlendArgs args{edges_.row(0), topWeights_.data(), leftWeights_.data(), view(frame.colorEncoded),
-                                 view(out),     out.stride(),       edges_.stride(),     width_,
+        const size_t pixels = size_t(width_) * size_t(height_);
+        if (keepDebugLayers) {
+            for (auto* weights : {&topWeights_, &leftWeights_}) weights->assign(2 * pixels, 0);
+            for (auto* shapes : {&topShapes_, &leftShapes_}) shapes->assign(pixels, 0);
+        }
+        const auto debug = [&](std::vector<float>& plane) { return keepDebugLayers ? plane.data() : nullptr; };
+        const size_t blocks = (size_t(height_) + kMlaaBlockRows - 1) / kMlaaBlockRows;
+        const long scratchSize = 3 * (2 * width_ + 2);
+        scratch_.resize(size_t(scratchSize) * blocks);
+        columns_.resize(size_t(width_) * blocks);
+        const MlaaBlendArgs args{{top_.row(0), left_.row(0), top_.stride(), debug(topWeights_), debug(topShapes_)},
+                                 {leftByColumn_.row(0), topByColumn_.row(0), leftByColumn_.stride(),
+                                  debug(leftWeights_), debug(leftShapes_)},
+                                 areas_.data(),
+                                 view(frame.colorEncoded),
+                                 view(out),
+                                 scratch_.data(),
+                                 columns_.data(),
+                                 scratchSize,
+                                 out.stride(),
+                                 width_,
                                  height_};
-        runKernel(mlaaKernelsFor(exec.isa).blend, exec, args, height_);
+        const auto& kernel = mlaaKernelsFor(exec.isa).blend;
+        const auto fn = exec.precision == Precision::fast     ? kernel.fast
+                        : exec.precision == Precision::scalar ? kernel.scalar
+                                                              : kernel.oracle;
+        forRows(
+            exec, int(blocks), [&](int b0, int b1) { fn(args, b0, b1); }, 1);
     }
     size_t stateBytes() const override {
-        return edges_.bytes() + transposed_.bytes() + (topWeights_.size() + leftWeights_.size()) * sizeof(float);
+        return top_.bytes() + left_.bytes() + topByColumn_.bytes() + leftByColumn_.bytes() +
+               (scratch_.size() + areas_.size()) * sizeof(float) + columns_.size() * sizeof(MlaaLine);
     }
     std::vector<DebugLayer> debugLayers() const override {
         if (!keepDebugLayers) return {};
@@ -27,17 +57,14 @@ class Mlaa : public Method {
         DebugLayer shapes{"shapes", edges.planes};  // of left and top edges: 1 L, 2 Z, 3 U
         for (int y = 0; y < height_; y++)
             for (int x = 0; x < width_; x++) {
-                const uint8_t e = edges_.row(y)[x];
                 const size_t k = size_t(y) * size_t(width_) + size_t(x);
-                if (e & kEdgeLeft) {
-                    edges.planes[0].at(x, y) = 1;
-                    shapes.planes[0].at(x, y) = leftShapes_[k];
-                    for (size_t i = 0; i < 2; i++) left.planes[i].at(x, y) = leftWeights_[2 * k + i];
-                }
-                if (e & kEdgeTop) {
-                    edges.planes[1].at(x, y) = 1;
-                    shapes.planes[1].at(x, y) = topShapes_[k];
-                    for (size_t i = 0; i < 2; i++) top.planes[i].at(x, y) = topWeights_[2 * k + i];
+                edges.planes[0].at(x, y) = left_.at(x, y);
+                edges.planes[1].at(x, y) = top_.at(x, y);
+                shapes.planes[0].at(x, y) = leftShapes_[k];
+                shapes.planes[1].at(x, y) = topShapes_[k];
+                for (size_t i = 0; i < 2; i++) {
+                    left.planes[i].at(x, y) = leftWeights_[2 * k + i];
+                    top.planes[i].at(x, y) = topWeights_[2 * k + i];
                 }
             }
         return {edges, top, left, shapes};
@@ -47,43 +74,25 @@ class Mlaa : public Method {
     void findEdges(const Rgb& encoded, const Exec& exec) {
         width_ = encoded.width();
         height_ = encoded.height();
-        edges_.resize(width_, height_, 16);
-        transposed_.resize(height_, width_, 16);
-        const MlaaEdgeArgs args{view(encoded), edges_.row(0), encoded.stride(), edges_.stride(), width_, rule_};
+        for (BitPlane* plane : {&top_, &left_}) plane->resize(width_, height_, 64);
+        for (BitPlane* plane : {&topByColumn_, &leftByColumn_}) plane->resize(height_, width_, 64);
+        const MlaaEdgeArgs args{view(encoded), top_.row(0), left_.row(0), encoded.stride(),
+                                top_.stride(), width_,      rule_};
         runKernel(mlaaKernelsFor(exec.isa).edges, exec, args, height_);
-        edges_.clearBesideTheRows();  // nothing crosses a line outside the image
-    }
-    void findWeights(const Exec& exec) {
-        const size_t pixels = size_t(width_) * size_t(height_);
-        topWeights_.resize(2 * pixels);
-        leftWeights_.resize(2 * pixels);
-        if (keepDebugLayers) topShapes_.resize(pixels), leftShapes_.resize(pixels);
-        transposed_.clear();
-        const auto& kernel = mlaaKernelsFor(exec.isa).weights;
-        MlaaWeightArgs args{edges_.row(0),
-                            transposed_.row(0),
-                            topWeights_.data(),
-                            keepDebugLayers ? topShapes_.data() : nullptr,
-                            1,
-                            width_,
-                            edges_.stride(),
-                            transposed_.stride(),
-                            width_};
-        runKernel(kernel, exec, args, height_);
-        args.edges = transposed_.row(0);
-        args.edgeStride = transposed_.stride();
-        args.width = height_;
-        args.transposed = nullptr;
-        args.weights = leftWeights_.data();
-        args.shapes = keepDebugLayers ? leftShapes_.data() : nullptr;
-        args.weightAlong = width_;
-        args.weightAcross = 1;
-        runKernel(kernel, exec, args, width_);
+        for (auto [from, to] : {std::pair{&top_, &topByColumn_}, {&left_, &leftByColumn_}}) {
+            from->clearBorder();  // nothing crosses a line outside the image
+            runKernel(smaaKernelsFor(exec.isa).transpose, exec,
+                      SmaaTransposeArgs{from->row(0), to->row(0), from->stride(), to->stride(), height_},
+                      (width_ + 7) / 8);
+            to->clearBorder();
+        }
     }
     MlaaRule rule_;
     int width_ = 0, height_ = 0;
-    EdgePlane edges_, transposed_;
-    std::vector<float> topWeights_, leftWeights_, topShapes_, leftShapes_;
+    BitPlane top_, left_, topByColumn_, leftByColumn_;
+    std::vector<float> areas_, scratch_;
+    std::vector<MlaaLine> columns_;
+    std::vector<float> topWeights_, leftWeights_, topShapes_, leftShapes_;  // debug
 };
 
 }  // namespace

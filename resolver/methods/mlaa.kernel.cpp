@@ -1,5 +1,5 @@
-#include "kernels/sparse.h"
 #include "methods/area.kernel.h"
+#include "methods/edge_bits.kernel.h"
 #include "methods/mlaa_kernels.h"
 
 namespace AA_ARCH {
@@ -25,28 +25,40 @@ AA_INLINE Mask<R> differ(vec3<R> a, vec3<R> b, MlaaRule rule) {
     return max_component(abs(a - b)) >= R(T(1.0 / 16));
 }
 template <class R>
-__attribute__((flatten)) void edgeRows(const MlaaEdgeArgs& a, int y0, int y1) {
+__attribute__((flatten)) void mlaaEdgeRows(const MlaaEdgeArgs& a, int y0, int y1) {
     for (int y = y0; y < y1; y++)
-        for (int x = 0; x < a.width; x += N<R>) {
-            const long o = long(y) * a.stride + x;
-            const vec3<R> c = colour_at<R>(a.in, o);
-            store_mask_bytes<R>(differ(c, colour_at<R>(a.in, o - 1), a.rule),
-                                differ(c, colour_at<R>(a.in, o - a.stride), a.rule),
-                                a.edges + long(y) * a.edgeStride + x);
+        for (int x = 0; x < a.width; x += 8) {
+            unsigned left = 0, top = 0;
+            for (int i = 0; i < 8; i += N<R>) {
+                const long o = long(y) * a.stride + x + i;
+                const vec3<R> c = colour_at<R>(a.in, o);
+                left |= mask_bits<R>(differ(c, colour_at<R>(a.in, o - 1), a.rule)) << i;
+                top |= mask_bits<R>(differ(c, colour_at<R>(a.in, o - a.stride), a.rule)) << i;
+            }
+            a.left[long(y) * a.bitStride + (x >> 3)] = uint8_t(left);
+            a.top[long(y) * a.bitStride + (x >> 3)] = uint8_t(top);
         }
 }
 
-// A separation line: a maximal run of top edges. Its silhouette leaves from half the height of the edges that cross its
-// ends; 0 where none does.
-struct Silhouette {
-    int first, last;
-    float left, right;
-};
-AA_INLINE Silhouette silhouette(const MlaaWeightArgs& a, const uint8_t* row, int first) {
-    int last = first;
-    while (row[last + 1] & kEdgeTop) last++;
-    auto height = [&](int x) __attribute__((always_inline)) {  // +1/2 up, -1/2 down, 2 both
-        const bool up = row[x - a.edgeStride] & kEdgeLeft, down = row[x] & kEdgeLeft;
+// The last pixel of the run of set bits that holds p, and the first. The bits around the image are 0.
+AA_INLINE int last_of_run(const uint8_t* row, int p) {
+    for (int q = p;; q += kWindow) {
+        const int n = __builtin_ctzll(~bits_from(row, q) | uint64_t(1) << kWindow);
+        if (n < kWindow) return q + n - 1;
+    }
+}
+AA_INLINE int first_of_run(const uint8_t* row, int p) {
+    for (int q = p;; q -= kWindow) {
+        const int n =
+            __builtin_clzll(~(bits_from(row, q - (kWindow - 1)) << (64 - kWindow)) | uint64_t(1) << (63 - kWindow));
+        if (n < kWindow) return q - n + 1;
+    }
+}
+AA_INLINE MlaaLine line_through(const MlaaAxis& axis, int p, int q) {
+    const uint8_t *along = axis.along + long(q) * axis.stride, *cross = axis.cross + long(q) * axis.stride;
+    const int first = first_of_run(along, p), last = last_of_run(along, p);
+    auto height = [&](int at) __attribute__((always_inline)) {  // +1/2 up, -1/2 down, 2 both
+        const bool up = bit_at(cross - axis.stride, at), down = bit_at(cross, at);
         return up && down ? 2.0f : up ? 0.5f : down ? -0.5f : 0.0f;
     };
     float left = height(first), right = height(last + 1);
@@ -55,45 +67,70 @@ AA_INLINE Silhouette silhouette(const MlaaWeightArgs& a, const uint8_t* row, int
     return {first, last, left, right};
 }
 template <class T>
-AA_INLINE Pair<T> mlaa_area(const Silhouette& s, int x) {
-    const T l = T(x - s.first), d = T(s.last - s.first + 1), left = T(s.left), right = T(s.right);
+AA_INLINE Pair<T> mlaa_area(T left, T right, int leftPx, int rightPx) {
+    const T l = T(leftPx), d = T(leftPx + rightPx + 1);
     if (left * right < T(0)) return segment_area(T(0), left, d, right, l);
     Pair<T> sum{T(0), T(0)};
     if (left != T(0)) sum = first_half(left, d, l);
     if (right != T(0)) sum = sum + second_half(right, d, l);
     return sum;
 }
+AA_INLINE long area_index(int pair, int leftPx, int rightPx) {
+    return 2 * ((long(pair) * kMlaaTabled + leftPx) * kMlaaTabled + rightPx);
+}
 template <class R>
-__attribute__((flatten)) void weightRows(const MlaaWeightArgs& a, int y0, int y1) {
-    using T = Elem<R>;
-    for (int y = y0; y < y1; y++) {
-        const uint8_t* const row = a.edges + long(y) * a.edgeStride;
-        Silhouette line{0, -1, 0, 0};
-        for (int x0 = 0; x0 < a.width; x0 += 8)
-            for_each_byte(
-                load_bytes(row + x0), [&](int i) __attribute__((always_inline)) {
-                    const int x = x0 + i;
-                    if (x >= a.width) return;
-                    const uint8_t e = row[x];
-                    if (e & kEdgeTop) {
-                        if (x > line.last) line = silhouette(a, row, x);
-                        const Pair<T> w = mlaa_area<T>(line, x);
-                        const long at = x * a.weightAlong + y * a.weightAcross;
-                        a.weights[2 * at] = float(w.own);
-                        a.weights[2 * at + 1] = float(w.opposite);
-                        if (a.shapes) {
-                            const float product = line.left * line.right;
-                            a.shapes[at] = product < 0                   ? 2.0f
-                                           : product > 0                 ? 3.0f
-                                           : line.left + line.right != 0 ? 1.0f
-                                                                         : 0.0f;
-                        }
-                    }
-                    if (a.transposed)
-                        a.transposed[long(x) * a.transposedStride + y] =
-                            uint8_t((e & kEdgeTop ? kEdgeLeft : 0) | (e & kEdgeLeft ? kEdgeTop : 0));
-                });
+void mlaaAreaRows(const MlaaAreaArgs& a, int from, int to) {
+    static constexpr float heights[] = {0.0f, 0.5f, -0.5f};
+    for (int pair = from; pair < to; pair++)
+        for (int l = 0; l < kMlaaTabled; l++)
+            for (int r = 0; r < kMlaaTabled; r++) {
+                const auto w = mlaa_area<float>(heights[pair / 3], heights[pair % 3], l, r);
+                a.areas[area_index(pair, l, r)] = w.own;
+                a.areas[area_index(pair, l, r) + 1] = w.opposite;
+            }
+}
+// Weights of the edge at position p of a line; `pixel` is its index in the debug planes, negative where another block
+// keeps it.
+template <class T>
+AA_INLINE void write_weights(const MlaaBlendArgs& a, const MlaaAxis& axis, const MlaaLine& line, int p, long pixel,
+                             float* weights) {
+    const int leftPx = p - line.first, rightPx = line.last - p;
+    if (std::is_same_v<T, float> && leftPx < kMlaaTabled && rightPx < kMlaaTabled) {
+        auto side = [](float height) { return height > 0 ? 1 : height < 0 ? 2 : 0; };
+        const float* const entry = a.areas + area_index(3 * side(line.left) + side(line.right), leftPx, rightPx);
+        weights[0] = entry[0];
+        weights[1] = entry[1];
+    } else {
+        const Pair<T> w = mlaa_area<T>(T(line.left), T(line.right), leftPx, rightPx);
+        weights[0] = float(w.own);
+        weights[1] = float(w.opposite);
     }
+    if (!axis.weights || pixel < 0) return;
+    axis.weights[2 * pixel] = weights[0];
+    axis.weights[2 * pixel + 1] = weights[1];
+    const float product = line.left * line.right;
+    axis.shapes[pixel] = product < 0 ? 2.0f : product > 0 ? 3.0f : line.left + line.right != 0 ? 1.0f : 0.0f;
+}
+template <class T>
+AA_INLINE void top_weights(const MlaaBlendArgs& a, int y, bool own, float* weights) {
+    const uint8_t* const top = a.top.along + long(y) * a.top.stride;
+    MlaaLine line{0, -1, 0, 0};
+    for_each_bit(
+        a.width, [&](int x) { return bits_from(top, x); },
+        [&](int x) __attribute__((always_inline)) {
+            if (x > line.last) line = line_through(a.top, x, y);
+            write_weights<T>(a, a.top, line, x, own ? long(y) * a.width + x : -1, weights + 2 * x);
+        });
+}
+template <class T>
+AA_INLINE void left_weights(const MlaaBlendArgs& a, int y, MlaaLine* columns, float* weights) {
+    const uint8_t* const left = a.top.cross + long(y) * a.top.stride;
+    for_each_bit(
+        a.width, [&](int x) { return bits_from(left, x); },
+        [&](int x) __attribute__((always_inline)) {
+            if (y > columns[x].last) columns[x] = line_through(a.left, y, x);
+            write_weights<T>(a, a.left, columns[x], y, long(y) * a.width + x, weights + 2 * x);
+        });
 }
 
 template <class T>
@@ -104,53 +141,63 @@ AA_INLINE void blend_pixel(const MlaaBlendArgs& a, long o, T toFirst, T toSecond
     }
 }
 // Horizontal lines blend the original rows; vertical lines blend the row that this gives.
-template <class R>
-__attribute__((flatten)) void blendRows(const MlaaBlendArgs& a, int y0, int y1) {
-    using T = Elem<R>;
-    constexpr uint64_t every = 0x0101010101010101ull;
-    for (int y = y0; y < y1; y++) {
-        for (int c = 0; c < 3; c++)
-            for (int x = 0; x < a.width; x += N<R>) {
-                const long o = long(y) * a.stride + x;
-                store(load<R>(a.in.c[c] + o), a.out.c[c] + o);
+template <class T>
+AA_INLINE void blend_row(const MlaaBlendArgs& a, int y, const float* top, const float* below, const float* left) {
+    const uint8_t *tops = a.top.along + long(y) * a.top.stride, *belows = tops + a.top.stride,
+                  *lefts = a.top.cross + long(y) * a.top.stride;
+    auto weight = [](const uint8_t* bits, int x, float w) __attribute__((always_inline)) {
+        return bit_at(bits, x) ? T(w) : T(0);  // where there is no edge the scratch holds what was there before
+    };
+    for_each_bit(
+        a.width, [&](int x) { return bits_from(tops, x) | bits_from(belows, x); },
+        [&](int x) __attribute__((always_inline)) {
+            const long o = long(y) * a.stride + x;
+            T above[3], under[3];
+            for (int c = 0; c < 3; c++) above[c] = a.in.c[c][o - a.stride], under[c] = a.in.c[c][o + a.stride];
+            blend_pixel(a, o, weight(tops, x, top[2 * x]), weight(belows, x, below[2 * x + 1]), above, under);
+        });
+    int lastX = -2;
+    T beforeBlend[3] = {T(0), T(0), T(0)};  // of pixel lastX
+    for_each_bit(
+        a.width, [&](int x) { return bits_from(lefts, x) | bits_from(lefts, x + 1); },
+        [&](int x) __attribute__((always_inline)) {
+            const long o = long(y) * a.stride + x;
+            T before[3], after[3];
+            for (int c = 0; c < 3; c++) {
+                before[c] = lastX == x - 1 ? beforeBlend[c] : T(a.out.c[c][o - 1]);
+                after[c] = a.out.c[c][o + 1];
+                beforeBlend[c] = a.out.c[c][o];
             }
-        const uint8_t *const row = a.edges + long(y) * a.edgeStride, *const below = row + a.edgeStride;
-        const float* const top = a.topWeights + 2l * y * a.width;
-        const float* const left = a.leftWeights + 2l * y * a.width;
-        for (int x0 = 0; x0 < a.width; x0 += 8)
-            for_each_byte((load_bytes(row + x0) | load_bytes(below + x0)) & every * kEdgeTop, [&](int i) __attribute__((
-                                                                                                  always_inline)) {
-                const int x = x0 + i;
-                if (x >= a.width) return;
-                const long o = long(y) * a.stride + x;
-                const T up = row[x] & kEdgeTop ? T(top[2 * x]) : T(0);
-                const T down = below[x] & kEdgeTop ? T(top[2l * a.width + 2 * x + 1]) : T(0);
-                T above[3], under[3];
-                for (int c = 0; c < 3; c++) above[c] = a.in.c[c][o - a.stride], under[c] = a.in.c[c][o + a.stride];
-                blend_pixel(a, o, up, down, above, under);
-            });
-        int lastX = -2;
-        T beforeBlend[3] = {T(0), T(0), T(0)};  // of pixel lastX
-        for (int x0 = 0; x0 < a.width; x0 += 8)
-            for_each_byte(
-                (load_bytes(row + x0) | load_bytes(row + x0 + 1)) & every * kEdgeLeft, [&](int i) __attribute__((
-                                                                                           always_inline)) {
-                    const int x = x0 + i;
-                    if (x >= a.width) return;
+            lastX = x;
+            blend_pixel(a, o, weight(lefts, x, left[2 * x]), weight(lefts, x + 1, left[2 * x + 3]), before, after);
+        });
+}
+template <class R>
+__attribute__((flatten)) void mlaaBlendBlocks(const MlaaBlendArgs& a, int b0, int b1) {
+    using T = Elem<R>;
+    const long rowSize = 2l * a.width + 2;
+    for (int block = b0; block < b1; block++) {
+        float* top = a.scratch + block * a.scratchSize;
+        float *below = top + rowSize, *const left = below + rowSize;
+        MlaaLine* const columns = a.columns + long(block) * a.width;
+        for (int x = 0; x < a.width; x++) columns[x].last = -1;
+        const int y0 = block * kMlaaBlockRows, y1 = y0 + kMlaaBlockRows < a.height ? y0 + kMlaaBlockRows : a.height;
+        top_weights<T>(a, y0, true, top);
+        for (int y = y0; y < y1; y++) {
+            for (int c = 0; c < 3; c++)
+                for (int x = 0; x < a.width; x += N<R>) {
                     const long o = long(y) * a.stride + x;
-                    const T back = row[x] & kEdgeLeft ? T(left[2 * x]) : T(0);
-                    const T ahead = row[x + 1] & kEdgeLeft ? T(left[2 * x + 3]) : T(0);
-                    T before[3], after[3];
-                    for (int c = 0; c < 3; c++) {
-                        before[c] = lastX == x - 1 ? beforeBlend[c] : T(a.out.c[c][o - 1]);
-                        after[c] = a.out.c[c][o + 1];
-                        beforeBlend[c] = a.out.c[c][o];
-                    }
-                    lastX = x;
-                    blend_pixel(a, o, back, ahead, before, after);
-                });
+                    store(load<R>(a.in.c[c] + o), a.out.c[c] + o);
+                }
+            if (y + 1 < a.height) top_weights<T>(a, y + 1, y + 1 < y1, below);
+            left_weights<T>(a, y, columns, left);
+            blend_row<T>(a, y, top, below, left);
+            float* const spare = top;
+            top = below, below = spare;
+        }
     }
 }
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::MlaaKernels, mlaaKernels) = {AA_ROWS(edgeRows), AA_ROWS(weightRows), AA_ROWS(blendRows)};
+AA_DEFINE_TABLE(aa::MlaaKernels, mlaaKernels) = {AA_ROWS(mlaaEdgeRows), AA_ROWS(mlaaBlendBlocks),
+                                                 AA_ROWS(mlaaAreaRows)};

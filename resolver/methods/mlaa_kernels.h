@@ -1,34 +1,46 @@
 #pragma once
 #include "kernels/table.h"
-#include "methods/smaa_kernels.h"  // edge bits
 
 namespace aa {
 enum class MlaaRule { maxdiff, msb4, luma };
 struct MlaaEdgeArgs {
-    RgbIn in;  // encoded
-    uint8_t* edges;
-    int stride, edgeStride, width;
+    RgbIn in;             // encoded
+    uint8_t *top, *left;  // bits (methods/edge_bits.h)
+    int stride, bitStride, width;
     MlaaRule rule;
 };
-struct MlaaWeightArgs {
-    const uint8_t* edges;
-    uint8_t* transposed;  // written by the pass over rows; null in the pass over columns
-    float* weights;       // pairs (own, opposite), for every top edge
-    float* shapes;        // debug: 1 L, 2 Z, 3 U, 0 none; null when not wanted
-    long weightAlong, weightAcross;
-    int edgeStride, transposedStride, width;
+inline constexpr int kMlaaBlockRows = 32;  // rows that are weighted and blended together
+inline constexpr int kMlaaTabled = 64;     // distances to the ends of a line whose areas come from a table
+
+// Lines of one orientation: the plane that they follow and the plane that crosses them.
+struct MlaaAxis {
+    const uint8_t *along, *cross;
+    int stride;
+    float *weights, *shapes;  // debug: pairs (own, opposite); 1 L, 2 Z, 3 U, 0 none; null when not wanted
+};
+// A separation line: a maximal run of edges. Its silhouette leaves from half the height of the edges that cross its
+// ends; 0 where none does.
+struct MlaaLine {
+    int first, last;
+    float left, right;
 };
 struct MlaaBlendArgs {
-    const uint8_t* edges;
-    const float *topWeights, *leftWeights;  // pairs at 2 * (y * width + x)
+    MlaaAxis top, left;  // `left` by columns
+    const float* areas;  // pairs by height at the left and right end (0, 1/2, -1/2) and distance to either
     RgbIn in;
     RgbOut out;
-    int stride, edgeStride, width, height;
+    float* scratch;     // per block: weights of two rows of top edges and of one row of left edges
+    MlaaLine* columns;  // per block: the vertical line that each column met last
+    long scratchSize;   // per block
+    int stride, width, height;
+};
+struct MlaaAreaArgs {
+    float* areas;
 };
 struct MlaaKernels {
     RowKernel<MlaaEdgeArgs> edges;
-    RowKernel<MlaaWeightArgs> weights;
-    RowKernel<MlaaBlendArgs> blend;
+    RowKernel<MlaaBlendArgs> blend;  // over blocks of kMlaaBlockRows rows
+    RowKernel<MlaaAreaArgs> areas;   // over the 9 pairs of heights
 };
 }  // namespace aa
 AA_KERNEL_TABLE(aa::MlaaKernels, mlaaKernels)

@@ -2,6 +2,7 @@
 #include "methods/accum.h"
 #include "methods/accum_reject.h"
 #include "methods/asaa.h"
+#include "methods/cmaa2.h"
 #include "methods/deaa.h"
 #include "methods/dlaa.h"
 #include "methods/dmsaa.h"
@@ -44,6 +45,7 @@ const std::vector<MethodDescriptor>& registry() {
         mlaaDescriptor(),
         smaa1xDescriptor(),
         smaaS2xDescriptor(),
+        cmaa2Descriptor(),
         dlaaDescriptor(),
         nfaaDescriptor(),
         ssssaaDescriptor(),

@@ -34,12 +34,16 @@ Smaa::Smaa(const Params& p) : published_(p.choice("areas") == "table") {
     edge_.predicationThreshold = p.realf("predicationThreshold");
     edge_.predicationScale = p.realf("predicationScale");
     edge_.predicationStrength = p.realf("predicationStrength");
-    weight_.searchSteps = preset.searchSteps;
-    weight_.diagonalSteps = preset.diagonalSteps;
-    weight_.cornerRounding = preset.cornerRounding < 0 ? -1 : preset.cornerRounding / 100;
-    weight_.unorm8 = p.choice("weights") == "unorm8";
+    blend_.searchSteps = preset.searchSteps;
+    blend_.diagonalSteps = preset.diagonalSteps;
+    blend_.cornerRounding = preset.cornerRounding < 0 ? -1 : preset.cornerRounding / 100;
+    blend_.unorm8 = p.choice("weights") == "unorm8";
     border_ = std::max(2 * preset.searchSteps, preset.diagonalSteps) + 4;
+    static_assert(kMaxDiagonal + 2 < kBitRows);
 }
+
+// Exact areas come from a table where it stays in the second-level cache: 0.5 MB at ULTRA's 32 steps.
+constexpr int kMostTabled = 32;
 
 const Smaa::Tables& Smaa::tablesFor(glm::dvec2 samplePx) {
     for (const auto& t : tables_)
@@ -49,8 +53,11 @@ const Smaa::Tables& Smaa::tablesFor(glm::dvec2 samplePx) {
     if (published_) {
         t.orthogonal[0] = orthogonalTable(-samplePx.y);
         t.orthogonal[1] = orthogonalTable(-samplePx.x);
+    } else if (blend_.searchSteps <= kMostTabled) {
+        t.orthogonal[0] = exactTable(double(-float(samplePx.y)), 2 * blend_.searchSteps);
+        if (samplePx.x != samplePx.y) t.orthogonal[1] = exactTable(double(-float(samplePx.x)), 2 * blend_.searchSteps);
     }
-    if (weight_.diagonalSteps > 0) {
+    if (blend_.diagonalSteps > 0) {
         // The displacement along the line does nothing; across it, half of it in x and half in y (y up).
         const double first = (samplePx.x + samplePx.y) / 2, second = (samplePx.x - samplePx.y) / 2;
         t.diagonal[0] = diagonalTable({first, -first}, published_);
@@ -61,11 +68,14 @@ const Smaa::Tables& Smaa::tablesFor(glm::dvec2 samplePx) {
     return tables_.back();
 }
 
-void Smaa::findEdges(const Frame& frame, const Rgb& colorEncoded, const Exec& exec) {
+void Smaa::findEdges(const Frame& frame, const Rgb& colorEncoded, glm::dvec2 samplePx, const Exec& exec) {
     width_ = colorEncoded.width();
     height_ = colorEncoded.height();
-    edges_.resize(width_, height_, border_);
-    transposed_.resize(height_, width_, border_);
+    samplePx_ = samplePx;
+    top_.resize(width_, height_, border_);
+    left_.resize(width_, height_, border_);
+    topByColumn_.resize(height_, width_, border_);
+    leftByColumn_.resize(height_, width_, border_);
     SmaaEdgeArgs args = edge_;
     if (args.kind == SmaaEdges::luma) {
         lumaPlane(colorEncoded, LumaKind::rec709, exec, luma_);
@@ -76,74 +86,81 @@ void Smaa::findEdges(const Frame& frame, const Rgb& colorEncoded, const Exec& ex
     args.color = view(colorEncoded);
     if (args.predication == SmaaPredication::depth) args.depthView = frame.depthView.row(0);
     if (args.predication == SmaaPredication::object) args.objectId = frame.objectId.row(0);
-    args.edges = edges_.row(0);
+    args.top = top_.row(0);
+    args.left = left_.row(0);
     args.stride = colorEncoded.stride();
-    args.edgeStride = edges_.stride();
+    args.bitStride = top_.stride();
     args.width = width_;
-    runKernel(smaaKernelsFor(exec.isa).edges, exec, args, height_);
-    edges_.repeatBorder();
+    const auto& kernels = smaaKernelsFor(exec.isa);
+    runKernel(kernels.edges, exec, args, height_);
+    for (auto [from, to] : {std::pair{&top_, &topByColumn_}, {&left_, &leftByColumn_}}) {
+        from->repeatBorder();
+        runKernel(kernels.transpose, exec,
+                  SmaaTransposeArgs{from->row(0), to->row(0), from->stride(), to->stride(), height_}, (width_ + 7) / 8);
+        to->repeatBorder();
+    }
 }
 
-void Smaa::findWeights(const Frame& frame, const Rgb& colorEncoded, glm::dvec2 samplePx, const Exec& exec) {
-    findEdges(frame, colorEncoded, exec);
-    const size_t pairs = 2 * size_t(width_) * size_t(height_);
-    topWeights_.resize(pairs);
-    leftWeights_.resize(pairs);
-    if (keepDebugLayers) topLengths_.assign(pairs, 0), leftLengths_.assign(pairs, 0);
-    transposed_.clear();
-
-    SmaaWeightArgs args = weight_;
-    const Tables& tables = tablesFor(samplePx);
+void Smaa::blend(const Rgb& in, Rgb& out, const Exec& exec) { blend(in, out, nullptr, nullptr, exec); }
+void Smaa::blend(const Rgb& in, Rgb& out, const PlaneF* const motion[2], PlaneF* const motionOut[2], const Exec& exec) {
+    const size_t pixels = size_t(width_) * size_t(height_);
+    if (keepDebugLayers) {
+        for (auto* plane : {&topWeights_, &leftWeights_, &topLengths_, &leftLengths_}) plane->assign(2 * pixels, 0);
+        isDiagonal_.assign(pixels, 0);
+    }
+    SmaaBlendArgs args = blend_;
+    const Tables& tables = tablesFor(samplePx_);
     for (size_t k = 0; k < 2; k++) args.diagonalTable[k] = tables.diagonal[k].data();
-    args.edges = edges_.row(0);
-    args.edgeStride = edges_.stride();
-    args.width = width_;
-    args.transposed = transposed_.row(0);
-    args.transposedStride = transposed_.stride();
-    args.weights = topWeights_.data();
-    args.lengths = keepDebugLayers ? topLengths_.data() : nullptr;
-    args.weightAlong = 1;
-    args.weightAcross = width_;
-    args.offset = -float(samplePx.y);
-    args.orthoTable = published_ ? tables.orthogonal[0].data() : nullptr;
-    const auto& kernel = smaaWeightKernelsFor(exec.isa).weights;
-    runKernel(kernel, exec, args, height_);
-
-    transposed_.repeatBorder();
-    args.edges = transposed_.row(0);
-    args.edgeStride = transposed_.stride();
-    args.width = height_;
-    args.transposed = nullptr;
-    args.weights = leftWeights_.data();
-    args.lengths = keepDebugLayers ? leftLengths_.data() : nullptr;
-    args.weightAlong = width_;
-    args.weightAcross = 1;
-    args.offset = -float(samplePx.x);
-    args.orthoTable = published_ ? tables.orthogonal[1].data() : nullptr;
-    runKernel(kernel, exec, args, width_);
-}
-
-void Smaa::blend(const float* const in[3], float* const out[3], int channels, int stride, const Exec& exec) const {
-    SmaaBlendArgs args{};
-    args.edges = edges_.row(0);
-    args.topWeights = topWeights_.data();
-    args.leftWeights = leftWeights_.data();
-    for (int c = 0; c < channels; c++) args.in[c] = in[c], args.out[c] = out[c];
-    args.channels = channels;
-    args.stride = stride;
-    args.edgeStride = edges_.stride();
+    const auto debug = [&](std::vector<float>& plane) { return keepDebugLayers ? plane.data() : nullptr; };
+    const auto axis = [&](const BitPlane& along, const BitPlane& cross, const BitPlane& crossTransposed,
+                          double samplePx, const std::vector<float>& table, std::vector<float>& weights,
+                          std::vector<float>& lengths) {
+        const bool exact = !published_ && !table.empty();
+        return SmaaAxis{along.row(0),
+                        cross.row(0),
+                        crossTransposed.row(0),
+                        along.stride(),
+                        crossTransposed.stride(),
+                        crossTransposed.rows(),
+                        -float(samplePx),
+                        published_ ? table.data() : nullptr,
+                        exact ? table.data() : nullptr,
+                        debug(weights),
+                        debug(lengths)};
+    };
+    const bool oneTable = tables.orthogonal[1].empty();
+    args.top = axis(top_, left_, leftByColumn_, samplePx_.y, tables.orthogonal[0], topWeights_, topLengths_);
+    args.left = axis(leftByColumn_, topByColumn_, top_, samplePx_.x, tables.orthogonal[oneTable ? 0 : 1], leftWeights_,
+                     leftLengths_);
+    args.isDiagonal = keepDebugLayers ? isDiagonal_.data() : nullptr;
+    for (size_t c = 0; c < 3; c++) args.in[c] = in.c[c].row(0), args.out[c] = out.c[c].row(0);
+    args.channels = 3;
+    for (size_t c = 0; motion && c < 2; c++, args.channels++)
+        args.in[args.channels] = motion[c]->row(0), args.out[args.channels] = motionOut[c]->row(0);
+    args.stride = in.stride();
     args.width = width_;
     args.height = height_;
-    args.weightStride = width_;
-    runKernel(smaaKernelsFor(exec.isa).blend, exec, args, height_);
-}
-void Smaa::blend(const Rgb& in, Rgb& out, const Exec& exec) const {
-    blend(view(in).c, view(out).c, 3, in.stride(), exec);
+    const int blocks = (height_ + kSmaaBlockRows - 1) / kSmaaBlockRows;
+    args.scratchSize = 3 * (2 * width_ + 2);
+    args.diagonalsSize = 2 * (width_ / 8 + 1);
+    scratch_.resize(size_t(args.scratchSize) * size_t(blocks));
+    diagonals_.resize(size_t(args.diagonalsSize) * size_t(blocks));
+    args.scratch = scratch_.data();
+    args.diagonals = diagonals_.data();
+    const auto& kernel = smaaBlendKernelsFor(exec.isa).blend;
+    const auto fn = exec.precision == Precision::fast     ? kernel.fast
+                    : exec.precision == Precision::scalar ? kernel.scalar
+                                                          : kernel.oracle;
+    forRows(
+        exec, blocks, [&](int b0, int b1) { fn(args, b0, b1); }, 1);
 }
 
 size_t Smaa::bytes() const {
-    return luma_.bytes() + edges_.bytes() + transposed_.bytes() +
-           (topWeights_.size() + leftWeights_.size()) * sizeof(float);
+    size_t tables = 0;
+    for (const auto& t : tables_)
+        for (const auto* v : {&t.orthogonal[0], &t.orthogonal[1], &t.diagonal[0], &t.diagonal[1]}) tables += v->size();
+    return luma_.bytes() + top_.bytes() + left_.bytes() + topByColumn_.bytes() + leftByColumn_.bytes() +
+           (scratch_.size() + tables) * sizeof(float) + diagonals_.size();
 }
 
 std::vector<DebugLayer> Smaa::debugLayers() const {
@@ -153,17 +170,15 @@ std::vector<DebugLayer> Smaa::debugLayers() const {
     DebugLayer topSearch = {"search.top", edges.planes}, leftSearch = {"search.left", edges.planes};
     for (int y = 0; y < height_; y++)
         for (int x = 0; x < width_; x++) {
-            const uint8_t e = edges_.row(y)[x];
-            const bool isLeft = e & kEdgeLeft, isTop = e & kEdgeTop, isDiagonal = transposed_.row(x)[y] & kDiagonalDone;
-            edges.planes[0].at(x, y) = isLeft;
-            edges.planes[1].at(x, y) = isTop;
-            edges.planes[2].at(x, y) = isDiagonal;
-            const size_t k = 2 * (size_t(y) * size_t(width_) + size_t(x));
+            const size_t pixel = size_t(y) * size_t(width_) + size_t(x);
+            edges.planes[0].at(x, y) = left_.at(x, y);
+            edges.planes[1].at(x, y) = top_.at(x, y);
+            edges.planes[2].at(x, y) = isDiagonal_[pixel];
             for (size_t i = 0; i < 2; i++) {  // own, opposite; distance to either end, px
-                if (isTop)
-                    top.planes[i].at(x, y) = topWeights_[k + i], topSearch.planes[i].at(x, y) = topLengths_[k + i];
-                if (isLeft)
-                    left.planes[i].at(x, y) = leftWeights_[k + i], leftSearch.planes[i].at(x, y) = leftLengths_[k + i];
+                top.planes[i].at(x, y) = topWeights_[2 * pixel + i];
+                topSearch.planes[i].at(x, y) = topLengths_[2 * pixel + i];
+                left.planes[i].at(x, y) = leftWeights_[2 * pixel + i];
+                leftSearch.planes[i].at(x, y) = leftLengths_[2 * pixel + i];
             }
         }
     return {edges, top, left, topSearch, leftSearch};
@@ -217,7 +232,7 @@ class Smaa1x : public Method {
     explicit Smaa1x(const Params& p) : smaa_(p), linear_(p.choice("blendSpace") == "linear") {}
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         smaa_.keepDebugLayers = keepDebugLayers;
-        smaa_.findWeights(frame, frame.colorEncoded, {0, 0}, exec);
+        smaa_.findEdges(frame, frame.colorEncoded, {0, 0}, exec);
         smaa_.blend(linear_ ? frame.colorLinear : frame.colorEncoded, out, exec);
     }
     size_t stateBytes() const override { return smaa_.bytes(); }

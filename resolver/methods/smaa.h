@@ -8,9 +8,9 @@
 //    across the stronger of its axes.
 // Edges are found on encoded colour; blending is in linear light by default. Distances in px.
 // Deviations: areas are exact at the integer distances instead of a lookup in an 8-bit texture of square distances
-// (areas=table gives that); left edges are processed as top edges of the transposed edge plane.
+// (areas=table gives that); left edges are processed as top edges of the transposed edge planes.
 #pragma once
-#include "methods/edge_plane.h"
+#include "methods/edge_bits.h"
 #include "methods/method.h"
 #include "methods/smaa_kernels.h"
 
@@ -20,18 +20,18 @@ namespace aa {
 class Smaa {
   public:
     explicit Smaa(const Params& params);
-    // Finds edges in `colorEncoded` (or frame.depthView) and their weights. The image was sampled at `samplePx` from
-    // the pixel centres (y down); its revectorised edges are moved back by that much (methods/03 s.3.3-3.5).
-    void findWeights(const Frame& frame, const Rgb& colorEncoded, glm::dvec2 samplePx, const Exec& exec);
-    // Blends `channels` planes of stride `stride` by the weights found last; borders of the input are filled.
-    void blend(const float* const in[3], float* const out[3], int channels, int stride, const Exec& exec) const;
-    void blend(const Rgb& in, Rgb& out, const Exec& exec) const;
+    // Finds edges in `colorEncoded` (or frame.depthView). The image was sampled at `samplePx` from the pixel centres (y
+    // down); its revectorised edges are moved back by that much (methods/03 s.3.3-3.5).
+    void findEdges(const Frame& frame, const Rgb& colorEncoded, glm::dvec2 samplePx, const Exec& exec);
+    // Blends planes of one stride by the weights of the edges found last: the colour and, when given, the motion.
+    // Borders of the input are filled.
+    void blend(const Rgb& in, Rgb& out, const Exec& exec);
+    void blend(const Rgb& in, Rgb& out, const PlaneF* const motion[2], PlaneF* const motionOut[2], const Exec& exec);
     size_t bytes() const;
     bool keepDebugLayers = false;
     std::vector<DebugLayer> debugLayers() const;
 
   private:
-    void findEdges(const Frame& frame, const Rgb& colorEncoded, const Exec& exec);
     // Area tables for one sample position: of top and left edges, and of the two diagonal directions.
     struct Tables {
         glm::dvec2 samplePx;
@@ -39,13 +39,17 @@ class Smaa {
     };
     const Tables& tablesFor(glm::dvec2 samplePx);  // made on first use
     SmaaEdgeArgs edge_{};
-    SmaaWeightArgs weight_{};
+    SmaaBlendArgs blend_{};
     bool published_;  // areas as in the shader's texture
+    glm::dvec2 samplePx_{0.0};
     std::vector<Tables> tables_;
     int width_ = 0, height_ = 0, border_;
     PlaneF luma_;
-    EdgePlane edges_, transposed_;
-    std::vector<float> topWeights_, leftWeights_, topLengths_, leftLengths_;
+    BitPlane top_, left_, topByColumn_, leftByColumn_;
+    std::vector<float> scratch_;
+    std::vector<uint8_t> diagonals_;
+    std::vector<float> topWeights_, leftWeights_, topLengths_, leftLengths_;  // debug
+    std::vector<uint8_t> isDiagonal_;
 };
 
 // Parameters of the SMAA family: preset, edges, thresholds, areas.

@@ -10,12 +10,12 @@ using Point = std::array<double, 2>;
 
 float quantise(double area) { return float(std::floor(255 * area) / 255); }
 
-std::vector<SmaaAreaQuery> evaluate(std::vector<SmaaAreaQuery> queries) {
+std::vector<SmaaAreaQuery> evaluate(std::vector<SmaaAreaQuery> queries, Precision precision = Precision::oracle) {
     const SmaaAreaArgs args{queries.data()};
     Exec exec;
-    exec.precision = Precision::oracle;
+    exec.precision = precision;
     exec.parallel = false;
-    runKernel(smaaWeightKernelsFor(exec.isa).areas, exec, args, int(queries.size()));
+    runKernel(smaaBlendKernelsFor(exec.isa).areas, exec, args, int(queries.size()));
     return queries;
 }
 
@@ -101,6 +101,22 @@ std::vector<float> orthogonalTable(double offset) {
     for (const auto& q : evaluate(std::move(queries))) {
         table.push_back(quantise(q.own));
         table.push_back(quantise(q.opposite));
+    }
+    return table;
+}
+
+std::vector<float> exactTable(double offset, int reachPx) {
+    static constexpr int kCodes[] = {0, 1, 3, 4};
+    std::vector<SmaaAreaQuery> queries;
+    for (const int e1 : kCodes)
+        for (const int e2 : kCodes)
+            for (int l = 0; l < reachPx; l++)
+                for (int r = 0; r <= reachPx; r++) queries.push_back({e1, e2, l, r, offset, 0, 0});
+    std::vector<float> table;
+    table.reserve(2 * queries.size());
+    for (const auto& q : evaluate(std::move(queries), Precision::scalar)) {
+        table.push_back(float(q.own));
+        table.push_back(float(q.opposite));
     }
     return table;
 }

@@ -21,6 +21,9 @@ SmaaAreas diagonalArea(int code1, int code2, int d1, int d2, std::array<double, 
 // 25 code pairs x 16 x 16 pairs of floor(255 a) / 255 at l = u^2, r = v^2: one orthogonal tile of the published
 // texture.
 std::vector<float> orthogonalTable(double offset);
+// The exact areas in float, as the kernel evaluates them: 16 pairs of codes 0, 1, 3, 4 x distances 0 to reachPx - 1 x 0
+// to reachPx.
+std::vector<float> exactTable(double offset, int reachPx);
 // 16 code pairs x kDiagonals^2 pairs for every distance; `quantised` as published, otherwise exact.
 std::vector<float> diagonalTable(std::array<double, 2> offset, bool quantised);
 

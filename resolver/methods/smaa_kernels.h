@@ -2,11 +2,6 @@
 #include "kernels/table.h"
 
 namespace aa {
-// Edge bits of a pixel (methods/03 s.3.2.1), one byte per pixel in a plane whose border repeats the edge pixels far
-// enough for every search.
-inline constexpr uint8_t kEdgeLeft = 1, kEdgeTop = 2;
-inline constexpr uint8_t kDiagonalDone = 4;  // in the transposed plane only: the diagonal pass has handled this pixel
-
 enum class SmaaEdges { luma, colour, depth };
 enum class SmaaPredication { off, depth, object };
 struct SmaaEdgeArgs {
@@ -14,8 +9,8 @@ struct SmaaEdgeArgs {
     RgbIn color;               // encoded
     const float* depthView;    // predication
     const uint32_t* objectId;  // predication
-    uint8_t* edges;
-    int stride, edgeStride, width;
+    uint8_t *top, *left;       // bits (methods/edge_bits.h)
+    int stride, bitStride, width;
     SmaaEdges kind;
     SmaaPredication predication;
     bool consistent;  // colour edges: compare left with leftleft, as luma edges do, not the centre
@@ -23,21 +18,40 @@ struct SmaaEdgeArgs {
     float predicationThreshold, predicationScale, predicationStrength;
 };
 
+struct SmaaTransposeArgs {
+    const uint8_t* from;
+    uint8_t* to;
+    int fromStride, toStride, height;
+};
+
 inline constexpr int kMaxDiagonal = 20;  // methods/03 s.3.2.4: published tables hold 20 distances
 inline constexpr int kDiagonals = kMaxDiagonal + 1;
-struct SmaaWeightArgs {
-    const uint8_t* edges;
-    uint8_t* transposed;  // written by the pass over rows: the plane for the pass over columns; null in the second
-    float* weights;       // pairs (own, opposite)
-    float* lengths;       // debug: pairs (left, right) of search distances; null when not wanted
-    long weightAlong, weightAcross;  // index steps of the weight pairs along a row and from row to row of `edges`
-    int edgeStride, transposedStride, width;
+inline constexpr int kSmaaBlockRows = 32;  // rows that are weighted and blended together
+inline constexpr int kSmaaChannels = 5;    // colour, and motion with the same weights
+
+// Lines of one orientation: the plane that they follow, the plane that crosses them, and the latter transposed.
+struct SmaaAxis {
+    const uint8_t *along, *cross, *crossTransposed;
+    int stride, crossTransposedStride, crossTransposedRows;
+    float offset;                 // of the sub-sample across the edge (area tile)
+    const float* publishedTable;  // 25 code pairs x 16 x 16 pairs; null: exact areas
+    const float* exactTable;      // exact areas: 16 code pairs x reach x (reach + 1) pairs; null: evaluated
+    float *weights, *lengths;     // debug: pairs (own, opposite) and (left, right) per pixel; null when not wanted
+};
+struct SmaaBlendArgs {
+    SmaaAxis top, left;
+    const float* diagonalTable[2];   // 16 code pairs x kDiagonals^2 pairs, for the two directions
     int searchSteps, diagonalSteps;  // diagonalSteps 0: off
     float cornerRounding;            // negative: off
-    float offset;                    // of the sub-sample across the edge (area tile)
-    const float* orthoTable;         // 25 code pairs x 16 x 16 pairs; null: analytic areas
-    const float* diagonalTable[2];   // 16 code pairs x kDiagonals^2 pairs, for the two directions
     bool unorm8;
+    const float* in[kSmaaChannels];
+    float* out[kSmaaChannels];
+    int channels;
+    float* scratch;                   // per block: weights of two rows of top edges and of one row of left edges
+    uint8_t* diagonals;               // per block: bits of the pixels of two rows that the diagonal pass has handled
+    uint8_t* isDiagonal;              // debug: one byte per pixel; null when not wanted
+    long scratchSize, diagonalsSize;  // per block
+    int stride, width, height;
 };
 // One orthogonal area: crossing codes, distances to the two ends, sub-sample offset -> weights.
 struct SmaaAreaQuery {
@@ -49,24 +63,14 @@ struct SmaaAreaArgs {
     SmaaAreaQuery* queries;
 };
 
-struct SmaaBlendArgs {
-    const uint8_t* edges;
-    const float* topWeights;   // pairs at 2 * (y * weightStride + x), defined where kEdgeTop is set
-    const float* leftWeights;  // likewise, where kEdgeLeft is set
-    const float* in[3];
-    float* out[3];
-    int channels;
-    int stride, edgeStride, width, height;
-    long weightStride;
-};
 struct SmaaKernels {
     RowKernel<SmaaEdgeArgs> edges;
-    RowKernel<SmaaBlendArgs> blend;
+    RowKernel<SmaaTransposeArgs> transpose;  // over blocks of 8 columns
 };
-struct SmaaWeightKernels {
-    RowKernel<SmaaWeightArgs> weights;
+struct SmaaBlendKernels {
+    RowKernel<SmaaBlendArgs> blend;  // over blocks of kSmaaBlockRows rows
     RowKernel<SmaaAreaArgs> areas;
 };
 }  // namespace aa
 AA_KERNEL_TABLE(aa::SmaaKernels, smaaKernels)
-AA_KERNEL_TABLE(aa::SmaaWeightKernels, smaaWeightKernels)
+AA_KERNEL_TABLE(aa::SmaaBlendKernels, smaaBlendKernels)

@@ -43,9 +43,12 @@ class TwoSamples {
         for (size_t k = 0; k < 2; k++) {
             const Rgb& color = frame.subSamples[samples[k]].colorLinear;
             encode(color, {}, exec, encoded_);
-            smaa_.findWeights(frame, encoded_, frame.jitterPx + shot.subSamplePositionsPx[samples[k]], exec);
-            smaa_.blend(linear_ ? color : encoded_, k == 0 ? out : sized(second_, frame), exec);
-            if (velocity) blendMotion(frame, k == 0 ? *velocity : sized(secondVelocity_, frame), exec);
+            smaa_.findEdges(frame, encoded_, frame.jitterPx + shot.subSamplePositionsPx[samples[k]], exec);
+            blend(frame, linear_ ? color : encoded_, k == 0 ? out : sized(second_, frame),
+                  !velocity ? nullptr
+                  : k == 0  ? velocity
+                            : &sized(secondVelocity_, frame),
+                  exec);
             for (auto& layer : smaa_.debugLayers()) {
                 layer.name = "s" + std::to_string(k) + "." + layer.name;
                 debugLayers_.push_back(std::move(layer));
@@ -58,10 +61,11 @@ class TwoSamples {
         if (image.width() != frame.width || image.height() != frame.height) image = Rgb(frame.width, frame.height);
         return image;
     }
-    void blendMotion(const Frame& frame, Rgb& velocity, const Exec& exec) {
-        const float* const in[3] = {frame.motionXPx.row(0), frame.motionYPx.row(0), nullptr};
-        float* const out[3] = {velocity.c[0].row(0), velocity.c[1].row(0), nullptr};
-        smaa_.blend(in, out, 2, velocity.stride(), exec);
+    // By the weights of the edges found last; `velocity` (null: not wanted) gets the motion.
+    void blend(const Frame& frame, const Rgb& in, Rgb& out, Rgb* velocity, const Exec& exec) {
+        const PlaneF* const motion[2] = {&frame.motionXPx, &frame.motionYPx};
+        PlaneF* const blended[2] = {velocity ? &velocity->c[0] : nullptr, velocity ? &velocity->c[1] : nullptr};
+        smaa_.blend(in, out, velocity ? motion : nullptr, blended, exec);
     }
     Smaa& smaa() { return smaa_; }
     const Smaa& smaa() const { return smaa_; }
@@ -157,9 +161,9 @@ class SmaaT2x : public Method {
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         Smaa& smaa = one_.smaa();
         smaa.keepDebugLayers = keepDebugLayers;
-        smaa.findWeights(frame, frame.colorEncoded, frame.jitterPx, exec);
-        smaa.blend(one_.linear() ? frame.colorLinear : frame.colorEncoded, pair_.current(frame), exec);
-        one_.blendMotion(frame, pair_.velocity(frame), exec);
+        smaa.findEdges(frame, frame.colorEncoded, frame.jitterPx, exec);
+        one_.blend(frame, one_.linear() ? frame.colorLinear : frame.colorEncoded, pair_.current(frame),
+                   &pair_.velocity(frame), exec);
         pair_.resolve(frame, keepDebugLayers, exec, out);
     }
     size_t stateBytes() const override { return one_.bytes() + pair_.bytes(); }

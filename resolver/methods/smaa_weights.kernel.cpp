@@ -1,9 +1,9 @@
-#include "kernels/sparse.h"
 #include "methods/area.kernel.h"
+#include "methods/edge_bits.kernel.h"
 #include "methods/smaa_kernels.h"
 
-// SMAA's blending weights. Works on rows of top edges; for left edges it runs on the transposed plane, in which the two
-// edge bits have changed places.
+// SMAA's blending weights, and the blend: block by block of rows, so that the weights stay in the first-level cache.
+// Left edges are top edges of the transposed planes.
 namespace AA_ARCH {
 using namespace aa;
 
@@ -54,21 +54,28 @@ AA_INLINE Pair<T> table_area(const float* table, int left, int right, int leftPx
     return {at(0), at(1)};
 }
 
-AA_INLINE bool has(const uint8_t* edges, long o, uint8_t bit) { return edges[o] & bit; }
+// ---- diagonals (s.3.2.4): `top` and `left` are the edge bits of a pixel's upper and left border
+
+struct EdgesAt {
+    const SmaaBlendArgs& a;
+    AA_INLINE bool top(int x, int y) const { return bit_at(a.top.along + long(y) * a.top.stride, x); }
+    AA_INLINE bool left(int x, int y) const { return bit_at(a.top.cross + long(y) * a.top.stride, x); }
+};
 struct DiagonalEnd {
     int distance;
     bool found;
 };
-// One arm: pixels at o + n * step as long as both bits of the staircase are set; the left bit is read `leftShift` away.
-AA_INLINE DiagonalEnd diagonal_arm(const SmaaWeightArgs& a, long o, long step, long leftShift, bool countLast) {
+// One arm: pixels at n * (dx, dy) as long as both bits of the staircase are set; the left bit is read `leftShift` away.
+AA_INLINE DiagonalEnd diagonal_arm(const EdgesAt& e, int x, int y, int dx, int dy, int leftShift, bool countLast) {
+    const int steps = e.a.diagonalSteps;
     int n = 1, passed = 0;
     bool success = true;
-    for (; n <= a.diagonalSteps && success; n++) {
-        success = has(a.edges, o + n * step, kEdgeTop) && has(a.edges, o + n * step + leftShift, kEdgeLeft);
+    for (; n <= steps && success; n++) {
+        success = e.top(x + n * dx, y + n * dy) && e.left(x + n * dx + leftShift, y + n * dy);
         passed += success;
     }
-    const int distance = passed < a.diagonalSteps - 1 ? passed : a.diagonalSteps - 1;
-    const bool last = countLast && has(a.edges, o + (n - 1) * step, kEdgeTop);
+    const int distance = passed < steps - 1 ? passed : steps - 1;
+    const bool last = countLast && e.top(x + (n - 1) * dx, y + (n - 1) * dy);
     return {distance + (last ? 1 : 0), !success};
 }
 template <class T>
@@ -79,120 +86,192 @@ AA_INLINE Pair<T> diagonal_lookup(const float* table, bool h1, bool v1, bool fou
     return {T(p[0]), T(p[1])};
 }
 template <class T>
-AA_INLINE Pair<T> diagonal_weights(const SmaaWeightArgs& a, long o) {
-    const uint8_t* const e = a.edges;
-    const long s = a.edgeStride;
+AA_INLINE Pair<T> diagonal_weights(const SmaaBlendArgs& a, int x, int y) {
+    const EdgesAt e{a};
     Pair<T> sum{T(0), T(0)};
-    {  // from bottom left to top right
-        const DiagonalEnd d1 = has(e, o, kEdgeLeft) ? diagonal_arm(a, o, s - 1, 0, true) : DiagonalEnd{0, true};
-        const DiagonalEnd d2 = diagonal_arm(a, o, 1 - s, 0, false);
-        if (d1.distance + d2.distance > 2) {
-            const long p = o + d1.distance * (s - 1), q = o + d2.distance * (1 - s);
-            sum = diagonal_lookup<T>(a.diagonalTable[0], has(e, p - 1, kEdgeTop), has(e, p, kEdgeLeft), d1.found,
-                                     has(e, q + 1, kEdgeTop), has(e, q + 1 - s, kEdgeLeft), d2.found, d1.distance,
-                                     d2.distance);
-        }
+    // A diagonal is longer than 2 px, so one of its arms passes its first pixel: nine bits tell most pixels apart.
+    const uint8_t *top = a.top.along + long(y) * a.top.stride, *left = a.top.cross + long(y) * a.top.stride;
+    const uint64_t topAbove = bits_from(top - a.top.stride, x - 1), topBelow = bits_from(top + a.top.stride, x - 1);
+    const uint64_t leftAbove = bits_from(left - a.top.stride, x - 1), leftOwn = bits_from(left, x - 1),
+                   leftBelow = bits_from(left + a.top.stride, x - 1);
+    if (((topAbove & leftAbove) >> 2 | (leftOwn >> 1 & topBelow & leftBelow)) & 1) {  // bottom left to top right
+        const DiagonalEnd d1 = leftOwn >> 1 & 1 ? diagonal_arm(e, x, y, -1, 1, 0, true) : DiagonalEnd{0, true};
+        const DiagonalEnd d2 = diagonal_arm(e, x, y, 1, -1, 0, false);
+        const int n = d1.distance, m = d2.distance;
+        if (n + m > 2)
+            sum = diagonal_lookup<T>(a.diagonalTable[0], e.top(x - n - 1, y + n), e.left(x - n, y + n), d1.found,
+                                     e.top(x + m + 1, y - m), e.left(x + m + 1, y - m - 1), d2.found, n, m);
     }
-    // from top left to bottom right: the same shape mirrored, so that own and opposite change places
-    const DiagonalEnd d1 = diagonal_arm(a, o, -s - 1, 1, false);
-    const DiagonalEnd d2 = has(e, o + 1, kEdgeLeft) ? diagonal_arm(a, o, s + 1, 1, true) : DiagonalEnd{0, true};
-    if (d1.distance + d2.distance > 2) {
-        const long p = o + d1.distance * (-s - 1), q = o + d2.distance * (s + 1);
-        const Pair<T> w =
-            diagonal_lookup<T>(a.diagonalTable[1], has(e, p - 1, kEdgeTop), has(e, p - s, kEdgeLeft), d1.found,
-                               has(e, q + 1, kEdgeTop), has(e, q + 1, kEdgeLeft), d2.found, d1.distance, d2.distance);
-        sum = sum + Pair<T>{w.opposite, w.own};
+    // From top left to bottom right: the same shape mirrored, so that own and opposite change places.
+    if (((topAbove & leftAbove >> 1) | (leftOwn >> 2 & topBelow >> 2 & leftBelow >> 3)) & 1) {
+        const DiagonalEnd d1 = diagonal_arm(e, x, y, -1, -1, 1, false);
+        const DiagonalEnd d2 = leftOwn >> 2 & 1 ? diagonal_arm(e, x, y, 1, 1, 1, true) : DiagonalEnd{0, true};
+        const int n = d1.distance, m = d2.distance;
+        if (n + m > 2) {
+            const Pair<T> w =
+                diagonal_lookup<T>(a.diagonalTable[1], e.top(x - n - 1, y - n), e.left(x - n, y - n - 1), d1.found,
+                                   e.top(x + m + 1, y + m), e.left(x + m + 1, y + m), d2.found, n, m);
+            sum = sum + Pair<T>{w.opposite, w.own};
+        }
     }
     return sum;
 }
 
+// ---- lines along rows or columns (s.3.2.2, 3.2.3, 3.2.5)
+
+// Edges that cross the end of a line, from its row -2 to +1: bits 1 and 2 touch it, 0 and 3 lie beyond.
+AA_INLINE unsigned crossing_bits(const SmaaAxis& axis, int p, int q) {
+    const int row = p < 0 ? 0 : p < axis.crossTransposedRows ? p : axis.crossTransposedRows - 1;  // the sampler clamps
+    return unsigned(bits_from(axis.crossTransposed + long(row) * axis.crossTransposedStride, q - 2)) & 15u;
+}
+AA_INLINE int crossing_code(unsigned bits) { return (bits & 2 ? 1 : 0) + (bits & 4 ? 3 : 0); }
 // Crossing edges make the line turn: a sharp corner keeps part of its shape.
 template <class T>
-AA_INLINE Pair<T> rounded_corners(const SmaaWeightArgs& a, Pair<T> w, long leftEnd, long rightEnd, int leftPx,
+AA_INLINE Pair<T> rounded_corners(const SmaaBlendArgs& a, Pair<T> w, unsigned leftBits, unsigned rightBits, int leftPx,
                                   int rightPx) {
     const T reduction = T(1) - T(a.cornerRounding), share = leftPx == rightPx ? reduction * T(0.5) : reduction;
     const T left = leftPx <= rightPx ? share : T(0), right = rightPx <= leftPx ? share : T(0);
-    const long s = a.edgeStride;
-    auto factor = [&](long row) __attribute__((always_inline)) {
-        const T l = has(a.edges, leftEnd + row, kEdgeLeft) ? left : T(0);
-        const T r = has(a.edges, rightEnd + 1 + row, kEdgeLeft) ? right : T(0);
+    auto factor = [&](unsigned row) __attribute__((always_inline)) {
+        const T l = leftBits & row ? left : T(0), r = rightBits & row ? right : T(0);
         return max(T(0), T(1) - l - r);
     };
-    return {w.own * factor(s), w.opposite * factor(-2 * s)};
-}
-AA_INLINE int crossing_code(const SmaaWeightArgs& a, long end) {
-    return (has(a.edges, end - a.edgeStride, kEdgeLeft) ? 1 : 0) + (has(a.edges, end, kEdgeLeft) ? 3 : 0);
+    return {w.own * factor(8), w.opposite * factor(1)};
 }
 template <class T>
-AA_INLINE void write_weights(const SmaaWeightArgs& a, int x, int y, Pair<T> w) {
-    float* const p = a.weights + 2 * (x * a.weightAlong + y * a.weightAcross);
+AA_INLINE Pair<T> stored(const SmaaBlendArgs& a, Pair<T> w) {
     if (a.unorm8) w = {floor(w.own * T(255) + T(0.5)) / T(255), floor(w.opposite * T(255) + T(0.5)) / T(255)};
-    p[0] = float(w.own);
-    p[1] = float(w.opposite);
+    return {T(float(w.own)), T(float(w.opposite))};
 }
-// A line is a run of top edges that no left edge crosses. The pixel's own search is capped.
-struct Line {
-    int first, last;
-};
-AA_INLINE bool starts_line(const SmaaWeightArgs& a, const uint8_t* e) {
-    return !(e[-1] & kEdgeTop) || ((e[0] | e[-long(a.edgeStride)]) & kEdgeLeft);
-}
-AA_INLINE Line line_at(const SmaaWeightArgs& a, const uint8_t* row, int x) {
-    Line line{x, x};
+// The edge at position p of line q; `pixel` is its index in the debug planes, negative where another block keeps it.
+template <class T>
+AA_INLINE Pair<T> line_weights(const SmaaBlendArgs& a, const SmaaAxis& axis, int p, int q, long pixel) {
     const int reach = 2 * a.searchSteps;
-    while (line.first > -reach && !starts_line(a, row + line.first)) line.first--;
-    while (line.last < a.width + reach && (row[line.last + 1] & kEdgeTop) && !starts_line(a, row + line.last + 1))
-        line.last++;
-    return line;
+    const uint8_t *along = axis.along + long(q) * axis.stride, *cross = axis.cross + long(q) * axis.stride;
+    const int leftPx = run_down(along, cross, cross - axis.stride, p, reach - 1);
+    const int rightPx = run_up(along, cross, cross - axis.stride, p, reach);
+    const unsigned leftBits = crossing_bits(axis, p - leftPx, q), rightBits = crossing_bits(axis, p + rightPx + 1, q);
+    Pair<T> w;
+    if (std::is_same_v<T, float> && axis.exactTable) {
+        const unsigned pair = (leftBits >> 1 & 3) * 4 + (rightBits >> 1 & 3);
+        const float* const entry = axis.exactTable + 2 * ((long(pair) * reach + leftPx) * (reach + 1) + rightPx);
+        w = {T(entry[0]), T(entry[1])};
+    } else if (axis.publishedTable) {
+        w = table_area<T>(axis.publishedTable, crossing_code(leftBits), crossing_code(rightBits), leftPx, rightPx);
+    } else {
+        w = ortho_area<T>(crossing_code(leftBits), crossing_code(rightBits), leftPx, rightPx, T(axis.offset));
+    }
+    w = {min(w.own, T(1)), min(w.opposite, T(1))};  // samples beyond their pixel (jitter + position) lift lines over it
+    if (a.cornerRounding >= 0) w = rounded_corners(a, w, leftBits, rightBits, leftPx, rightPx);
+    if (axis.lengths && pixel >= 0) {
+        axis.lengths[2 * pixel] = float(leftPx);
+        axis.lengths[2 * pixel + 1] = float(rightPx);
+    }
+    return stored(a, w);
+}
+AA_INLINE void keep(const SmaaAxis& axis, long pixel, float own, float opposite) {
+    if (!axis.weights || pixel < 0) return;
+    axis.weights[2 * pixel] = own;
+    axis.weights[2 * pixel + 1] = opposite;
+}
+
+// ---- rows
+
+// Weights (own, opposite) of the row's top edges; sets the bits of the pixels that a diagonal took. `own`: the row lies
+// in the block, and is not the one after it.
+template <class T>
+AA_INLINE void top_weights(const SmaaBlendArgs& a, int y, bool own, float* weights, uint8_t* diagonals) {
+    __builtin_memset(diagonals, 0, size_t(a.width / 8 + 1));
+    const uint8_t* const top = a.top.along + long(y) * a.top.stride;
+    for_each_bit(
+        a.width, [&](int x) { return bits_from(top, x); },
+        [&](int x) __attribute__((always_inline)) {
+            Pair<T> w{T(0), T(0)};
+            if (a.diagonalSteps > 0) w = diagonal_weights<T>(a, x, y);
+            const long pixel = own ? long(y) * a.width + x : -1;
+            if (w.own + w.opposite > T(0)) {
+                diagonals[x >> 3] = uint8_t(diagonals[x >> 3] | 1 << (x & 7));
+                if (a.isDiagonal && own) a.isDiagonal[pixel] = 1;
+                w = stored(a, w);
+            } else {
+                w = line_weights<T>(a, a.top, x, y, pixel);
+            }
+            weights[2 * x] = float(w.own);
+            weights[2 * x + 1] = float(w.opposite);
+            keep(a.top, pixel, weights[2 * x], weights[2 * x + 1]);
+        });
 }
 template <class T>
-AA_INLINE void ortho_pixel(const SmaaWeightArgs& a, const Line& line, int x, int y) {
-    const int reach = 2 * a.searchSteps;
-    const int leftPx = x - line.first < reach - 1 ? x - line.first : reach - 1;
-    const int rightPx = line.last - x < reach ? line.last - x : reach;
-    const long o = long(y) * a.edgeStride + x;
-    const int left = crossing_code(a, o - leftPx), right = crossing_code(a, o + rightPx + 1);
-    Pair<T> w = a.orthoTable ? table_area<T>(a.orthoTable, left, right, leftPx, rightPx)
-                             : ortho_area<T>(left, right, leftPx, rightPx, T(a.offset));
-    w = {min(w.own, T(1)), min(w.opposite, T(1))};  // samples beyond their pixel (jitter + position) lift lines over it
-    if (a.cornerRounding >= 0) w = rounded_corners(a, w, o - leftPx, o + rightPx, leftPx, rightPx);
-    write_weights(a, x, y, w);
-    if (a.lengths) {
-        float* const p = a.lengths + 2 * (x * a.weightAlong + y * a.weightAcross);
-        p[0] = float(leftPx);
-        p[1] = float(rightPx);
+AA_INLINE void left_weights(const SmaaBlendArgs& a, int y, float* weights, const uint8_t* diagonals) {
+    const uint8_t* const left = a.top.cross + long(y) * a.top.stride;
+    for_each_bit(
+        a.width, [&](int x) { return bits_from(left, x); },
+        [&](int x) __attribute__((always_inline)) {
+            const long pixel = long(y) * a.width + x;
+            Pair<T> w{T(0), T(0)};
+            if (!bit_at(diagonals, x)) w = line_weights<T>(a, a.left, y, x, pixel);
+            weights[2 * x] = float(w.own);
+            weights[2 * x + 1] = float(w.opposite);
+            keep(a.left, pixel, weights[2 * x], weights[2 * x + 1]);
+        });
+    weights[2 * a.width] = weights[2 * a.width - 2];  // the sampler clamps
+    weights[2 * a.width + 1] = weights[2 * a.width - 1];
+}
+template <class T>
+AA_INLINE void blend_pixel(const SmaaBlendArgs& a, long o, T right, T left, T bottom, T top) {
+    if (right + left + bottom + top < T(1e-5)) return;
+    // Symmetric corners weigh both axes alike; they count as vertical in every precision, as equal 8-bit weights do.
+    const bool horizontal = max(right, left) > max(bottom, top) * T(1 + 1e-5);
+    const long step = horizontal ? 1 : a.stride;
+    const T forward = horizontal ? right : bottom, backward = horizontal ? left : top;
+    const T total = forward + backward, f = forward * forward / total, b = backward * backward / total;
+    for (int c = 0; c < a.channels; c++) {
+        const float* const p = a.in[c] + o;
+        const T own = p[0];
+        a.out[c][o] = float(own + f * (T(p[step]) - own) + b * (T(p[-step]) - own));
     }
 }
+template <class T>
+AA_INLINE void blend_row(const SmaaBlendArgs& a, int y, const float* top, const float* below, const float* left) {
+    const uint8_t *tops = a.top.along + long(y) * a.top.stride, *belows = tops + a.top.stride,
+                  *lefts = a.top.cross + long(y) * a.top.stride;
+    auto weight = [](const uint8_t* bits, int x, float w) __attribute__((always_inline)) {
+        return bit_at(bits, x) ? T(w) : T(0);  // where there is no edge the scratch holds what was there before
+    };
+    for_each_bit(
+        a.width,
+        [&](int x) {
+            return bits_from(tops, x) | bits_from(belows, x) | bits_from(lefts, x) | bits_from(lefts, x + 1);
+        },
+        [&](int x) __attribute__((always_inline)) {
+            blend_pixel<T>(a, long(y) * a.stride + x, weight(lefts, x + 1, left[2 * x + 3]),
+                           weight(lefts, x, left[2 * x]), weight(belows, x, below[2 * x + 1]),
+                           weight(tops, x, top[2 * x]));
+        });
+}
 template <class R>
-__attribute__((flatten)) void weightRows(const SmaaWeightArgs& a, int y0, int y1) {
+__attribute__((flatten)) void blendBlocks(const SmaaBlendArgs& a, int b0, int b1) {
     using T = Elem<R>;
-    for (int y = y0; y < y1; y++) {
-        const uint8_t* const row = a.edges + long(y) * a.edgeStride;
-        Line line{0, -1};
-        for (int x0 = 0; x0 < a.width; x0 += 8)
-            for_each_byte(
-                load_bytes(row + x0), [&](int i) __attribute__((always_inline)) {
-                    const int x = x0 + i;
-                    if (x >= a.width) return;
-                    const uint8_t e = row[x];
-                    bool diagonal = (e & kDiagonalDone) != 0;
-                    if ((e & kEdgeTop) && diagonal) write_weights(a, x, y, Pair<T>{T(0), T(0)});
-                    if ((e & kEdgeTop) && !diagonal) {
-                        if (a.transposed && a.diagonalSteps > 0) {
-                            const Pair<T> w = diagonal_weights<T>(a, long(y) * a.edgeStride + x);
-                            diagonal = w.own + w.opposite > T(0);
-                            if (diagonal) write_weights(a, x, y, w);
-                        }
-                        if (!diagonal) {
-                            if (x > line.last) line = line_at(a, row, x);
-                            ortho_pixel<T>(a, line, x, y);
-                        }
-                    }
-                    if (a.transposed)
-                        a.transposed[long(x) * a.transposedStride + y] =
-                            uint8_t((e & kEdgeTop ? kEdgeLeft : 0) | (e & kEdgeLeft ? kEdgeTop : 0) |
-                                    (diagonal ? kDiagonalDone : 0));
-                });
+    const long rowSize = 2l * a.width + 2;
+    for (int block = b0; block < b1; block++) {
+        float* top = a.scratch + block * a.scratchSize;
+        float *below = top + rowSize, *const left = below + rowSize;
+        uint8_t* topDiagonals = a.diagonals + block * a.diagonalsSize;
+        uint8_t* belowDiagonals = topDiagonals + a.diagonalsSize / 2;
+        const int y0 = block * kSmaaBlockRows, y1 = y0 + kSmaaBlockRows < a.height ? y0 + kSmaaBlockRows : a.height;
+        top_weights<T>(a, y0, true, top, topDiagonals);
+        for (int y = y0; y < y1; y++) {
+            for (int c = 0; c < a.channels; c++)
+                for (int x = 0; x < a.width; x += N<R>)
+                    store(load<R>(a.in[c] + long(y) * a.stride + x), a.out[c] + long(y) * a.stride + x);
+            const bool last = y + 1 == a.height;  // the sampler clamps
+            if (!last) top_weights<T>(a, y + 1, y + 1 < y1, below, belowDiagonals);
+            left_weights<T>(a, y, left, topDiagonals);
+            blend_row<T>(a, y, top, last ? top : below, left);
+            float* const spare = top;
+            top = below, below = spare;
+            uint8_t* const spareDiagonals = topDiagonals;
+            topDiagonals = belowDiagonals, belowDiagonals = spareDiagonals;
+        }
     }
 }
 template <class R>
@@ -206,4 +285,4 @@ void areaRows(const SmaaAreaArgs& a, int from, int to) {
 }
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::SmaaWeightKernels, smaaWeightKernels) = {AA_ROWS(weightRows), AA_ROWS(areaRows)};
+AA_DEFINE_TABLE(aa::SmaaBlendKernels, smaaBlendKernels) = {AA_ROWS(blendBlocks), AA_ROWS(areaRows)};

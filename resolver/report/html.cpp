@@ -124,7 +124,7 @@ std::string base64(const std::vector<unsigned char>& bytes) {
     return text;
 }
 
-std::string reportHtml(const RunResults& run, const std::vector<Pictures>& pictures) {
+std::string reportHtml(const RunResults& run, const std::vector<Pictures>& pictures, const std::string& angles) {
     json data = {{"run", json::parse(toJsonText(run))}, {"order", presentationOrder(run)}, {"words", captions(run)}};
     for (auto& m : data["run"]["methods"]) m.erase("tileSquares");  // the page has no use for them
     data["errorScale"] = kErrorScale;
@@ -149,6 +149,7 @@ std::string reportHtml(const RunResults& run, const std::vector<Pictures>& pictu
     page = replaced(page, "{{chart}}", web::chart);
     page = replaced(page, "{{slider}}", web::slider);
     page = replaced(page, "{{js}}", web::js);
+    page = replaced(page, "{{angles}}", angles);
     return replaced(page, "{{data}}", forScript(data));
 }
 

@@ -8,7 +8,8 @@ namespace aa {
 std::vector<int> framesToShow(const std::vector<int>& withPictures);
 // The page. `pictures` are embedded as PNG: whole frames up to 960 x 540, else the part where the methods differ most;
 // after about 11 MB of them further frames are left out (the first is always there).
-std::string reportHtml(const RunResults& run, const std::vector<Pictures>& pictures);
+// `angles` is the section of the half-plane study (report/angles.h), empty when there is none.
+std::string reportHtml(const RunResults& run, const std::vector<Pictures>& pictures, const std::string& angles = {});
 // 8-bit sRGB codes, as writePng. Throws InputError when OpenImageIO cannot.
 std::vector<unsigned char> pngBytes(const Rgb& encoded);
 std::string base64(const std::vector<unsigned char>& bytes);

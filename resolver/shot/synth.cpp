@@ -252,7 +252,7 @@ SynthShot::SynthShot(const SynthOptions& o) {
     if (o.subsampleColor && o.subsamples.empty())
         throw UsageError("synth: colour at sub-samples needs a sub-sample pattern");
     auto scene = std::make_shared<Scene>();
-    scene->contents = makeScene(o.scene, o.width, o.height, o.seed);
+    scene->contents = makeScene(o);
     scene_ = scene;
     const JitterInfo& sequence = jitterSequence(o.jitter);
     const JitterSpec jitter{o.jitter, o.jitterStart, sequence.naturalPeriod ? sequence.naturalPeriod : o.period,

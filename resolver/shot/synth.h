@@ -28,6 +28,8 @@ struct SynthOptions {
     std::string subsamples;       // pattern name; empty: none
     bool subsampleColor = false;  // colour at the sub-samples, too
     uint32_t seed = 1;            // of the colours
+    // Scene half_plane: direction of the edge's normal, x towards y, and its distance from the middle of the picture.
+    double angleDegrees = 20, offsetPx = 0.25;
     // What writeSynth writes of the frames: everything, or what the chosen methods read. An empty centreWanted leaves
     // the centre-sampled frames out; an unjittered shot needs none in any case.
     std::optional<PassSet> wanted, centreWanted;

@@ -116,6 +116,18 @@ Polygon bar(dvec2 centre, double angle, double half, double width) {
     return {centre - d - n, centre + d - n, centre + d + n, centre - d + n};
 }
 
+// Dark before light, with one edge; both reach far beyond the picture, so that it has no other.
+SynthSceneContents halfPlane(int w, int h, double angleDegrees, double offsetPx) {
+    SynthSceneContents s;
+    const dvec2 n = direction(angleDegrees * kPi / 180);
+    const double offset = glm::dot(n, dvec2(w / 2.0, h / 2.0)) + offsetPx;
+    const Polygon everything = rectangle(-w, -h, 2.0 * w, 2.0 * h);
+    s.shapes = {flat(clip(everything, {n, offset}), 1, dvec3(0.04), 8),
+                flat(clip(everything, {-n, -offset}), 2, dvec3(0.8), 12)};
+    s.objects = {{1, "dark side"}, {2, "light side"}};
+    return s;
+}
+
 // At least 64 tiles, each one edge at an angle and sub-pixel offset of its own.
 SynthSceneContents halfPlanes(int w, int h, uint32_t seed) {
     SynthSceneContents s;
@@ -226,6 +238,33 @@ SynthSceneContents moving(int w, int h, uint32_t seed) {
     return s;
 }
 
+// Triangles and wires all over the picture, so dense that 10 to 15 % of the pixels lie on an edge at any resolution.
+SynthSceneContents clutter(int w, int h, uint32_t seed) {
+    SynthSceneContents s;
+    Palette palette(seed);
+    constexpr double kTile = 32;
+    const int columns = std::max(1, int(w / kTile)), rows = std::max(1, int(h / kTile));
+    uint32_t id = 2, index = 0;
+    const auto next = [&](double lo, double hi) { return lo + (hi - lo) * hashed(seed ^ 0x51EDu, index++); };
+    for (const Tile& t : tiles(w, h, columns, rows)) {
+        const dvec2 at(next(t.x0, t.x1), next(t.y0, t.y1));
+        const double angle = next(0, 2 * kPi);
+        const dvec3 color = t.index % 3 == 0 ? palette.dark() : t.index % 3 == 1 ? palette.light() : palette.middle();
+        Polygon shape;
+        if (t.index % 4 == 3) {
+            shape = bar(at, angle, next(50, 120), next(0.6, 2.5));
+        } else {
+            for (int k = 0; k < 3; k++) shape.push_back(at + direction(angle + 2.1 * k) * next(18, 46));
+        }
+        s.shapes.push_back(flat(shape, id, color, 5 + 1e-3 * id));
+        s.objects[id] = "shape " + std::to_string(id);
+        id++;
+    }
+    s.shapes.push_back(flat(rectangle(-1, -1, w + 1, h + 1), 1, palette.middle(), 60));
+    s.objects[1] = "wall";
+    return s;
+}
+
 // Wires and poles before an empty sky and a field.
 SynthSceneContents thinMotion(int w, int h, uint32_t seed) {
     SynthSceneContents s;
@@ -292,12 +331,14 @@ SynthSceneContents twoPlanes(int w, int h, uint32_t seed) {
 
 const std::vector<SynthScene>& synthScenes() {
     static const std::vector<SynthScene> table = {
+        {"half_plane", "one edge through the middle, at a chosen angle and offset"},
         {"half_planes", "one edge per tile, at 64 or more angles"},
         {"circles", "discs from 0.3 px in radius to a large part of a tile"},
         {"thin_lines", "lines of 0.2 to 2 px at many angles"},
         {"zone_plate", "rings up to the Nyquist limit and beyond"},
         {"moving", "shapes that translate and turn by fractions of a pixel over a striped wall"},
         {"two_planes", "a crease, a plane behind, sky; perspective, for the methods that read geometry"},
+        {"clutter", "triangles and wires everywhere: one pixel in eight lies on an edge, for timing"},
         {"thin_motion", "wires that move before sky, field and poles"},
     };
     return table;
@@ -308,21 +349,26 @@ double zonePlateValue(dvec2 p, int w, int h) {
     return 0.5 + 0.5 * std::cos(kPi * r2 / std::min(w, h));
 }
 
-SynthSceneContents makeScene(std::string_view name, int w, int h, uint32_t seed) {
+SynthSceneContents makeScene(const SynthOptions& o) {
+    const std::string& name = o.scene;
+    const int w = o.width, h = o.height;
+    const uint32_t seed = o.seed;
     const auto with = [&](SynthSceneContents s) {
         if (s.camera.projection == glm::dmat4(1.0)) s.camera = orthographicCamera(w, h);
         return s;
     };
+    if (name == "half_plane") return with(halfPlane(w, h, o.angleDegrees, o.offsetPx));
     if (name == "half_planes") return with(halfPlanes(w, h, seed));
     if (name == "circles") return with(circles(w, h, seed));
     if (name == "thin_lines") return with(thinLines(w, h, seed));
     if (name == "zone_plate") return with(zonePlate(w, h, seed));
     if (name == "moving") return with(moving(w, h, seed));
     if (name == "two_planes") return with(twoPlanes(w, h, seed));
+    if (name == "clutter") return with(clutter(w, h, seed));
     if (name == "thin_motion") return with(thinMotion(w, h, seed));
     std::string known;
     for (const auto& s : synthScenes()) known += (known.empty() ? "" : ", ") + std::string(s.name);
-    throw UsageError("synth scene '" + std::string(name) + "': expected one of " + known);
+    throw UsageError("synth scene '" + name + "': expected one of " + known);
 }
 
 }  // namespace aa

@@ -13,7 +13,7 @@ struct SynthSceneContents {
     bool zonePlate = false;
 };
 // Throws UsageError for an unknown scene.
-SynthSceneContents makeScene(std::string_view name, int width, int height, uint32_t seed);
+SynthSceneContents makeScene(const SynthOptions& options);
 
 // The picture maps to the plane of an orthographic camera at this scale, and the camera looks from z = 0.
 inline constexpr double kUnitsPerPixel = 0.02;

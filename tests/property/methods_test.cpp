@@ -122,22 +122,6 @@ TEST_P(EveryMethod, NanDoesNotOutliveItsFrame) {
     }
 }
 
-// A spatial method may not touch a pixel farther from any edge than its stated reach.
-TEST_P(EveryMethod, NothingChangesBeyondTheStatedReach) {
-    const int reach = method(GetParam()).reachPx;
-    if (reach <= 0) GTEST_SKIP() << "no reach stated";
-    const int w = 2 * reach + 40, h = 24;
-    Subject s = makeSubject(GetParam(), w, h);
-    const Scene half = [&](double x, double y) -> Surface {
-        const bool right = x + 0.2 * y > 12;
-        return {right ? glm::vec3(0.2f) : glm::vec3(0.8f), right ? 8.0f : 4.0f, {0, 0, 1}, right ? 1u : 2u};
-    };
-    const Rgb& out = step(s, renderFrame(half, w, h, 1, {0, 0}, {0, 0}, s.samples));
-    const float expected = out.c[0].at(w - 1, 0);
-    for (int y = 0; y < h; y++)
-        for (int x = 13 + reach; x < w; x++) ASSERT_EQ(out.c[0].at(x, y), expected) << x << "," << y;
-}
-
 INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod, ::testing::ValuesIn(allSpecs()), [](const auto& info) {
     std::string s = info.param;
     for (char& c : s)

@@ -3,5 +3,5 @@
 #include <string_view>
 
 namespace aa::web {
-extern const std::string_view html, css, js, chart, slider, sliderCss;
+extern const std::string_view html, css, js, chart, slider, sliderCss, angles;
 }

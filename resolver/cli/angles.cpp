@@ -1,0 +1,79 @@
+#include "report/angles.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+
+#include "cli/cli.h"
+#include "image/io.h"
+
+namespace aa {
+namespace {
+struct Options {
+    std::vector<std::string> methods;
+    std::string out;
+    AngleStudyOptions study;
+    bool json = false;
+    WorkOptions work;
+};
+
+void printTable(const AngleStudy& s) {
+    size_t width = 6;
+    for (const auto& m : s.methods) width = std::max(width, m.text.size());
+    std::printf("%zu directions, %d offsets, PSNR gain over noaa in dB\n%-*s %8s %16s %16s %9s %9s  %s\n",
+                s.degrees.size(), s.offsets, int(width), "method", "pooled", "least", "most", "mirrored", "turned",
+                "sub-samples");
+    for (size_t m = 0; m < s.methods.size(); m++) {
+        size_t least = 0, most = 0;
+        for (size_t k = 1; k < s.degrees.size(); k++) {
+            if (s.gainDb(m, k) < s.gainDb(m, least)) least = k;
+            if (s.gainDb(m, k) > s.gainDb(m, most)) most = k;
+        }
+        std::printf("%-*s %8.2f %8.2f at %4.0f %8.2f at %4.0f %9.3f %9.3f  %s\n", int(width), s.methods[m].text.c_str(),
+                    s.pooledGainDb(m), s.gainDb(m, least), s.degrees[least], s.gainDb(m, most), s.degrees[most],
+                    s.mirrorAsymmetryDb(m), s.turnAsymmetryDb(m),
+                    s.methods[m].subsamples.empty() ? "-" : s.methods[m].subsamples.c_str());
+    }
+    std::printf(
+        "mirrored, turned: largest difference of the gain between an edge and its mirror image or quarter turn\n");
+}
+
+void execute(Options& o) {
+    for (const auto& text : o.methods) o.study.methods.push_back(parseMethod(text));
+    AngleStudy study;
+    withThreads(o.work.threads, [&] { study = studyAngles(o.study, o.work.exec()); });
+    if (!o.out.empty()) {
+        const std::filesystem::path folder = o.out;
+        makeWritableFolder(folder);
+        writeText(folder / "angles.json", toJsonText(study));
+        writeText(folder / "angles.csv", toCsvText(study));
+        writeText(folder / "angles.svg", toSvgText(study));
+    }
+    if (o.json)
+        std::cout << toJsonText(study) << "\n";
+    else
+        printTable(study);
+    if (!o.json && !o.out.empty()) std::printf("results: %s\n", (std::filesystem::path(o.out) / "angles.json").c_str());
+}
+}  // namespace
+
+void addAngles(CLI::App& app, Context&) {
+    auto o = std::make_shared<Options>();
+    auto* c = app.add_subcommand("angles", "What methods gain on a straight edge, by its direction");
+    c->add_option("-m,--method", o->methods, "a method, `id` or `id:name=value`; repeat for more")
+        ->required()
+        ->allow_extra_args(false);
+    c->add_option("-o,--out", o->out,
+                  "folder for angles.json, angles.csv and angles.svg; `report` of that folder shows them");
+    c->add_option("--angles", o->study.angles, "number of directions, a multiple of 4")->check(CLI::Range(4, 3600));
+    c->add_option("--offsets", o->study.offsets, "sub-pixel offsets per direction")->check(CLI::Range(1, 256));
+    c->add_option("--size", o->study.sizePx, "width and height of a picture, px")->check(CLI::Range(16, 4096));
+    c->add_option("--frames", o->study.frames, "jittered frames for methods that accumulate")
+        ->check(CLI::Range(1, 1024));
+    c->add_option("--jitter", o->study.jitter, "jitter sequence of those frames (`synth --list`)");
+    c->add_flag("--json", o->json, "print angles.json instead of the table");
+    addWorkOptions(*c, o->work);
+    c->callback([o] { execute(*o); });
+}
+
+}  // namespace aa
