@@ -25,6 +25,7 @@
 #include "methods/raptor.h"
 #include "methods/t2msaa.h"
 #include "methods/asaa.h"
+#include "methods/fsr2n.h"
 
 namespace aa {
 
@@ -73,6 +74,7 @@ const std::vector<MethodDescriptor>& registry() {
         salviDescriptor(),
         karisDescriptor(),
         insideDescriptor(),
+        fsr2nDescriptor(),
     };
     return methods;
 }
