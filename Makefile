@@ -53,10 +53,11 @@ addon:
 	@mkdir -p build
 	@python3 blender_addon/make_zip.py build/aa_resolve.zip
 
-# Files generated from the registry of methods: the page of methods and the add-on's copy.
+# Generated: the page of methods and the add-on's copy of the registry, the table of precision and memory.
 docs: program
 	@build/aaresolve list --markdown > docs/methods.md
 	@build/aaresolve list --json > blender_addon/aa_resolve/methods.json
+	@build/aaresolve bench --family temporal --markdown --size 480x270 --frames 8 --repeats 1 --threads 1 > docs/precision.md
 
 # Resumable: what build/reproduce holds is kept.
 reproduce: program

@@ -10,16 +10,17 @@
 #include "cli/cli.h"
 #include "cli/runner.h"
 #include "image/error.h"
+#include "shot/patterns.h"
 #include "shot/synth.h"
 
 namespace aa {
 namespace {
 
 struct Options {
-    std::vector<std::string> methods;
+    std::vector<std::string> methods, families;
     std::string size = "1920x1080", shot, scene = "moving";
     int frames = 8, repeats = 3;
-    bool json = false;
+    bool json = false, markdown = false;
     WorkOptions work = {.threads = 1};
 };
 
@@ -33,43 +34,74 @@ struct Row {
 struct Frames {
     std::vector<Frame> jittered, centre;
     ShotInfo info;
+    std::string subsamples;  // pattern of the synthetic frames
+    double edgeShare = 0;
     const std::vector<Frame>& of(const MethodSpec& m) const {
         return m.method->sampling() == Sampling::jittered ? jittered : centre;
     }
 };
-Frames framesFor(const Options& o, const std::vector<MethodSpec>& methods, const Exec& exec) {
+Frames shotFrames(const Options& o, const std::vector<MethodSpec>& methods) {
     const PassSet wanted = passesOf(methods, Sampling::jittered), wantedOfCentre = passesOf(methods, Sampling::centre);
+    const ShotReader reader(o.shot);
     Frames r;
-    if (!o.shot.empty()) {
-        const ShotReader reader(o.shot);
-        r.info = shotInfo(reader.manifest());
-        const size_t count = std::min(size_t(o.frames), reader.manifest().frames.size());
-        for (size_t i = 0; i < count; i++) {
-            if (!wanted.empty()) r.jittered.push_back(reader.read(i, wanted));
-            if (wantedOfCentre.empty()) continue;
-            r.centre.push_back(reader.hasCentreFrames() ? reader.readCentre(i, wantedOfCentre)
-                                                        : reader.read(i, wantedOfCentre));
-        }
-    } else {
-        SynthOptions synth;
-        synth.scene = o.scene;
-        if (std::sscanf(o.size.c_str(), "%dx%d", &synth.width, &synth.height) != 2)
-            throw UsageError("--size: expected WIDTHxHEIGHT, found '" + o.size + "'");
-        synth.frames = o.frames;
-        synth.subsamples = "d3d8";
-        const SynthShot shot(synth);
-        synth.jitter = "none";
-        const SynthShot still(synth);
-        r.info = shotInfo(shot.manifest());
-        r.info.isStatic = true;  // so that accum is timed as well; no method's speed depends on it
-        for (size_t i = 0; i < size_t(o.frames); i++) {
-            if (!wanted.empty()) r.jittered.push_back(shot.frame(i));
-            if (!wantedOfCentre.empty()) r.centre.push_back(still.frame(i));
-        }
+    r.info = shotInfo(reader.manifest());
+    const size_t count = std::min(size_t(o.frames), reader.manifest().frames.size());
+    for (size_t i = 0; i < count; i++) {
+        if (!wanted.empty()) r.jittered.push_back(reader.read(i, wanted));
+        if (wantedOfCentre.empty()) continue;
+        r.centre.push_back(reader.hasCentreFrames() ? reader.readCentre(i, wantedOfCentre)
+                                                    : reader.read(i, wantedOfCentre));
     }
-    for (auto* frames : {&r.jittered, &r.centre})
-        for (auto& f : *frames) encode(f.colorLinear, {}, exec, f.colorEncoded);
     return r;
+}
+Frames synthFrames(const Options& o, const std::vector<MethodSpec>& methods, const std::string& pattern) {
+    const PassSet wanted = passesOf(methods, Sampling::jittered), wantedOfCentre = passesOf(methods, Sampling::centre);
+    SynthOptions synth;
+    synth.scene = o.scene;
+    if (std::sscanf(o.size.c_str(), "%dx%d", &synth.width, &synth.height) != 2)
+        throw UsageError("--size: expected WIDTHxHEIGHT, found '" + o.size + "'");
+    synth.frames = o.frames;
+    synth.subsamples = pattern;
+    synth.subsampleColor = !pattern.empty() && passesOf(methods).has(Pass::subsampleColor);
+    const SynthShot shot(synth);
+    synth.jitter = "none";
+    const SynthShot still(synth);
+    Frames r;
+    r.info = shotInfo(shot.manifest());
+    r.info.isStatic = true;  // so that accum is timed as well; no method's speed depends on it
+    r.subsamples = pattern;
+    for (size_t i = 0; i < size_t(o.frames); i++) {
+        if (!wanted.empty()) r.jittered.push_back(shot.frame(i));
+        if (!wantedOfCentre.empty()) r.centre.push_back(still.frame(i));
+    }
+    return r;
+}
+// The synthetic frames' sub-sample pattern that serves a method: the first that it accepts.
+std::string patternFor(const MethodSpec& m) {
+    if (!m.passes().has(Pass::subsamples) && !m.passes().has(Pass::subsampleColor)) return "";
+    std::string why;
+    for (const char* pattern : {"d3d8", "d3d4", "d3d2", "d3d16"}) try {
+            m.create({.width = 8,
+                      .height = 8,
+                      .jitterPeriod = 16,
+                      .isStatic = true,
+                      .frameCount = 16,
+                      .subSamplePositionsPx = patternPositionsPx(pattern)});
+            return pattern;
+        } catch (const std::runtime_error& e) {
+            why = e.what();
+        }
+    throw UsageError(why);
+}
+
+// Seconds of this thread's processor, which other programs on the machine cannot lengthen; with several threads only
+// the wall clock counts them all.
+double seconds(const Exec& exec) {
+    if (exec.parallel)
+        return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
 // Share of the pixels whose encoded luma differs by 0.1 or more (SMAA's threshold at HIGH) from the pixel to the left
@@ -90,33 +122,27 @@ double edgeShare(const std::vector<Frame>& frames) {
     return edges / std::max(pixels, 1.0);
 }
 
-// Seconds on one thread: of its processor time, which other programs on the machine do not lengthen. On several: of
-// wall time.
-double secondsNow(bool oneThread) {
-    if (!oneThread) return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-}
 // The first pass over the frames is not timed: it allocates, and the first touch of a page costs as much as a method.
-Row time(const MethodSpec& spec, const std::vector<Frame>& frames, const ShotInfo& info, const Exec& exec,
-         bool oneThread, int repeats, double share) {
+// Nor is a frame that drops the history: it costs less than the others.
+Row time(const MethodSpec& spec, const Frames& all, const Exec& exec, int repeats) {
     Row row{.text = spec.text};
-    const double pixels = double(info.width) * info.height;
+    const std::vector<Frame>& frames = all.of(spec);
+    const double pixels = double(all.info.width) * all.info.height;
     std::vector<double> ns;
-    const auto method = spec.create(info);
-    Rgb out(info.width, info.height);
+    const auto method = spec.create(all.info);
+    Rgb out(all.info.width, all.info.height);
     for (int r = 0; r <= repeats; r++)
-        for (const Frame& frame : frames) {
-            const double start = secondsNow(oneThread);
-            method->resolve(frame, exec, out);
-            if (r > 0) ns.push_back((secondsNow(oneThread) - start) * 1e9 / pixels);
+        for (size_t i = 0; i < frames.size(); i++) {
+            const double start = seconds(exec);
+            method->resolve(frames[i], exec, out);
+            const double took = seconds(exec) - start;
+            if (r > 0 && (i > 0 || !spec.method->temporal || frames.size() == 1)) ns.push_back(took * 1e9 / pixels);
         }
     row.stateBytes = method->stateBytes();
     std::sort(ns.begin(), ns.end());
     row.nsMedian = ns[ns.size() / 2];
     row.nsMin = ns.front();
-    row.nsPerEdgePixel = share > 0 ? row.nsMedian / share : NAN;
+    row.nsPerEdgePixel = all.edgeShare > 0 ? row.nsMedian / all.edgeShare : NAN;
     return row;
 }
 
@@ -142,35 +168,85 @@ void compareWithDouble(Row& row, const MethodSpec& spec, const std::vector<Frame
     row.rmsError = std::sqrt(sum / count);
 }
 
-void execute(const Options& o) {
+// In float planes of the image's size, the unit of the budget in DESIGN.md.
+double statePlanes(const Row& row, const ShotInfo& info) {
+    return double(row.stateBytes) / double(PlaneF(info.width, info.height).bytes());
+}
+void printHead(const Options& o, const Frames& f, const Exec& exec) {
+    if (o.json) return;
+    const size_t count = std::max(f.jittered.size(), f.centre.size());
+    if (o.markdown) {  // only what is the same on every machine
+        std::printf(
+            "# Precision and memory\n\nGenerated by `aaresolve bench --markdown` (`make docs`); do not edit. %zu "
+            "frames of "
+            "%dx%d: float lanes against the\ndouble form of the same text, largest and root-mean-square difference in "
+            "the "
+            "method's output space (scalar float equals the\nlanes bit by bit). State: everything that a method keeps "
+            "between frames, history and scratch, in float planes of the\npicture's size; an RGBA history of two "
+            "frames is "
+            "8.\n\n| method | state, planes | max error | rms error |\n|---|---:|---:|---:|\n",
+            count, f.info.width, f.info.height);
+        return;
+    }
+    std::printf(
+        "%s, %dx%d, %zu frames, %.1f %% edge pixels, %s, threads %d, %s\n%-32s %9s %9s %9s %9s %9s %7s %12s %12s\n",
+        (o.shot.empty() ? o.scene : o.shot).c_str(), f.info.width, f.info.height, count, 100 * f.edgeShare,
+        std::string(name(exec.isa)).c_str(), o.work.threads, exec.parallel ? "wall clock" : "processor time", "method",
+        "ns/px", "min", "ns/edge", "ms", "state MB", "planes", "max error", "rms error");
+}
+void printRow(const Options& o, const Row& row, const ShotInfo& info) {
+    if (o.json) return;
+    const double planes = statePlanes(row, info), ms = row.nsMedian * 1e-6 * info.width * info.height;
+    if (o.markdown)
+        std::printf("| `%s` | %.1f | %.2g | %.2g |\n", row.text.c_str(), planes, row.maxError, row.rmsError);
+    else
+        std::printf("%-32s %9.2f %9.2f %9.1f %9.3f %9.2f %7.1f %12.3g %12.3g\n", row.text.c_str(), row.nsMedian,
+                    row.nsMin, row.nsPerEdgePixel, ms, double(row.stateBytes) / (1 << 20), planes, row.maxError,
+                    row.rmsError);
+    std::fflush(stdout);
+}
+
+std::vector<MethodSpec> chosen(const Options& o) {
     std::vector<MethodSpec> specs;
     for (const auto& text : o.methods) specs.push_back(parseMethod(text));
+    for (const auto& family : o.families) {
+        const size_t before = specs.size();
+        for (const auto& m : registry())
+            if (m.family == family) specs.push_back(parseMethod(m.id));
+        if (specs.size() == before)
+            throw UsageError("--family: no method is of the family '" + family + "'; `aaresolve list` shows all");
+    }
+    if (specs.empty()) throw UsageError("bench: expected at least one -m METHOD or --family FAMILY, found none");
+    return specs;
+}
+
+void execute(const Options& o) {
+    const std::vector<MethodSpec> specs = chosen(o);
     const Exec exec = o.work.exec();
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
     withThreads(o.work.threads, [&] {
-        const Frames frames = framesFor(o, specs, exec);
-        const ShotInfo& info = frames.info;
-        const double share = edgeShare(frames.centre.empty() ? frames.jittered : frames.centre);
-        if (!o.json)
-            std::printf(
-                "%s, %dx%d, %zu frames, %.1f %% edge pixels, %s, threads %d\n%-32s %9s %9s %9s %9s %9s %12s %12s\n",
-                (o.shot.empty() ? o.scene : o.shot).c_str(), info.width, info.height,
-                std::max(frames.jittered.size(), frames.centre.size()), 100 * share,
-                std::string(name(exec.isa)).c_str(), o.work.threads, "method", "ns/px", "min", "ns/edge", "ms",
-                "state MB", "max error", "rms error");
-        for (const auto& spec : specs) {
-            Row row = time(spec, frames.of(spec), info, exec, o.work.threads == 1, o.repeats, share);
-            compareWithDouble(row, spec, frames.of(spec), info, exec);
-            const double ms = row.nsMedian * 1e-6 * info.width * info.height;
-            if (!o.json)
-                std::printf("%-32s %9.2f %9.2f %9.1f %9.3f %9.2f %12.3g %12.3g\n", row.text.c_str(), row.nsMedian,
-                            row.nsMin, row.nsPerEdgePixel, ms, double(row.stateBytes) / (1 << 20), row.maxError,
-                            row.rmsError);
+        // Frames with many sub-samples are large: one pattern's are in memory at a time.
+        std::optional<Frames> frames;
+        for (size_t k = 0; k < specs.size(); k++) {
+            const MethodSpec& spec = specs[k];
+            const std::string pattern = o.shot.empty() ? patternFor(spec) : "";
+            if (!frames || (o.shot.empty() && frames->subsamples != pattern)) {
+                frames.reset();
+                frames = o.shot.empty() ? synthFrames(o, specs, pattern) : shotFrames(o, specs);
+                for (auto* sampled : {&frames->jittered, &frames->centre})
+                    for (auto& f : *sampled) encode(f.colorLinear, {}, exec, f.colorEncoded);
+                frames->edgeShare = edgeShare(frames->centre.empty() ? frames->jittered : frames->centre);
+            }
+            const ShotInfo& info = frames->info;
+            if (k == 0) printHead(o, *frames, exec);
+            Row row = time(spec, *frames, exec, o.repeats);
+            compareWithDouble(row, spec, frames->of(spec), info, exec);
+            printRow(o, row, info);
             all.push_back({{"method", row.text},
                            {"nsPerPixel", row.nsMedian},
                            {"nsPerPixelMin", row.nsMin},
                            {"nsPerEdgePixel", row.nsPerEdgePixel},
-                           {"edgeShare", share},
+                           {"edgeShare", frames->edgeShare},
                            {"stateBytes", row.stateBytes},
                            {"maxError", row.maxError},
                            {"rmsError", row.rmsError}});
@@ -184,16 +260,17 @@ void execute(const Options& o) {
 void addBench(CLI::App& app, Context&) {
     auto o = std::make_shared<Options>();
     auto* c = app.add_subcommand("bench", "Speed and memory of methods, and their error against the double form");
-    c->add_option("-m,--method", o->methods, "methods to time, noaa first as the baseline")
-        ->required()
+    c->add_option("-m,--method", o->methods, "methods to time, noaa first as the baseline")->allow_extra_args(false);
+    c->add_option("--family", o->families, "time every method of a family: reference, spatial, geometry, temporal")
         ->allow_extra_args(false);
     c->add_option("--size", o->size, "size of the synthetic frames, px");
     c->add_option("--shot", o->shot, "time on this shot's frames instead of synthetic ones");
-    c->add_option("--scene", o->scene, "synthetic scene (`synth --list`); clutter has the edges of a rendered frame")
-        ->excludes("--shot");
+    c->add_option("--scene", o->scene, "synthetic scene (`synth --list`)")->excludes("--shot");
     c->add_option("--frames", o->frames, "frames in memory")->check(CLI::Range(1, 64));
     c->add_option("--repeats", o->repeats, "passes over the frames")->check(CLI::Range(1, 100));
     c->add_flag("--json", o->json, "as JSON");
+    c->add_flag("--markdown", o->markdown, "a table of memory and errors, the same on every machine")
+        ->excludes("--json");
     addWorkOptions(*c, o->work);
     c->callback([o] { execute(*o); });
 }

@@ -213,7 +213,7 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, Progress& pro
     // A sequence is also judged over time, along the motion where the shot knows it.
     const bool judgeTime = o.frames.size() > 1 && !passesOf(o.methods, Sampling::jittered).empty();
     if (judgeTime && !manifest.isStatic) wanted |= passesThatAreThere(temporalMetricPasses(), shot.offered());
-    TemporalScene scene(manifest.isStatic);
+    TemporalScene scene(manifest.isStatic, o.display);
     std::vector<TemporalJudge> judges(methods.size(), TemporalJudge(temporalWarmup(o.frames.size())));
     FrameStream stream(shot, o.frames, wanted, /*withTruth=*/true, wantedOfCentre);
     for (size_t i = 0; auto frame = stream.next(); i++) {

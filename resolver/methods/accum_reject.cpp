@@ -86,8 +86,9 @@ MethodDescriptor accumRejectDescriptor() {
         .passes = Pass::color | Pass::depth | Pass::motion,
         .temporal = true,
         .params = {choiceParam("depthTest", "window", {"window", "point", "off"},
-                               "previous depth compared: farthest of 3x3, interpolated point, none",
-                               "methods/06 B3; window is ours, against jittered silhouettes"),
+                               "previous depth compared: interpolated point, but farthest of 3x3 for a pixel at rest "
+                               "(window); the point alone; none",
+                               "methods/06 B3; window is ours: jitter moves silhouettes at rest"),
                    flagParam("bothSides", false, "reject nearer surfaces too, not only hidden ones", "methods/11 nr 19",
                              "depthTest=point"),
                    flagParam("objectIds", true, "reject where the previous 3x3 has no pixel of this object",

@@ -35,17 +35,21 @@ AA_INLINE void accumRejectPixel(const AccumRejectArgs& a, int x, int y) {
     const auto reject = [&](Mask<R> when, Rejection why) __attribute__((always_inline)) {
         reason = select(both(reason == zero, when), R(T(int(why))), reason);
     };
-    if (a.depthTest == DepthTest::window)
-        reject(disoccluded(expected, gather<R>(a.previousFarthest + o, nearest), false), Rejection::disoccluded);
-    if (a.depthTest == DepthTest::point)
-        reject(disoccluded(expected, fetch_depth(in.history + 4 * o, in.stride, q), a.bothSides),
-               Rejection::disoccluded);
+    const auto still = both(motion.x == zero, motion.y == zero);
+    if (a.depthTest != DepthTest::off) {
+        auto hidden = disoccluded(expected, fetch_depth(in.history + 4 * o, in.stride, q), a.bothSides);
+        // At rest the jitter alone moves a silhouette: no sample is lost to it. Behind a moving one the window would
+        // pass what it uncovers.
+        if (a.depthTest == DepthTest::window)
+            hidden = both(hidden, either(negate(still),
+                                         disoccluded(expected, gather<R>(a.previousFarthest + o, nearest), false)));
+        reject(hidden, Rejection::disoccluded);
+    }
     if (a.magnification) reject(magnified(in, o, q, 1.0f), Rejection::magnified);
     if (a.objectId) reject(id_lost<R>(a.objectId + o, a.previousId + o, in.stride, nearest), Rejection::otherObject);
     const auto valid = reason == zero;
 
     // accumulate
-    const auto still = both(motion.x == zero, motion.y == zero);
     const R nMax = select(still, R(T(a.nMaxStatic)), R(T(a.nMaxMoving)));
     R count = fetch_rgba<R>(a.residual + 4 * o, nearest).a;
     count = select(valid, min(count + one, nMax), one);

@@ -60,6 +60,28 @@ TEST(Asaa, OutputIsATentOfOnePixelRadius) {
     EXPECT_NEAR(m.out.c[0].at(14, 10), 0, 2e-3);
 }
 
+// methods/06 s.6.15: N = 1, c = 1, h = 0. At rest a = 1/2 -> 1/3. With a motion of (0.01, 0) in UV the limit is
+// 0.25 + 0.0099 / 2 = 0.25495, below a = 1/2. At N = 3 the mean's weight 1/4 is under the limit: it holds instead.
+TEST(T2msaa, WeightVectors) {
+    const auto frame = [](int n, float value, double motionPx) {
+        Frame f = temporalFrame(n, 100, 4, [value](int, int, int) { return value; }, {motionPx, 0});
+        f.subSamplePositionsPx = {{0.25, 0.25}, {-0.25, -0.25}};
+        f.subSamples.assign(2, {f.depthView, Rgb(100, 4), f.objectId, f.colorLinear});
+        return f;
+    };
+    for (const double motionPx : {0.0, 1.0}) {  // 1 px of 100: 0.01
+        RunningMethod m = running("t2msaa:space=linear", 100, 4);
+        m.resolve(frame(0, 0, 0), {}, {});
+        m.resolve(frame(1, 1, motionPx), {}, {});
+        EXPECT_NEAR(m.out.c[0].at(50, 2), 1.0 / 3, 1e-6) << motionPx;
+    }
+    RunningMethod m = running("t2msaa:space=linear", 100, 4);
+    for (int n = 0; n < 3; n++) m.resolve(frame(n, 0, 0), {}, {});  // N = 3
+    m.resolve(frame(3, 1, 1.0), {}, {});
+    const double mean = 0.25, limit = 0.25 + 3 * 0.0099 / 2, wc = limit / 2, wh = 1 - limit;
+    ASSERT_GT(limit, mean);
+    EXPECT_NEAR(m.out.c[0].at(50, 2), wc / (wc + wh), 1e-6);
+}
 TEST(T2msaa, StaticMeanOfBothFrames) {
     // Two sub-samples a frame; luma weights off by equal brightness: after the second frame the mean of all four.
     RunningMethod m = running("t2msaa:space=linear", 12, 8, true);

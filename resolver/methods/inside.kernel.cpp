@@ -17,7 +17,7 @@ AA_INLINE Box<R> four_tap_box(const At& at, R s, vec3<R>& mean) {
 }
 
 template <class R>
-AA_INLINE void insidePixel(const InsideArgs& a, int x, int y) {
+AA_INLINE void insidePixel(const InsideArgs& a, bool ycocg, bool unjitterWindow, int x, int y) {
     using T = Elem<R>;
     const TemporalIn& in = a.in;
     const R zero(T(0));
@@ -29,8 +29,8 @@ AA_INLINE void insidePixel(const InsideArgs& a, int x, int y) {
         return vec3<R>{unjittered(in.color.c[0] + n, in.stride), unjittered(in.color.c[1] + n, in.stride),
                        unjittered(in.color.c[2] + n, in.stride)};
     };
-    const auto space = [&](vec3<R> c) __attribute__((always_inline)) { return a.ycocg ? to_ycocg(c) : c; };
-    const auto luma = [&](vec3<R> c) __attribute__((always_inline)) { return a.ycocg ? c.x : luma709(c); };
+    const auto space = [&](vec3<R> c) __attribute__((always_inline)) { return ycocg ? to_ycocg(c) : c; };
+    const auto luma = [&](vec3<R> c) __attribute__((always_inline)) { return ycocg ? c.x : luma709(c); };
     const vec3<R> currentRgb = fetch(a.unjitterColor, 0, 0), current = space(currentRgb);
 
     const Motion<R> motion = a.unjitterReprojection ? Motion<R>{unjittered(in.motionXPx + o, in.stride),
@@ -39,8 +39,7 @@ AA_INLINE void insidePixel(const InsideArgs& a, int x, int y) {
     const Reprojection<R> q = reproject(in, motion, x, y);
     const vec3<R> past = fetch_history(in, x, y, q), history = space(past);
 
-    const Window<R> at([&](int i, int j)
-                           __attribute__((always_inline)) { return space(fetch(a.unjitterNeighbourhood, i, j)); });
+    const Window<R> at([&](int i, int j) __attribute__((always_inline)) { return space(fetch(unjitterWindow, i, j)); });
     Box<R> box;
     vec3<R> mean(zero);
     if (a.neighbourhood == InsideNeighbourhood::fourTapVarying) {
@@ -55,7 +54,7 @@ AA_INLINE void insidePixel(const InsideArgs& a, int x, int y) {
         box = box_of(window, kind);
         mean = mean_of(window, kind);
     }
-    if (a.ycocg) {
+    if (ycocg) {
         const R chroma = (box.hi.x - box.lo.x) * R(T(0.125));
         box.lo = {box.lo.x, current.y - chroma, current.z - chroma};
         box.hi = {box.hi.x, current.y + chroma, current.z + chroma};
@@ -64,19 +63,23 @@ AA_INLINE void insidePixel(const InsideArgs& a, int x, int y) {
     const vec3<R> held = constrain(box, a.clipTarget, mean, current, history);
     const R k = min(luminance_feedback(luma(current), luma(held), a.kMin, a.kMax), R(T(in.feedbackCeiling)));
     const vec3<R> mixed = blend(current, held, k);
-    const vec3<R> rgb = a.ycocg ? saturate(from_ycocg(mixed)) : mixed;
+    const vec3<R> rgb = ycocg ? saturate(from_ycocg(mixed)) : mixed;
 
     store_blend(in, x, y, sanitised(select(q.inside, rgb, currentRgb), load3<R>(in.color.c, o), past), R(T(1)));
     store_debug(in.debug, o, motion, q.inside, box, held - history, k);
 }
 template <class R>
 __attribute__((flatten)) void insideRows(const InsideArgs& a, int y0, int y1) {
-    for (int y = y0; y < y1; y++)
-        for (int x = 0; x < a.in.width; x += N<R>)
-            if (a.in.history)
-                insidePixel<R>(a, x, y);
-            else
-                store_first<R>(a.in, x, y);
+    const auto rows = [&](auto usual) __attribute__((always_inline)) {
+        const bool ycocg = !usual && a.ycocg, unjitterWindow = !usual && a.unjitterNeighbourhood;
+        for (int y = y0; y < y1; y++)
+            for (int x = 0; x < a.in.width; x += N<R>)
+                if (a.in.history)
+                    insidePixel<R>(a, ycocg, unjitterWindow, x, y);
+                else
+                    store_first<R>(a.in, x, y);
+    };
+    with_options<R>(rows, !a.ycocg && !a.unjitterNeighbourhood);
 }
 
 }  // namespace AA_ARCH

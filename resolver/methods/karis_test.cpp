@@ -63,6 +63,20 @@ TEST(Karis, FilterWeightsAreTheStatedOnes) {
     const double w1 = std::exp(-2.29), w2 = std::exp(-4.58);
     EXPECT_NEAR(m.out.c[0].at(4, 4), w1 / (1 + 4 * w1 + 4 * w2), 1e-6);
     EXPECT_NEAR(m.out.c[0].at(4, 3), w2 / (1 + 4 * w1 + 4 * w2), 1e-6);
+    // methods/06 s.6.15: at distances of 1/2, 1 and 1.414 px.
+    EXPECT_NEAR(std::exp(-2.29 * 0.25), 0.5641, 1e-4);
+    EXPECT_NEAR(w1, 0.10127, 1e-5);
+    EXPECT_NEAR(w2, 0.010255, 1e-5);
+    // Jitter moves the samples: with (1/2, 0) the pixel and its left neighbour lie equally far, at exp(-2.29 / 4).
+    RunningMethod moved = running("karis:toneWeight=none,alpha=1,antiFlicker=none", 9, 9);
+    moved.resolve(temporalFrame(0, 9, 9, [](int, int, int) { return 0.0f; }), {}, {});
+    Frame f = temporalFrame(1, 9, 9, [](int x, int y, int) { return x == 3 && y == 4 ? 1.0f : 0.0f; });
+    f.jitterPx = {0.5, 0};
+    moved.resolve(f, {}, {});
+    double all = 0;
+    for (int j = -1; j <= 1; j++)
+        for (int i = -1; i <= 1; i++) all += std::exp(-2.29 * ((i + 0.5) * (i + 0.5) + j * j));
+    EXPECT_NEAR(moved.out.c[0].at(4, 4), 0.5641 / all, 1e-4);
 }
 
 TEST(Raptor, PrintedWeightsIgnoreHistoryWhereColoursAgree) {

@@ -1,5 +1,8 @@
 #include "methods/master.h"
 
+#include <algorithm>
+#include <array>
+
 #include "methods/master_kernels.h"
 #include "methods/temporal.h"
 
@@ -30,13 +33,13 @@ class Master : public Method {
         if (sobel) {
             MasterLuminanceArgs l{view(frame.albedoLinear),
                                   view(frame.colorEncoded),
-                                  past_.c[0].row(0),
-                                  past_.c[1].row(0),
+                                  luminance_[0].row(0),
+                                  luminance_[1].row(0),
                                   in.stride,
                                   in.width,
                                   bt601};
             runKernel(kernels.luminance, exec, l, in.height);
-            for (size_t c = 0; c < 2; c++) past_.c[c].fillBorder();
+            for (auto& plane : luminance_) plane.fillBorder();
             const float depthScale = p.choice("sobelDepth") == "zfar" ? 1.0f / farDepth : 1.0f;
             MasterSobelArgs s{l.luminanceAlbedo, l.luminanceLit, in.depthView,  sobel_.row(0), in.stride,
                               in.width,          p.realf("wU"),  p.realf("wL"), depthScale,    farDepth};
@@ -48,23 +51,19 @@ class Master : public Method {
             MasterPastArgs t{in,
                              sobel_.row(0),
                              previousDepth_.row(0),
-                             filtered_.row(0),
-                             {past_.c[0].row(0), past_.c[1].row(0), past_.c[2].row(0)},
-                             pastDepth_.row(0),
+                             luminance_[0].row(0),
                              p.realf("kmin"),
                              p.realf("kmax"),
                              p.flag("sobelTemporal"),
                              p.choice("pastDepth") == "samePixel"};
             runKernel(kernels.past, exec, t, in.height);
-            filtered_.fillBorder();
-            filtered = &filtered_;
+            luminance_[0].fillBorder();
+            filtered = &luminance_[0];
         }
         MasterArgs m{};
         m.in = in;
         m.sobelFiltered = filtered->row(0);
         m.objectId = frame.objectId.row(0);
-        for (size_t c = 0; c < 3; c++) m.pastColor[c] = past_.c[c].row(0);
-        m.pastDepth = pastDepth_.row(0);
         m.expected = expectedDepth(frame);
         m.kMin = p.realf("kmin"), m.kMax = p.realf("kmax");
         m.farDepth = farDepth;
@@ -83,13 +82,14 @@ class Master : public Method {
             m.debugAliased = terms_[0].row(0), m.debugSobel = terms_[1].row(0), m.debugModel = terms_[2].row(0);
             m.debugDepth = terms_[3].row(0), m.debugDepthTemporal = terms_[4].row(0);
         }
+        m.keptDepth = previousDepth_.row(0);
         runKernel(kernels.resolve, exec, m, in.height);
         history_.end();
-        previousDepth_ = frame.depthView;
+        previousDepth_.fillBorder();
         if (sharpen_ != SharpenKernel::none) sharpenEncoded(history_.latest(), sharpen_, exec, out);
     }
     size_t stateBytes() const override {
-        return history_.bytes() + past_.bytes() + sobel_.bytes() + filtered_.bytes() + pastDepth_.bytes() +
+        return history_.bytes() + luminance_[0].bytes() + luminance_[1].bytes() + sobel_.bytes() +
                previousDepth_.bytes();
     }
     const PlaneF* rejection() const override { return debug_.rejection(); }
@@ -104,18 +104,24 @@ class Master : public Method {
   private:
     void fit(int width, int height) {
         if (sobel_.width() == width && sobel_.height() == height) return;
-        past_ = Rgb(width, height);
-        for (PlaneF* p : {&sobel_, &filtered_, &pastDepth_}) *p = PlaneF(width, height);
+        for (PlaneF* p : {&luminance_[0], &luminance_[1], &sobel_, &previousDepth_}) *p = PlaneF(width, height);
     }
     // The camera's far plane, or the largest depth that is not background.
     static float farDepthOf(const Frame& frame) {
+        static constexpr float kFar = 1e9f;
         if (frame.camera && frame.camera->farClip > 0) return float(frame.camera->farClip);
-        float farthest = 0;
+        // Several maxima side by side: one alone would wait for itself at every pixel.
+        constexpr size_t kLanes = 16;
+        std::array<float, kLanes> lanes{};
         for (int y = 0; y < frame.height; y++) {
-            const float* row = frame.depthView.row(y);
-            for (int x = 0; x < frame.width; x++)
-                if (row[x] < 1e9f) farthest = std::max(farthest, row[x]);
+            const float* row = frame.depthView.row(y);  // padded with its last value to a multiple of kLanes
+            for (int x = 0; x < frame.width; x += int(kLanes))
+                for (size_t i = 0; i < kLanes; i++) {
+                    const float z = row[x + int(i)];
+                    lanes[i] = z < kFar && z > lanes[i] ? z : lanes[i];
+                }
         }
+        const float farthest = *std::max_element(lanes.begin(), lanes.end());
         return farthest > 0 ? farthest : 1.0f;
     }
 
@@ -123,9 +129,8 @@ class Master : public Method {
     SharpenKernel sharpen_;
     ColourHistory history_;
     PlaneF previousDepth_;
-    // Scratch of one frame. past_ holds the luminances of pass S, then the reprojected history.
-    Rgb past_;
-    PlaneF sobel_, filtered_, pastDepth_;
+    // Scratch of one frame. The first luminance makes way for the filtered Sobel value once pass S has read it.
+    PlaneF luminance_[2], sobel_;
     TemporalDebugLayers debug_;
     std::vector<PlaneF> terms_;
 };

@@ -67,9 +67,8 @@ AA_INLINE void pastPixel(const MasterPastArgs& a, int x, int y) {
     nearest_offsets(q, in.stride, k);
     R depth = a.samePixelDepth ? load<R>(a.previousDepth + o) : gather<R>(a.previousDepth + o, k);
     depth = select(q.inside, depth, R(T(__builtin_nanf(""))));
-    store(depth, a.pastDepth + o);
     const vec3<R> color = in.filter == HistoryFilter::bilinear ? past.rgb : fetch_history(in, x, y, q);
-    store3(color, a.pastColor, o);
+    store_rgba(color, depth, in.next + 4 * o);
     if (in.debug.feedback) store(motion.x, in.debug.motionXPx + o), store(motion.y, in.debug.motionYPx + o);
 }
 template <class R>
@@ -79,14 +78,19 @@ __attribute__((flatten)) void pastRows(const MasterPastArgs& a, int y0, int y1) 
 }
 
 template <class R>
+AA_INLINE void keep_depth(const MasterArgs& a, long o) {
+    if (a.keptDepth) store(load<R>(a.in.depthView + o), a.keptDepth + o);
+}
+template <class R>
 AA_INLINE void masterPixel(const MasterArgs& a, int x, int y) {
     using T = Elem<R>;
     const TemporalIn& in = a.in;
     const R zero(T(0)), one(T(1)), farDepth = R(T(a.farDepth));
     const long o = long(y) * in.stride + x;
     const auto at = [&](int i, int j) __attribute__((always_inline)) { return o + long(j) * in.stride + i; };
-    const vec3<R> current = load3<R>(in.color.c, o), history = load3<R>(a.pastColor, o);
-    const R pastDepth = load<R>(a.pastDepth + o);
+    const Texel<R> waiting = load_rgba<R>(in.next + 4 * o);
+    const vec3<R> current = load3<R>(in.color.c, o), history = waiting.rgb;
+    const R pastDepth = waiting.a;
     const auto inside = pastDepth == pastDepth;
 
     // How aliased is this pixel?
@@ -145,11 +149,14 @@ AA_INLINE void masterPixel(const MasterArgs& a, int x, int y) {
 template <class R>
 __attribute__((flatten)) void masterRows(const MasterArgs& a, int y0, int y1) {
     for (int y = y0; y < y1; y++)
-        for (int x = 0; x < a.in.width; x += N<R>)
+        for (int x = 0; x < a.in.width; x += N<R>) {
+            const long o = long(y) * a.in.stride + x;
             if (a.in.history)
                 masterPixel<R>(a, x, y);
             else
-                store_first<R>(a.in, x, y, load<R>(a.sobelFiltered + long(y) * a.in.stride + x));
+                store_first<R>(a.in, x, y, load<R>(a.sobelFiltered + o));
+            keep_depth<R>(a, o);
+        }
 }
 
 }  // namespace AA_ARCH

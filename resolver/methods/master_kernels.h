@@ -17,22 +17,21 @@ struct MasterSobelArgs {
     int stride, width;
     float weightAlbedo, weightLit, depthScale, farDepth;
 };
-// Pass T: the Sobel value over time; what the main pass needs of the past is stored beside it.
+// Pass T: the Sobel value over time. What the main pass needs of the past waits for it in in.next, where the main pass
+// puts the blend: the history's colour, and in alpha the past depth, NaN where history is outside.
 struct MasterPastArgs {
     TemporalIn in;  // history alpha = filtered Sobel value of the previous frame
     const float* sobel;
     const float* previousDepth;
     float* sobelFiltered;
-    float* pastColor[3];
-    float* pastDepth;  // NaN where history is outside
     float kMin, kMax;
     bool temporalSobel, samePixelDepth;
 };
 struct MasterArgs {
-    TemporalIn in;
+    TemporalIn in;  // in.next as pass T left it
     const float* sobelFiltered;
     const uint32_t* objectId;
-    const float *pastColor[3], *pastDepth;
+    float* keptDepth;  // this frame's depth for the next one; null: not wanted
     ExpectedDepth expected;
     float kMin, kMax, farDepth, depthThreshold, minAlias;
     ClipTarget clipTarget;

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "methods/raptor_kernels.h"
+#include "methods/sharpen.h"
 #include "methods/temporal.h"
 
 namespace aa {
@@ -73,8 +74,7 @@ class Raptor : public Method {
         history_.end();
         if (sharpen > 0) {
             blend_.fillBorder();
-            const LumaSharpenArgs s{view(std::as_const(blend_)), view(out), blend_.stride(), frame.width, sharpen};
-            runKernel(raptorKernelsFor(exec.isa).sharpen, exec, s, frame.height);
+            sharpenLuma(blend_, sharpen, exec, out);
         }
     }
     size_t stateBytes() const override { return history_.bytes() + blend_.bytes(); }

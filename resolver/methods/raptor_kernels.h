@@ -12,15 +12,8 @@ struct RaptorArgs {
     bool temporalFiltering, inverseLuminance, ycocg;
     float gamma, kMin, kMax;
 };
-struct LumaSharpenArgs {
-    RgbIn in;
-    RgbOut out;
-    int stride, width;
-    float amount;
-};
 struct RaptorKernels {
     RowKernel<RaptorArgs> resolve;
-    RowKernel<LumaSharpenArgs> sharpen;
 };
 }  // namespace aa
 AA_KERNEL_TABLE(aa::RaptorKernels, raptorKernels)

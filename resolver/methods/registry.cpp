@@ -27,6 +27,7 @@
 #include "methods/t2msaa.h"
 #include "methods/taa_simplest.h"
 #include "methods/uncharted.h"
+#include "methods/fsr2n.h"
 
 namespace aa {
 
@@ -77,6 +78,7 @@ const std::vector<MethodDescriptor>& registry() {
         salviDescriptor(),
         karisDescriptor(),
         insideDescriptor(),
+        fsr2nDescriptor(),
     };
     return methods;
 }

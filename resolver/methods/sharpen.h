@@ -12,4 +12,7 @@ namespace aa {
 // `image` needs a filled border of one pixel. `out` is resized to it; its border is not filled.
 void sharpen(const Rgb& image, Sharpen filter, Space space, const Exec& exec, Rgb& out);
 
+// lumaPost by any amount, of linear light, as the Vulkan book has it: held to >= 0 alone. `out` is of image's size.
+void sharpenLuma(const Rgb& image, float amount, const Exec& exec, Rgb& out);
+
 }  // namespace aa

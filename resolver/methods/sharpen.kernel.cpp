@@ -21,7 +21,7 @@ AA_INLINE vec3<R> luma_sharpened(const SharpenArgs& a, long o, vec3<R> c) {
     R excess(T(0));  // 9 (L - mean)
     for (int j = -1; j <= 1; j++)
         for (int i = -1; i <= 1; i++) excess = excess + (luma - luma709(colour_at<R>(a, o + long(j) * a.stride + i)));
-    const R target = max(R(T(0)), luma + excess * R(T(1.0 / 9)));
+    const R target = max(R(T(0)), luma + excess * R(T(a.amount) / T(9)));
     return select(luma >= R(T(1e-6)), c * (target / max(R(T(1e-6)), luma)), c);
 }
 template <class R>
@@ -33,7 +33,7 @@ AA_INLINE vec3<R> within_neighbourhood(const SharpenArgs& a, long o, vec3<R> sha
             lowest = min(lowest, c);
             highest = max(highest, c);
         }
-    return max(vec3<R>(R(Elem<R>(0))), min(highest, max(lowest, sharp)));
+    return min(highest, max(lowest, sharp));
 }
 template <class R>
 __attribute__((flatten)) void sharpenRows(const SharpenArgs& a, int y0, int y1) {
@@ -43,8 +43,9 @@ __attribute__((flatten)) void sharpenRows(const SharpenArgs& a, int y0, int y1) 
             const long o = long(y) * a.stride + x;
             const vec3<R> c = colour_at<R>(a, o);
             vec3<R> sharp = a.filter == Sharpen::lumaPost ? luma_sharpened(a, o, c) : cross_sharpened(a, o, c, gain);
-            sharp = a.displayRange ? min(vec3<R>(R(Elem<R>(1))), max(vec3<R>(R(Elem<R>(0))), sharp))
-                                   : within_neighbourhood(a, o, sharp);
+            if (a.range == SharpenRange::neighbourhood) sharp = within_neighbourhood(a, o, sharp);
+            sharp = max(vec3<R>(R(Elem<R>(0))), sharp);
+            if (a.range == SharpenRange::display) sharp = min(vec3<R>(R(Elem<R>(1))), sharp);
             store(sharp.x, a.out.c[0] + o);
             store(sharp.y, a.out.c[1] + o);
             store(sharp.z, a.out.c[2] + o);

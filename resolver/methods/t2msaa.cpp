@@ -20,8 +20,7 @@ class T2msaa : public Method {
         const auto pair = samplesOf(frame, history_.framesSinceReset());
         for (size_t i = 0; i < 2; i++) {
             const SubSample& s = frame.subSamples[pair[i]];
-            encode(s.colorLinear, {}, exec, encoded_[i]);
-            args.sample[i] = view(std::as_const(p.choice("space") == "encoded" ? encoded_[i] : s.colorLinear));
+            args.sample[i] = view(s.colorLinear);
             args.sampleDepth[i] = s.depthView.row(0);
         }
         for (auto& c : count_)
@@ -29,6 +28,7 @@ class T2msaa : public Method {
         args.previousCount = count_[0].row(0);
         args.nextCount = count_[1].row(0);
         args.expected = expectedDepth(frame);
+        args.encoded = p.choice("space") == "encoded";
         args.fractionalVelocity = p.choice("velocity") == "fractional";
         args.bothSides = p.flag("bothSides");
         args.in.debug = debug_.begin(*this, frame.width, frame.height);
@@ -37,9 +37,7 @@ class T2msaa : public Method {
         std::swap(count_[0], count_[1]);
         count_[0].fillBorder();
     }
-    size_t stateBytes() const override {
-        return history_.bytes() + count_[0].bytes() + count_[1].bytes() + encoded_[0].bytes() + encoded_[1].bytes();
-    }
+    size_t stateBytes() const override { return history_.bytes() + count_[0].bytes() + count_[1].bytes(); }
     const PlaneF* rejection() const override { return debug_.rejection(); }
     std::vector<DebugLayer> debugLayers() const override {
         std::vector<DebugLayer> layers = debug_.layers();
@@ -69,7 +67,6 @@ class T2msaa : public Method {
     double offsetPx_;
     ColourHistory history_;
     PlaneF count_[2];
-    Rgb encoded_[2];
     TemporalDebugLayers debug_;
 };
 

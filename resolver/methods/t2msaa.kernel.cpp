@@ -1,3 +1,4 @@
+#include "kernels/srgb.h"
 #include "methods/rejection.kernel.h"
 #include "methods/t2msaa_kernels.h"
 
@@ -15,12 +16,20 @@ AA_INLINE R fraction(R v) {
 }
 
 template <class R>
+AA_INLINE vec3<R> sampleColour(const T2msaaArgs& a, int i, long o) {
+    const vec3<R> c = load3<R>(a.sample[i].c, o);
+    if (!a.encoded) return c;
+    const R zero(Elem<R>(0)), one(Elem<R>(1));  // max(0, NaN) == 0
+    return {srgb_encode(min(max(zero, c.x), one)), srgb_encode(min(max(zero, c.y), one)),
+            srgb_encode(min(max(zero, c.z), one))};
+}
+template <class R>
 AA_INLINE void t2msaaPixel(const T2msaaArgs& a, int x, int y) {
     using T = Elem<R>;
     const TemporalIn& in = a.in;
     const R zero(T(0)), one(T(1)), half(T(0.5));
     const long o = long(y) * in.stride + x;
-    const vec3<R> first = load3<R>(a.sample[0].c, o), current = first + (load3<R>(a.sample[1].c, o) - first) * half;
+    const vec3<R> first = sampleColour<R>(a, 0, o), current = first + (sampleColour<R>(a, 1, o) - first) * half;
     const R depth = (load<R>(a.sampleDepth[0] + o) + load<R>(a.sampleDepth[1] + o)) * half;
     if (!in.history) {
         store_blend(in, x, y, sanitised(current, current, vec3<R>(zero)), depth);

@@ -3,12 +3,13 @@
 
 namespace aa {
 struct T2msaaArgs {
-    TemporalIn in;  // color unused; history alpha = mean depth of the previous frame
-    RgbIn sample[2];
+    TemporalIn in;    // color unused; history alpha = mean depth of the previous frame
+    RgbIn sample[2];  // linear
     const float* sampleDepth[2];
     const float* previousCount;
     float* nextCount;
     ExpectedDepth expected;
+    bool encoded;  // blend display-encoded colours
     bool fractionalVelocity, bothSides;
 };
 struct T2msaaKernels {

@@ -5,7 +5,9 @@
 
 #include "image/error.h"
 #include "methods/temporal_test_frames.h"
+#include "metrics/temporal.h"
 #include "shot/patterns.h"
+#include "shot/synth.h"
 
 namespace aa {
 namespace {
@@ -69,8 +71,14 @@ TEST(Temporal, RepeatedBilinearReprojectionBlursByTheory) {
 
 const char* const kUnconstrained[] = {"taaSimplest", "taaSimplest:history=catmullRom",
                                       "taaSimplest:history=catmullRom5"};
-const char* const kEveryClip[] = {"unchartedNoSharpen", "unchartedNoSharpen:history=catmullRom",
-                                  "unchartedNoSharpen:clipTarget=mean", "unchartedNoSharpen:clipTarget=clamp"};
+const char* const kEveryClip[] = {"unchartedNoSharpen",
+                                  "unchartedNoSharpen:history=catmullRom",
+                                  "unchartedNoSharpen:clipTarget=mean",
+                                  "unchartedNoSharpen:clipTarget=clamp",
+                                  "inside:unjitterColor=off",
+                                  "master:sharpen=none",
+                                  "karis:filter=none,ycocg=off",
+                                  "accumReject"};
 
 TEST(Temporal, WholePixelMotionDoesNotBlur) {
     std::vector<std::string> methods(std::begin(kUnconstrained), std::end(kUnconstrained));
@@ -87,6 +95,60 @@ TEST(Temporal, WholePixelMotionDoesNotBlur) {
         }
     }
 }
+// The trail of an exponential history is k^age of what was there: the metric must read its half-life, ln 2 / -ln k.
+TEST(Temporal, GhostHalfLifeOfAnExponentialTrail) {
+    for (const double k : {0.5, 0.7, 0.9}) {
+        const int w = 96, h = 24;
+        RunningMethod m = running("taaSimplest:k=" + std::to_string(k), w, h);
+        TemporalScene scene(false);
+        TemporalJudge judge(0);
+        std::vector<Rgb> truths(20);
+        for (int n = 0; n < 20; n++) {
+            const auto covered = [&](int x) { return x >= 4 * n && x < 12 + 4 * n; };
+            Frame f =
+                temporalFrame(n, w, h, [&](int x, int, int c) { return covered(x) ? 0.8f : 0.1f + 0.1f * float(c); });
+            for (int y = 0; y < h; y++)
+                for (int x = 0; x < w; x++)
+                    if (covered(x)) f.depthView.at(x, y) = 2, f.objectId.at(x, y) = 2, f.motionXPx.at(x, y) = 4;
+            f.depthView.fillBorder(), f.objectId.fillBorder(), f.motionXPx.fillBorder();
+            m.resolve(f, {}, {});
+            // Judged in the space of the blend, where the trail is exponential.
+            truths[size_t(n)] = f.colorLinear;
+            scene.advance(f, &truths[size_t(n)], {});
+            m.out.fillBorder();
+            judge.add(scene, m.out, {});
+        }
+        const TemporalMetrics t = judge.result();
+        ASSERT_GE(t.ghostFraction.size(), 10u);
+        for (size_t a = 0; a < 10; a++)
+            EXPECT_NEAR(t.ghostFraction[a], std::pow(k, double(a) + 1), 1e-4) << k << " " << a;
+        EXPECT_NEAR(*t.ghostHalfLife, std::log(2.0) / -std::log(k), 1e-3) << k;
+    }
+}
+// On a synthetic shot only the trail's inside is one flat colour over another; at its rims the truth is anti-aliased.
+TEST(Temporal, GhostHalfLifeOnAnAnalyticShot) {
+    SynthOptions options;
+    options.scene = "moving", options.width = 160, options.height = 120, options.frames = 24, options.jitter = "none";
+    const SynthShot shot(options);
+    RunningMethod m = running("taaSimplest:k=0.8", 160, 120);
+    TemporalScene scene(false);
+    TemporalJudge judge(4);
+    std::array<Rgb, 2> truths;
+    for (size_t n = 0; n < 24; n++) {
+        const Frame f = shot.frame(n);
+        m.resolve(f, {}, {});
+        Rgb& truth = truths[n % 2];  // the scene looks at the truth of the frame before, too
+        truth = shot.truth(n).a;
+        truth.fillBorder();
+        m.out.fillBorder();
+        scene.advance(f, &truth, {});
+        judge.add(scene, m.out, {});
+    }
+    const TemporalMetrics t = judge.result();
+    ASSERT_TRUE(t.ghostHalfLife);
+    EXPECT_NEAR(*t.ghostHalfLife, std::log(2.0) / -std::log(0.8), 0.6);
+}
+
 TEST(Temporal, FlippedMotionSignIsSeen) {
     RunningMethod m = running("taaSimplest", 64, 40);
     const Picture still = noisePicture(3);

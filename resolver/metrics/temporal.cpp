@@ -56,6 +56,21 @@ std::array<double, n> sumRows(const Exec& exec, int height,
     return total;
 }
 
+// Frames in which `fraction`, by age, falls to half of its first value; between two ages it is taken as exponential.
+std::optional<double> halfLife(const std::vector<double>& fraction) {
+    if (fraction.empty()) return {};
+    const double half = fraction[0] / 2;
+    if (fraction[0] <= 0.01) return 0.0;  // nothing stale to begin with
+    for (size_t a = 1; a < fraction.size(); a++) {
+        const double before = fraction[a - 1], after = fraction[a];
+        if (after > half) continue;
+        const double share =
+            after > 0 ? std::log(before / half) / std::log(before / after) : (before - half) / (before - after);
+        return double(a - 1) + share;
+    }
+    return {};
+}
+
 }  // namespace
 
 void TemporalScene::advance(const Frame& frame, const Rgb* truthEncoded, const Exec& exec) {
@@ -69,7 +84,6 @@ void TemporalScene::advance(const Frame& frame, const Rgb* truthEncoded, const E
 
     std::swap(luma_, previousLuma_);
     if (truth_) luma(*truth_, exec, luma_);
-    if (!hadTruth) previousTruth_ = Rgb();
     if (frame.motionXPx.empty() || frame.depthView.empty() || frame.objectId.empty()) return;
     current_ = 1 - current_;
     for (auto& a : age_) fit(a, width_, height_);
@@ -92,7 +106,12 @@ void TemporalScene::advance(const Frame& frame, const Rgb* truthEncoded, const E
     }
     previousDepth_ = frame.depthView;
     previousId_ = frame.objectId;
-    if (truth_) previousTruth_ = *truth_;
+    if (truth_)
+        previousPicture_ = *truth_;
+    else if (!frame.colorLinear.empty())
+        encode(frame.colorLinear, display_, exec, previousPicture_);
+    else
+        previousPicture_ = Rgb();
 }
 
 // Was the surface seen at (x, y) visible one frame ago, and since when is it?
@@ -109,18 +128,21 @@ void TemporalScene::followSurfaces(const Frame& frame, const Exec& exec) {
                 const int nx = inside ? std::min(int(px), width_ - 1) : 0,
                           ny = inside ? std::min(int(py), height_ - 1) : 0;
                 const float z = frame.depthView.at(x, y);
-                bool seen = false;
-                for (int j = -1; inside && j <= 1; j++)
-                    for (int i = -1; i <= 1; i++)
-                        seen = seen || (previousId_.at(nx + i, ny + j) == frame.objectId.at(x, y) &&
-                                        std::fabs(previousDepth_.at(nx + i, ny + j) - z) <= kSameDepth * z);
+                const auto same = [&](int i, int j) {
+                    return previousId_.at(nx + i, ny + j) == frame.objectId.at(x, y) &&
+                           std::fabs(previousDepth_.at(nx + i, ny + j) - z) <= kSameDepth * z;
+                };
+                const bool seenHere = inside && same(0, 0);
+                bool seen = seenHere;
+                for (int n = 0; inside && !seen && n < 9; n++) seen = same(n % 3 - 1, n / 3 - 1);
                 uint32_t age = 0;
                 std::array<float, 3> stale{kNan, kNan, kNan};
                 if (inside && !seen) {
                     age = 1;
-                    if (!previousTruth_.empty())
-                        for (size_t c = 0; c < 3; c++) stale[c] = bilinear(previousTruth_.c[c], px, py);
-                } else if (seen && oldAge.at(nx, ny) > 0 && oldAge.at(nx, ny) < kGhostAges) {
+                    if (!previousPicture_.empty())
+                        for (size_t c = 0; c < 3; c++) stale[c] = bilinear(previousPicture_.c[c], px, py);
+                } else if (seenHere && oldAge.at(nx, ny) > 0 && oldAge.at(nx, ny) < kGhostAges) {
+                    // Only from its own surface: seen beside q alone, it takes no age from what covered it.
                     age = oldAge.at(nx, ny) + 1;
                     for (size_t c = 0; c < 3; c++) stale[c] = oldStale.c[c].at(nx, ny);
                 }
@@ -225,18 +247,9 @@ TemporalMetrics TemporalJudge::result() const {
     if (ghostPixels_ > 0) {
         m.ghostMse = ghostSquares_ / ghostPixels_;
         m.trailShare = trailPixels_ / trailFrames_;
-        for (size_t a = 0; a < kGhostAges; a++)
-            m.ghostFraction.push_back(norm_[a] > 0 ? std::clamp(along_[a] / norm_[a], -1.0, 1.0) : 0.0);
-        const double first = m.ghostFraction[0];
-        if (first <= 0.01) {
-            m.ghostHalfLife = 0;  // nothing stale to begin with
-        } else {
-            for (size_t a = 1; a < kGhostAges && !m.ghostHalfLife; a++)
-                if (norm_[a] > 0 && m.ghostFraction[a] <= first / 2) {
-                    const double before = m.ghostFraction[a - 1], after = m.ghostFraction[a];
-                    m.ghostHalfLife = double(a) + (before > after ? (before - first / 2) / (before - after) : 0.0);
-                }
-        }
+        for (size_t a = 0; a < kGhostAges && norm_[a] > 0; a++)
+            m.ghostFraction.push_back(std::clamp(along_[a] / norm_[a], -1.0, 1.0));
+        m.ghostHalfLife = halfLife(m.ghostFraction);
     }
     if (isStatic_ && psnr_.size() > 1) {
         const double last = psnr_.back();

@@ -8,8 +8,10 @@
 //                    motion beyond what the truth changes
 //  ghostMse          mean of (T-R)^2 over the trail: pixels whose surface came into view at most 16 frames ago
 //  ghostFraction[a]  share of the stale colour O left at age a: sum (T-R).(O-R) / sum |O-R|^2, clipped to [-1, 1];
-//                    O = the truth at q in the frame before the surface came into view, carried along the motion
-//  ghostHalfLife     age in frames at which ghostFraction has fallen to half of its value at age 1
+//                    O = the picture at q in the frame before the surface came into view (its truth, or its sampled
+//                    colours where that frame has none), carried along the motion
+//  ghostHalfLife     frames in which ghostFraction falls to half of its value at age 1: -1 / log2(k) for k^age;
+//                    0 when at age 1 no more than a hundredth is left, absent when the half is not reached
 //  tPsnr             PSNR of the MSE pooled over the frames after the warm-up
 //  convergence       frames after the start from which the PSNR stays within 0.5 dB of its last value (static shots)
 // A pixel is valid, and its surface was visible before, when q is inside the image and the previous 3x3 around q has a
@@ -19,6 +21,7 @@
 #include <array>
 #include <optional>
 
+#include "image/colour.h"
 #include "kernels/dispatch.h"
 #include "shot/frame.h"
 
@@ -33,7 +36,7 @@ inline PassSet temporalMetricPasses() { return Pass::motion | Pass::depth | Pass
 // What all methods are measured against, computed once per frame.
 class TemporalScene {
   public:
-    explicit TemporalScene(bool isStatic) : static_(isStatic) {}
+    explicit TemporalScene(bool isStatic, const DisplayChain& display = {}) : static_(isStatic), display_(display) {}
     // `truthEncoded` is null for a frame without ground truth. The frame needs the passes above unless it is static.
     void advance(const Frame& frame, const Rgb* truthEncoded, const Exec& exec);
 
@@ -54,10 +57,11 @@ class TemporalScene {
     void followSurfaces(const Frame& frame, const Exec& exec);
 
     bool static_;
+    DisplayChain display_;  // of the sampled colours that stand in for a missing truth
     int width_ = 0, height_ = 0, frames_ = -1;
     bool alongMotion_ = false, truthStep_ = false;
     const Rgb* truth_ = nullptr;
-    Rgb previousTruth_;
+    Rgb previousPicture_;  // encoded; its truth or, where there is none, its sampled colours
     PlaneF luma_, previousLuma_, qx_, qy_, step_, previousDepth_;
     PlaneU previousId_, age_[2];
     Rgb stale_[2];
@@ -71,7 +75,7 @@ struct TemporalMetrics {
     std::optional<double> ghostMse, ghostHalfLife;
     std::optional<double> ghostMseError, flickerError;  // half widths of 95 % intervals; filled by the caller
     std::optional<double> ghostExcess;  // ghostMse over that of noaa in the same run; filled by the caller
-    std::vector<double> ghostFraction;  // [a - 1] for age a; empty without a trail
+    std::vector<double> ghostFraction;  // [a - 1] for age a, up to the oldest that was seen; empty without a trail
     double trailShare = 0;              // mean share of pixels on the trail
     std::optional<int> convergence;
 };

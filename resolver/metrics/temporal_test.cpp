@@ -121,10 +121,51 @@ TEST(TemporalMetrics, GhostFractionAndHalfLife) {
         judge.add(scene, image, {});
     }
     const TemporalMetrics m = judge.result();
-    ASSERT_EQ(m.ghostFraction.size(), size_t(kGhostAges));
-    for (size_t a = 0; a < 5; a++) EXPECT_NEAR(m.ghostFraction[a], 0.8 * std::pow(g, double(a)), 1e-5) << a;
-    EXPECT_NEAR(*m.ghostHalfLife, 2.0, 1e-4);
+    ASSERT_EQ(m.ghostFraction.size(), 6u) << "seven frames: no pixel of the trail is older than six";
+    for (size_t a = 0; a < 6; a++) EXPECT_NEAR(m.ghostFraction[a], 0.8 * std::pow(g, double(a)), 1e-5) << a;
+    EXPECT_NEAR(*m.ghostHalfLife, 1.0, 1e-4);
     EXPECT_GT(*m.ghostMse, 0);
+}
+// A shot with truth on its last frame only: the stale colour is the sampled one, and the figure is there all the same.
+TEST(TemporalMetrics, GhostsAreFoundWhereOnlySomeFramesHaveTruth) {
+    const Bar bar;
+    TemporalScene scene(false);
+    TemporalJudge judge(0);
+    for (int n = 0; n < 7; n++) {
+        Frame f = bar.frame(n);
+        f.colorLinear = Rgb(kW, kH);
+        for (auto& p : f.colorLinear.c)
+            for (int y = 0; y < kH; y++)
+                for (int x = 0; x < kW; x++) p.at(x, y) = bar.covers(x, n) ? 0.60382734f : 0.03310477f;  // 0.8, 0.2
+        f.colorLinear.fillBorder();
+        const Rgb truth = bar.truth(n);
+        scene.advance(f, n == 6 ? &truth : nullptr, {});
+        Rgb image = truth;
+        for (auto& p : image.c)
+            for (int y = 0; y < kH; y++)
+                for (int x = 0; x < kW; x++)
+                    if (n > 0 && scene.age().at(x, y) > 0)
+                        p.at(x, y) += 0.6f * float(std::pow(0.7, double(scene.age().at(x, y))));
+        judge.add(scene, image, {});
+    }
+    const TemporalMetrics m = judge.result();
+    ASSERT_EQ(m.ghostFraction.size(), 6u);
+    EXPECT_NEAR(m.ghostFraction[0], 0.7, 1e-4);
+    EXPECT_NEAR(*m.ghostHalfLife, -1 / std::log2(0.7), 1e-3);
+}
+// Without a stale colour there is no figure, not a figure of 0.
+TEST(TemporalMetrics, NoHalfLifeWithoutAStaleColour) {
+    const Bar bar;
+    TemporalScene scene(false);
+    TemporalJudge judge(0);
+    for (int n = 0; n < 4; n++) {
+        const Rgb truth = bar.truth(n);
+        scene.advance(bar.frame(n), n == 3 ? &truth : nullptr, {});  // frames without colour
+        judge.add(scene, truth, {});
+    }
+    EXPECT_TRUE(judge.result().ghostMse);
+    EXPECT_TRUE(judge.result().ghostFraction.empty());
+    EXPECT_FALSE(judge.result().ghostHalfLife);
 }
 
 TEST(TemporalMetrics, FlickerAlongTheMotionIgnoresTheMotionAndSeesTheFlicker) {
