@@ -184,6 +184,8 @@ MethodDescriptor csaaDescriptor() {
         choiceParam("slotPositions", "first", {"first", "spread"},
                     "the first sub-samples of the pattern, or those farthest apart",
                     "methods/01 s.1.5; spread is ours")};
+    for (ParamSpec& p : d.params)
+        if (p.name == "filter") std::erase(p.choices, "quincunx");  // two sub-samples: nothing to leave out
     d.params.insert(d.params.begin(), slotParams.begin(), slotParams.end());
     d.create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
         requireSubSamples(shot.subSamplePositionsPx, "csaa", size_t(kMsaaMaxSamples));

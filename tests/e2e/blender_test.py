@@ -11,6 +11,46 @@ from pathlib import Path
 from program import PROGRAM, ROOT, ProgramTest, main, run_blender
 
 
+ALL_PASSES = "albedo,depth,normal,object,motion,subsamples,edges,segments"
+OBJ = """# as other programs write it: y up, quads, groups, two materials, texture coordinates
+mtllib model.mtl
+o fence
+v -2 0 0\nv 2 0 0\nv 2 2.4 0\nv -2 2.4 0
+vt 0 0\nvt 3 0\nvt 3 2\nvt 0 2
+vn 0 0 1
+usemtl leaves
+f 1/1/1 2/2/1 3/3/1 4/4/1
+o house
+v -1.5 0 -3\nv 1.5 0 -3\nv 1.5 2 -3\nv -1.5 2 -3\nv -1.5 0 -5\nv 1.5 0 -5\nv 1.5 2 -5\nv -1.5 2 -5\nv 0 3.2 -3\nv 0 3.2 -5
+usemtl bricks
+f 5/1 6/2 7/3 8/4
+f 6/1 10/2 11/3 7/4
+f 9/1 5/2 8/3 12/4
+f 8/1 7/2 13/3
+f 7/1 11/2 14/3 13/4
+f 12/1 8/2 13/3 14/4
+o ground
+v -12 0 6\nv 12 0 6\nv 12 0 -14\nv -12 0 -14
+f 15/1 16/2 17/3 18/4
+"""
+MTL = """newmtl leaves
+Kd 1 1 1\nmap_Kd leaves.png\nmap_d leaves.png
+newmtl bricks
+Kd 0.8 0.8 0.8\nmap_Kd bricks.png
+"""
+
+
+def write_png(path: Path, size: int, pixel) -> None:
+    """A square RGBA picture; ``pixel(x, y)`` gives four bytes."""
+    rows = b"".join(b"\0" + b"".join(bytes(pixel(x, y)) for x in range(size)) for y in range(size))
+
+    def chunk(kind: bytes, content: bytes) -> bytes:
+        return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
+
+    header = struct.pack(">IIBBBBB", size, size, 8, 6, 0, 0, 0)
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
 class FromBlender(ProgramTest):
     def blender(self, *arguments: object) -> None:
         done = run_blender(*arguments)
