@@ -21,6 +21,9 @@ AA_INLINE unsigned sign_bits(Lanes<double, kWide>::V v) { return unsigned(_mm_mo
 #endif
 using Wide = Lanes<double, kWide>;  // one register of doubles
 AA_INLINE Wide load_wide(const float* p) {
+#ifdef __AVX512DQ__
+    return Wide((Wide::V)_mm512_maskz_cvtps_pd(0xff, _mm256_loadu_ps(p)));  // GCC 12 converts in four steps by itself
+#endif
     typedef float Floats __attribute__((vector_size(kWide * 4)));
     Floats f;
     __builtin_memcpy(&f, p, sizeof f);
@@ -54,26 +57,27 @@ AA_INLINE R smooth(R t) {
     return t * t * (R(Elem<R>(3)) - R(Elem<R>(2)) * t);
 }
 
-// What the 3x3 neighbours say about 8 pixels of a row at a time: the edge's orientation, the luma differences to either
-// side of it, and how far the pixel stands out of the mean of its neighbours in units of the local range (0..1).
+// What the 3x3 neighbours say about a pixel of a row: the edge's orientation, the luma differences to either side of it,
+// and how far the pixel stands out of the mean of its neighbours in units of the local range (0..1).
+inline constexpr int kChunk = 64;  // pixels that are classified before any is filtered
 struct Classes {
-    unsigned horizontal;
-    alignas(64) double negativeStep[8], positiveStep[8], contrast[8];
+    uint64_t horizontal;
+    alignas(64) double negativeStep[kChunk], positiveStep[kChunk], contrast[kChunk];
 };
-AA_INLINE void classify(const float* l, long s, Classes& to) {
-    to.horizontal = 0;
+// Eight pixels from l on, into the classes from `at` on.
+AA_INLINE void classify(const float* l, long s, Classes& to, int at) {
     for (int i = 0; i < 8; i += kWide) {
         const float* const p = l + i;
         const Wide m = load_wide(p), n = load_wide(p - s), so = load_wide(p + s), w = load_wide(p - 1),
                    e = load_wide(p + 1), nw = load_wide(p - s - 1), ne = load_wide(p - s + 1),
                    sw = load_wide(p + s - 1), se = load_wide(p + s + 1);
         const auto horizontal = runs_horizontally(m, n, so, w, e, nw, ne, sw, se);
-        to.horizontal |= mask_of(horizontal) << i;
-        store(abs(select(horizontal, n, w) - m), to.negativeStep + i);
-        store(abs(select(horizontal, so, e) - m), to.positiveStep + i);
+        to.horizontal |= uint64_t(mask_of(horizontal)) << (at + i);
+        store(abs(select(horizontal, n, w) - m), to.negativeStep + at + i);
+        store(abs(select(horizontal, so, e) - m), to.positiveStep + at + i);
         const Wide range = max(max(max(n, so), max(w, e)), m) - min(min(min(n, so), min(w, e)), m);
         const Wide mean = (Wide(2.0) * (n + so + w + e) + nw + ne + sw + se) * Wide(1.0 / 12);
-        store(saturate(abs(mean - m) / range), to.contrast + i);
+        store(saturate(abs(mean - m) / range), to.contrast + at + i);
     }
 }
 
@@ -103,9 +107,9 @@ AA_INLINE unsigned ended(const EdgeLine& line, const float* own, const float* si
         bits = _mm512_cmp_pd_mask((__m512d)abs(e).v, (__m512d)threshold.v, _CMP_GE_OQ);
         below = _mm512_movepi64_mask((__m512i)e.v);  // the sign; e is never -0, being a difference
 #else
-        Mask<Wide> isHalf;
-        for (int k = 0; k < kWide; k++) isHalf[k] = -(long long)(half >> (i + k) & 1);
-        const Wide e = select(isHalf, far, near) + near - middle;
+        Mask<Wide> lane;
+        for (int k = 0; k < kWide; k++) lane[k] = 1ll << (i + k);
+        const Wide e = select((lane & (long long)half) != 0, far, near) + near - middle;
         bits |= mask_of(abs(e) >= threshold) << i;
         below |= mask_of(e < Wide(0.0)) << i;
 #endif
@@ -144,15 +148,19 @@ AA_INLINE LineEnds find_ends(const FxaaArgs& a, const EdgeLine& line) {
 // Shift that makes the pixel pair follow the line: nothing unless the nearer end bends toward this pixel.
 AA_INLINE double edge_shift(const LineEnds& ends, bool pixelBelowMiddle) {
     const bool nearNegative = ends.negativeHalfPx < ends.positiveHalfPx;
-    const bool bends = (nearNegative ? ends.negativeBelow : ends.positiveBelow) != pixelBelowMiddle;
-    const int nearest = nearNegative ? ends.negativeHalfPx : ends.positiveHalfPx;
-    return bends ? 0.5 - double(nearest) / double(ends.negativeHalfPx + ends.positiveHalfPx) : 0.0;
+    const bool bends = ((int(nearNegative) & int(ends.negativeBelow)) | (int(!nearNegative) & int(ends.positiveBelow))) !=
+                       int(pixelBelowMiddle);
+    const int nearest = ends.negativeHalfPx < ends.positiveHalfPx ? ends.negativeHalfPx : ends.positiveHalfPx;
+    return double(bends) * (0.5 - double(nearest) / double(ends.negativeHalfPx + ends.positiveHalfPx));
 }
 AA_INLINE void write_shifted(const FxaaArgs& a, long o, long across, double shiftPx) {
-    for (int c = 0; c < 3; c++) {
-        const double own = a.in.c[c][o], side = a.in.c[c][o + across];
-        a.out.c[c][o] = float(shiftPx > 0 ? own + (side - own) * shiftPx : own);
-    }
+    using Channels = Lanes<double, 4>;  // without branches: nobody can foretell whether a pixel shifts
+    const auto channels = [&](long at) __attribute__((always_inline)) {
+        return Channels(Channels::V{a.in.c[0][at], a.in.c[1][at], a.in.c[2][at], 0});
+    };
+    const Channels own = channels(o), shift(shiftPx), zero(0.0);
+    const Channels shifted = own + select(shift > zero, (channels(o + across) - own) * shift, zero);
+    for (int c = 0; c < 3; c++) a.out.c[c][o] = float(shifted.v[c]);
 }
 AA_INLINE void write_debug(const FxaaArgs& a, long o, bool horizontal, const LineEnds& ends, double shiftPx) {
     if (!a.orientation) return;
@@ -186,18 +194,24 @@ AA_INLINE void for_edge_pixels(const FxaaArgs& a, int y0, int y1, const Pixel& p
         for (int x = 0; x < a.width; x += 8)
             for (unsigned bits = copy_and_mark<R>(a, x, y); bits; bits &= bits - 1) pixel(x + __builtin_ctz(bits), y);
 }
-// The form for searches by windows: pixel(x, y, i, classes) gets the classes of its group, of which it is the i-th.
+// The form for searches by windows: pixel(x, y, i, classes) gets the classes of its chunk, of which it is the i-th.
 template <class R, class Pixel>
 AA_INLINE void for_classified_pixels(const FxaaArgs& a, int y0, int y1, const Pixel& pixel) {
     Classes classes;
     for (int y = y0; y < y1; y++)
-        for (int x = 0; x < a.width; x += 8) {
-            unsigned bits = copy_and_mark<R>(a, x, y);
-            if (!bits) continue;
-            classify(a.luma + long(y) * a.lumaStride + x, a.lumaStride, classes);
-            for (; bits; bits &= bits - 1) {
-                const int i = __builtin_ctz(bits);
-                pixel(x + i, y, i, classes);
+        for (int x0 = 0; x0 < a.width; x0 += kChunk) {
+            const int end = a.width - x0 < kChunk ? a.width - x0 : kChunk;
+            uint64_t marked = 0;
+            classes.horizontal = 0;
+            for (int i = 0; i < end; i += 8) {
+                const unsigned bits = copy_and_mark<R>(a, x0 + i, y);
+                if (!bits) continue;
+                marked |= uint64_t(bits) << i;
+                classify(a.luma + long(y) * a.lumaStride + x0 + i, a.lumaStride, classes, i);
+            }
+            for (; marked; marked &= marked - 1) {
+                const int i = __builtin_ctzll(marked);
+                pixel(x0 + i, y, i, classes);
             }
         }
 }

@@ -141,8 +141,8 @@ void Smaa::blend(const Rgb& in, Rgb& out, const PlaneF* const motion[2], PlaneF*
     args.width = width_;
     args.height = height_;
     const int blocks = (height_ + kSmaaBlockRows - 1) / kSmaaBlockRows;
-    args.scratchSize = 3 * (2 * width_ + 2);
-    args.diagonalsSize = 2 * (width_ / 8 + 1);
+    args.scratchSize = 6 * (width_ + 16);        // rows are read a few pixels past their end
+    args.diagonalsSize = 2 * (width_ / 8 + 16);  // and bits by words
     scratch_.resize(size_t(args.scratchSize) * size_t(blocks));
     diagonals_.resize(size_t(args.diagonalsSize) * size_t(blocks));
     args.scratch = scratch_.data();

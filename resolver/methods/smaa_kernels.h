@@ -47,7 +47,7 @@ struct SmaaBlendArgs {
     const float* in[kSmaaChannels];
     float* out[kSmaaChannels];
     int channels;
-    float* scratch;                   // per block: weights of two rows of top edges and of one row of left edges
+    float* scratch;                   // per block: weights of two rows of top edges and of one row of left edges, own and opposite
     uint8_t* diagonals;               // per block: bits of the pixels of two rows that the diagonal pass has handled
     uint8_t* isDiagonal;              // debug: one byte per pixel; null when not wanted
     long scratchSize, diagonalsSize;  // per block

@@ -85,27 +85,36 @@ AA_INLINE Pair<T> diagonal_lookup(const float* table, bool h1, bool v1, bool fou
     const float* const p = table + 2 * (((c1 * 4 + c2) * kDiagonals + d1) * kDiagonals + d2);
     return {T(p[0]), T(p[1])};
 }
+// A diagonal is longer than 2 px, so one of its arms passes its first pixel: where the bits of a row's neighbours allow
+// that, for the pixels from x on. Bottom left to top right, and top left to bottom right.
+struct DiagonalCandidates {
+    uint64_t rising, falling;
+    AA_INLINE DiagonalCandidates(const SmaaBlendArgs& a, int x, int y) {
+        const uint8_t *top = a.top.along + long(y) * a.top.stride, *left = a.top.cross + long(y) * a.top.stride;
+        const uint8_t *topAbove = top - a.top.stride, *leftAbove = left - a.top.stride, *topBelow = top + a.top.stride,
+                      *leftBelow = left + a.top.stride;
+        rising = (bits_from(topAbove, x + 1) & bits_from(leftAbove, x + 1)) |
+                 (bits_from(left, x) & bits_from(topBelow, x - 1) & bits_from(leftBelow, x - 1));
+        falling = (bits_from(topAbove, x - 1) & bits_from(leftAbove, x)) |
+                  (bits_from(left, x + 1) & bits_from(topBelow, x + 1) & bits_from(leftBelow, x + 2));
+    }
+};
 template <class T>
 AA_INLINE Pair<T> diagonal_weights(const SmaaBlendArgs& a, int x, int y) {
     const EdgesAt e{a};
     Pair<T> sum{T(0), T(0)};
-    // A diagonal is longer than 2 px, so one of its arms passes its first pixel: nine bits tell most pixels apart.
-    const uint8_t *top = a.top.along + long(y) * a.top.stride, *left = a.top.cross + long(y) * a.top.stride;
-    const uint64_t topAbove = bits_from(top - a.top.stride, x - 1), topBelow = bits_from(top + a.top.stride, x - 1);
-    const uint64_t leftAbove = bits_from(left - a.top.stride, x - 1), leftOwn = bits_from(left, x - 1),
-                   leftBelow = bits_from(left + a.top.stride, x - 1);
-    if (((topAbove & leftAbove) >> 2 | (leftOwn >> 1 & topBelow & leftBelow)) & 1) {  // bottom left to top right
-        const DiagonalEnd d1 = leftOwn >> 1 & 1 ? diagonal_arm(e, x, y, -1, 1, 0, true) : DiagonalEnd{0, true};
+    const DiagonalCandidates candidates(a, x, y);
+    if (candidates.rising & 1) {
+        const DiagonalEnd d1 = e.left(x, y) ? diagonal_arm(e, x, y, -1, 1, 0, true) : DiagonalEnd{0, true};
         const DiagonalEnd d2 = diagonal_arm(e, x, y, 1, -1, 0, false);
         const int n = d1.distance, m = d2.distance;
         if (n + m > 2)
             sum = diagonal_lookup<T>(a.diagonalTable[0], e.top(x - n - 1, y + n), e.left(x - n, y + n), d1.found,
                                      e.top(x + m + 1, y - m), e.left(x + m + 1, y - m - 1), d2.found, n, m);
     }
-    // From top left to bottom right: the same shape mirrored, so that own and opposite change places.
-    if (((topAbove & leftAbove >> 1) | (leftOwn >> 2 & topBelow >> 2 & leftBelow >> 3)) & 1) {
+    if (candidates.falling & 1) {  // the same shape mirrored, so that own and opposite change places
         const DiagonalEnd d1 = diagonal_arm(e, x, y, -1, -1, 1, false);
-        const DiagonalEnd d2 = leftOwn >> 2 & 1 ? diagonal_arm(e, x, y, 1, 1, 1, true) : DiagonalEnd{0, true};
+        const DiagonalEnd d2 = e.left(x + 1, y) ? diagonal_arm(e, x, y, 1, 1, 1, true) : DiagonalEnd{0, true};
         const int n = d1.distance, m = d2.distance;
         if (n + m > 2) {
             const Pair<T> w =
@@ -125,18 +134,29 @@ AA_INLINE unsigned crossing_bits(const SmaaAxis& axis, int p, int q) {
     return unsigned(bits_from(axis.crossTransposed + long(row) * axis.crossTransposedStride, q - 2)) & 15u;
 }
 AA_INLINE int crossing_code(unsigned bits) { return (bits & 2 ? 1 : 0) + (bits & 4 ? 3 : 0); }
-// Crossing edges make the line turn: a sharp corner keeps part of its shape.
+// Crossing edges make the line turn: a sharp corner keeps part of its shape. The factors of both weights for every
+// combination of nearer end (left, right, both alike) and crossing edges beyond the line (rows -2 and +1, either end).
 template <class T>
-AA_INLINE Pair<T> rounded_corners(const SmaaBlendArgs& a, Pair<T> w, unsigned leftBits, unsigned rightBits, int leftPx,
-                                  int rightPx) {
-    const T reduction = T(1) - T(a.cornerRounding), share = leftPx == rightPx ? reduction * T(0.5) : reduction;
-    const T left = leftPx <= rightPx ? share : T(0), right = rightPx <= leftPx ? share : T(0);
-    auto factor = [&](unsigned row) __attribute__((always_inline)) {
-        const T l = leftBits & row ? left : T(0), r = rightBits & row ? right : T(0);
-        return max(T(0), T(1) - l - r);
-    };
-    return {w.own * factor(8), w.opposite * factor(1)};
-}
+struct Corners {
+    Pair<T> factor[3 * 16];
+    AA_INLINE explicit Corners(float cornerRounding) {
+        const T reduction = cornerRounding < 0 ? T(0) : T(1) - T(cornerRounding);  // negative: off
+        for (int nearer = 0; nearer < 3; nearer++)
+            for (int bits = 0; bits < 16; bits++) {
+                const T share = nearer == 2 ? reduction * T(0.5) : reduction;
+                const T left = nearer != 1 ? share : T(0), right = nearer != 0 ? share : T(0);
+                auto at = [&](int leftBit, int rightBit) __attribute__((always_inline)) {
+                    return max(T(0), T(1) - (bits & leftBit ? left : T(0)) - (bits & rightBit ? right : T(0)));
+                };
+                factor[nearer * 16 + bits] = {at(2, 8), at(1, 4)};
+            }
+    }
+    AA_INLINE Pair<T> of(unsigned leftBits, unsigned rightBits, int leftPx, int rightPx) const {
+        const int nearer = int(leftPx > rightPx) + 2 * int(leftPx == rightPx);
+        const unsigned bits = (leftBits & 1) | (leftBits >> 2 & 2) | (rightBits & 1) << 2 | (rightBits & 8);
+        return factor[nearer * 16 + int(bits)];
+    }
+};
 template <class T>
 AA_INLINE Pair<T> stored(const SmaaBlendArgs& a, Pair<T> w) {
     if (a.unorm8) w = {floor(w.own * T(255) + T(0.5)) / T(255), floor(w.opposite * T(255) + T(0.5)) / T(255)};
@@ -144,7 +164,8 @@ AA_INLINE Pair<T> stored(const SmaaBlendArgs& a, Pair<T> w) {
 }
 // The edge at position p of line q; `pixel` is its index in the debug planes, negative where another block keeps it.
 template <class T>
-AA_INLINE Pair<T> line_weights(const SmaaBlendArgs& a, const SmaaAxis& axis, int p, int q, long pixel) {
+AA_INLINE Pair<T> line_weights(const SmaaBlendArgs& a, const SmaaAxis& axis, const Corners<T>& corners, int p, int q,
+                               long pixel) {
     const int reach = 2 * a.searchSteps;
     const uint8_t *along = axis.along + long(q) * axis.stride, *cross = axis.cross + long(q) * axis.stride;
     const int leftPx = run_down(along, cross, cross - axis.stride, p, reach - 1);
@@ -161,7 +182,8 @@ AA_INLINE Pair<T> line_weights(const SmaaBlendArgs& a, const SmaaAxis& axis, int
         w = ortho_area<T>(crossing_code(leftBits), crossing_code(rightBits), leftPx, rightPx, T(axis.offset));
     }
     w = {min(w.own, T(1)), min(w.opposite, T(1))};  // samples beyond their pixel (jitter + position) lift lines over it
-    if (a.cornerRounding >= 0) w = rounded_corners(a, w, leftBits, rightBits, leftPx, rightPx);
+    const Pair<T> rounding = corners.of(leftBits, rightBits, leftPx, rightPx);
+    w = {w.own * rounding.own, w.opposite * rounding.opposite};
     if (axis.lengths && pixel >= 0) {
         axis.lengths[2 * pixel] = float(leftPx);
         axis.lengths[2 * pixel + 1] = float(rightPx);
@@ -176,98 +198,113 @@ AA_INLINE void keep(const SmaaAxis& axis, long pixel, float own, float opposite)
 
 // ---- rows
 
-// Weights (own, opposite) of the row's top edges; sets the bits of the pixels that a diagonal took. `own`: the row lies
-// in the block, and is not the one after it.
+// The blending weights of a row's edges, 0 where there is none.
+struct RowWeights {
+    float *own, *opposite;
+    AA_INLINE void clear(int width) {
+        __builtin_memset(own, 0, size_t(width) * sizeof(float));
+        __builtin_memset(opposite, 0, size_t(width) * sizeof(float));
+    }
+    template <class T>
+    AA_INLINE void set(int x, Pair<T> w, const SmaaAxis& debug, long pixel) {
+        own[x] = float(w.own), opposite[x] = float(w.opposite);
+        keep(debug, pixel, own[x], opposite[x]);
+    }
+};
+// Of the row's top edges; sets the bits of the pixels that a diagonal took. `own`: the row lies in the block, and is not
+// the one after it.
 template <class T>
-AA_INLINE void top_weights(const SmaaBlendArgs& a, int y, bool own, float* weights, uint8_t* diagonals) {
-    __builtin_memset(diagonals, 0, size_t(a.width / 8 + 1));
+AA_INLINE void top_weights(const SmaaBlendArgs& a, const Corners<T>& corners, int y, bool own, RowWeights weights,
+                           uint8_t* diagonals) {
     const uint8_t* const top = a.top.along + long(y) * a.top.stride;
-    for_each_bit(
-        a.width, [&](int x) { return bits_from(top, x); },
-        [&](int x) __attribute__((always_inline)) {
-            Pair<T> w{T(0), T(0)};
-            if (a.diagonalSteps > 0) w = diagonal_weights<T>(a, x, y);
-            const long pixel = own ? long(y) * a.width + x : -1;
-            if (w.own + w.opposite > T(0)) {
+    const auto pixel = [&](int x) { return own ? long(y) * a.width + x : -1; };
+    __builtin_memset(diagonals, 0, size_t(a.width / 8 + 9));
+    weights.clear(a.width);
+    if (a.diagonalSteps > 0)
+        for_each_bit(
+            a.width,
+            [&](int x) {
+                const DiagonalCandidates candidates(a, x, y);
+                return bits_from(top, x) & (candidates.rising | candidates.falling);
+            },
+            [&](int x) __attribute__((always_inline)) {
+                const Pair<T> w = diagonal_weights<T>(a, x, y);
+                if (!(w.own + w.opposite > T(0))) return;
                 diagonals[x >> 3] = uint8_t(diagonals[x >> 3] | 1 << (x & 7));
-                if (a.isDiagonal && own) a.isDiagonal[pixel] = 1;
-                w = stored(a, w);
-            } else {
-                w = line_weights<T>(a, a.top, x, y, pixel);
-            }
-            weights[2 * x] = float(w.own);
-            weights[2 * x + 1] = float(w.opposite);
-            keep(a.top, pixel, weights[2 * x], weights[2 * x + 1]);
+                if (a.isDiagonal && own) a.isDiagonal[pixel(x)] = 1;
+                weights.set(x, stored(a, w), a.top, pixel(x));
+            });
+    for_each_bit(
+        a.width, [&](int x) { return bits_from(top, x) & ~bits_from(diagonals, x); },
+        [&](int x) __attribute__((always_inline)) {
+            weights.set(x, line_weights<T>(a, a.top, corners, x, y, pixel(x)), a.top, pixel(x));
         });
 }
 template <class T>
-AA_INLINE void left_weights(const SmaaBlendArgs& a, int y, float* weights, const uint8_t* diagonals) {
+AA_INLINE void left_weights(const SmaaBlendArgs& a, const Corners<T>& corners, int y, RowWeights weights,
+                            const uint8_t* diagonals) {
     const uint8_t* const left = a.top.cross + long(y) * a.top.stride;
+    weights.clear(a.width);
     for_each_bit(
-        a.width, [&](int x) { return bits_from(left, x); },
+        a.width, [&](int x) { return bits_from(left, x) & ~bits_from(diagonals, x); },
         [&](int x) __attribute__((always_inline)) {
             const long pixel = long(y) * a.width + x;
-            Pair<T> w{T(0), T(0)};
-            if (!bit_at(diagonals, x)) w = line_weights<T>(a, a.left, y, x, pixel);
-            weights[2 * x] = float(w.own);
-            weights[2 * x + 1] = float(w.opposite);
-            keep(a.left, pixel, weights[2 * x], weights[2 * x + 1]);
+            weights.set(x, line_weights<T>(a, a.left, corners, y, x, pixel), a.left, pixel);
         });
-    weights[2 * a.width] = weights[2 * a.width - 2];  // the sampler clamps
-    weights[2 * a.width + 1] = weights[2 * a.width - 1];
+    weights.opposite[a.width] = weights.opposite[a.width - 1];  // the sampler clamps
 }
-template <class T>
-AA_INLINE void blend_pixel(const SmaaBlendArgs& a, long o, T right, T left, T bottom, T top) {
-    if (right + left + bottom + top < T(1e-5)) return;
+// N<R> pixels with the weights of their four borders.
+template <class R>
+AA_INLINE void blend_pixels(const SmaaBlendArgs& a, long o, R right, R left, R bottom, R top) {
+    using T = Elem<R>;
+    const auto active = right + left + bottom + top >= R(T(1e-5));
     // Symmetric corners weigh both axes alike; they count as vertical in every precision, as equal 8-bit weights do.
-    const bool horizontal = max(right, left) > max(bottom, top) * T(1 + 1e-5);
-    const long step = horizontal ? 1 : a.stride;
-    const T forward = horizontal ? right : bottom, backward = horizontal ? left : top;
-    const T total = forward + backward, f = forward * forward / total, b = backward * backward / total;
+    const auto horizontal = max(right, left) > max(bottom, top) * R(T(1 + 1e-5));
+    const R forward = select(horizontal, right, bottom), backward = select(horizontal, left, top);
+    const R total = select(active, forward + backward, R(T(1)));
+    const R f = forward * forward / total, b = backward * backward / total;
     for (int c = 0; c < a.channels; c++) {
         const float* const p = a.in[c] + o;
-        const T own = p[0];
-        a.out[c][o] = float(own + f * (T(p[step]) - own) + b * (T(p[-step]) - own));
+        const R own = load<R>(p);
+        const R next = select(horizontal, load<R>(p + 1), load<R>(p + a.stride)),
+                previous = select(horizontal, load<R>(p - 1), load<R>(p - a.stride));
+        store(select(active, own + f * (next - own) + b * (previous - own), own), a.out[c] + o);
     }
 }
-template <class T>
-AA_INLINE void blend_row(const SmaaBlendArgs& a, int y, const float* top, const float* below, const float* left) {
+template <class R>
+AA_INLINE void blend_row(const SmaaBlendArgs& a, int y, RowWeights top, RowWeights below, RowWeights left) {
     const uint8_t *tops = a.top.along + long(y) * a.top.stride, *belows = tops + a.top.stride,
                   *lefts = a.top.cross + long(y) * a.top.stride;
-    auto weight = [](const uint8_t* bits, int x, float w) __attribute__((always_inline)) {
-        return bit_at(bits, x) ? T(w) : T(0);  // where there is no edge the scratch holds what was there before
-    };
-    for_each_bit(
-        a.width,
-        [&](int x) {
-            return bits_from(tops, x) | bits_from(belows, x) | bits_from(lefts, x) | bits_from(lefts, x + 1);
-        },
-        [&](int x) __attribute__((always_inline)) {
-            blend_pixel<T>(a, long(y) * a.stride + x, weight(lefts, x + 1, left[2 * x + 3]),
-                           weight(lefts, x, left[2 * x]), weight(belows, x, below[2 * x + 1]),
-                           weight(tops, x, top[2 * x]));
-        });
+    for (int x = 0; x < a.width; x += 8) {
+        const long o = long(y) * a.stride + x;
+        const unsigned edges = unsigned(tops[x >> 3] | belows[x >> 3] | lefts[x >> 3]) | (lefts[(x >> 3) + 1] & 1u);
+        for (int i = 0; i < 8; i += N<R>)
+            if (edges)
+                blend_pixels<R>(a, o + i, load<R>(left.opposite + x + i + 1), load<R>(left.own + x + i),
+                                load<R>(below.opposite + x + i), load<R>(top.own + x + i));
+            else
+                for (int c = 0; c < a.channels; c++) store(load<R>(a.in[c] + o + i), a.out[c] + o + i);
+    }
 }
 template <class R>
 __attribute__((flatten)) void blendBlocks(const SmaaBlendArgs& a, int b0, int b1) {
     using T = Elem<R>;
-    const long rowSize = 2l * a.width + 2;
+    const Corners<T> corners(a.cornerRounding);
+    const long rowSize = a.scratchSize / 6;
     for (int block = b0; block < b1; block++) {
-        float* top = a.scratch + block * a.scratchSize;
-        float *below = top + rowSize, *const left = below + rowSize;
+        float* const scratch = a.scratch + block * a.scratchSize;
+        RowWeights top{scratch, scratch + rowSize}, below{scratch + 2 * rowSize, scratch + 3 * rowSize};
+        const RowWeights left{scratch + 4 * rowSize, scratch + 5 * rowSize};
         uint8_t* topDiagonals = a.diagonals + block * a.diagonalsSize;
         uint8_t* belowDiagonals = topDiagonals + a.diagonalsSize / 2;
         const int y0 = block * kSmaaBlockRows, y1 = y0 + kSmaaBlockRows < a.height ? y0 + kSmaaBlockRows : a.height;
-        top_weights<T>(a, y0, true, top, topDiagonals);
+        top_weights<T>(a, corners, y0, true, top, topDiagonals);
         for (int y = y0; y < y1; y++) {
-            for (int c = 0; c < a.channels; c++)
-                for (int x = 0; x < a.width; x += N<R>)
-                    store(load<R>(a.in[c] + long(y) * a.stride + x), a.out[c] + long(y) * a.stride + x);
             const bool last = y + 1 == a.height;  // the sampler clamps
-            if (!last) top_weights<T>(a, y + 1, y + 1 < y1, below, belowDiagonals);
-            left_weights<T>(a, y, left, topDiagonals);
-            blend_row<T>(a, y, top, last ? top : below, left);
-            float* const spare = top;
+            if (!last) top_weights<T>(a, corners, y + 1, y + 1 < y1, below, belowDiagonals);
+            left_weights<T>(a, corners, y, left, topDiagonals);
+            blend_row<R>(a, y, top, last ? top : below, left);
+            const RowWeights spare = top;
             top = below, below = spare;
             uint8_t* const spareDiagonals = topDiagonals;
             topDiagonals = belowDiagonals, belowDiagonals = spareDiagonals;
