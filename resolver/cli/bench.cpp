@@ -18,7 +18,7 @@ namespace {
 
 struct Options {
     std::vector<std::string> methods, families;
-    std::string size = "1920x1080", shot, scene = "moving";
+    std::string size = "1920x1080", shot, scene;
     int frames = 8, repeats = 3;
     bool json = false, markdown = false;
     WorkOptions work = {.threads = 1};
@@ -34,7 +34,7 @@ struct Row {
 struct Frames {
     std::vector<Frame> jittered, centre;
     ShotInfo info;
-    std::string subsamples;  // pattern of the synthetic frames
+    std::string scene, subsamples;  // of the synthetic frames
     double edgeShare = 0;
     const std::vector<Frame>& of(const MethodSpec& m) const {
         return m.method->sampling() == Sampling::jittered ? jittered : centre;
@@ -54,10 +54,11 @@ Frames shotFrames(const Options& o, const std::vector<MethodSpec>& methods) {
     }
     return r;
 }
-Frames synthFrames(const Options& o, const std::vector<MethodSpec>& methods, const std::string& pattern) {
+Frames synthFrames(const Options& o, const std::vector<MethodSpec>& methods, const std::string& scene,
+                   const std::string& pattern) {
     const PassSet wanted = passesOf(methods, Sampling::jittered), wantedOfCentre = passesOf(methods, Sampling::centre);
     SynthOptions synth;
-    synth.scene = o.scene;
+    synth.scene = scene;
     if (std::sscanf(o.size.c_str(), "%dx%d", &synth.width, &synth.height) != 2)
         throw UsageError("--size: expected WIDTHxHEIGHT, found '" + o.size + "'");
     synth.frames = o.frames;
@@ -69,12 +70,24 @@ Frames synthFrames(const Options& o, const std::vector<MethodSpec>& methods, con
     Frames r;
     r.info = shotInfo(shot.manifest());
     r.info.isStatic = true;  // so that accum is timed as well; no method's speed depends on it
-    r.subsamples = pattern;
+    r.scene = scene, r.subsamples = pattern;
     for (size_t i = 0; i < size_t(o.frames); i++) {
         if (!wanted.empty()) r.jittered.push_back(shot.frame(i));
         if (!wantedOfCentre.empty()) r.centre.push_back(still.frame(i));
     }
     return r;
+}
+// The synthetic frames' scene: discs have no edges that a pass could list.
+std::string sceneFor(const Options& o, const MethodSpec& m) {
+    const PassSet listed = Pass::edges | Pass::segments;
+    const bool wantsEdges = !(m.passes().without(m.passes().without(listed))).empty();
+    const std::string scene = !o.scene.empty() ? o.scene : wantsEdges ? "half_planes" : "moving";
+    SynthOptions synth;
+    synth.scene = scene, synth.width = synth.height = 8;
+    if (wantsEdges && SynthShot(synth).passes().without(listed) == SynthShot(synth).passes())
+        throw UsageError("--scene: " + scene + " has curved objects, and " + m.text +
+                         " reads the edges of polygons; choose half_planes, or give a --shot");
+    return scene;
 }
 // The synthetic frames' sub-sample pattern that serves a method: the first that it accepts.
 std::string patternFor(const MethodSpec& m) {
@@ -190,7 +203,7 @@ void printHead(const Options& o, const Frames& f, const Exec& exec) {
     }
     std::printf(
         "%s, %dx%d, %zu frames, %.1f %% edge pixels, %s, threads %d, %s\n%-32s %9s %9s %9s %9s %9s %7s %12s %12s\n",
-        (o.shot.empty() ? o.scene : o.shot).c_str(), f.info.width, f.info.height, count, 100 * f.edgeShare,
+        (o.shot.empty() ? f.scene : o.shot).c_str(), f.info.width, f.info.height, count, 100 * f.edgeShare,
         std::string(name(exec.isa)).c_str(), o.work.threads, exec.parallel ? "wall clock" : "processor time", "method",
         "ns/px", "min", "ns/edge", "ms", "state MB", "planes", "max error", "rms error");
 }
@@ -229,10 +242,11 @@ void execute(const Options& o) {
         std::optional<Frames> frames;
         for (size_t k = 0; k < specs.size(); k++) {
             const MethodSpec& spec = specs[k];
-            const std::string pattern = o.shot.empty() ? patternFor(spec) : "";
-            if (!frames || (o.shot.empty() && frames->subsamples != pattern)) {
+            const bool synthetic = o.shot.empty();
+            const std::string pattern = synthetic ? patternFor(spec) : "", scene = synthetic ? sceneFor(o, spec) : "";
+            if (!frames || (synthetic && (frames->subsamples != pattern || frames->scene != scene))) {
                 frames.reset();
-                frames = o.shot.empty() ? synthFrames(o, specs, pattern) : shotFrames(o, specs);
+                frames = synthetic ? synthFrames(o, specs, scene, pattern) : shotFrames(o, specs);
                 for (auto* sampled : {&frames->jittered, &frames->centre})
                     for (auto& f : *sampled) encode(f.colorLinear, {}, exec, f.colorEncoded);
                 frames->edgeShare = edgeShare(frames->centre.empty() ? frames->jittered : frames->centre);
@@ -265,7 +279,9 @@ void addBench(CLI::App& app, Context&) {
         ->allow_extra_args(false);
     c->add_option("--size", o->size, "size of the synthetic frames, px");
     c->add_option("--shot", o->shot, "time on this shot's frames instead of synthetic ones");
-    c->add_option("--scene", o->scene, "synthetic scene (`synth --list`)")->excludes("--shot");
+    c->add_option("--scene", o->scene,
+                  "synthetic scene (`synth --list`); default moving, half_planes for methods that read edges")
+        ->excludes("--shot");
     c->add_option("--frames", o->frames, "frames in memory")->check(CLI::Range(1, 64));
     c->add_option("--repeats", o->repeats, "passes over the frames")->check(CLI::Range(1, 100));
     c->add_flag("--json", o->json, "as JSON");

@@ -37,6 +37,24 @@ struct ints_of {
     typedef int32_t unaligned __attribute__((vector_size(W * 4), aligned(4), may_alias));
 };
 
+// a < b ? a : b and a > b ? a : b: one instruction, which GCC 12 misses where an operand is constant.
+template <class T, int W, class V = typename vec_of<T, W>::type>
+AA_INLINE V least(V a, V b) {
+    if constexpr (std::is_same_v<T, float> && W == 4) return (V)_mm_min_ps((__m128)a, (__m128)b);
+#ifdef __AVX2__
+    if constexpr (std::is_same_v<T, float> && W == 8) return (V)_mm256_min_ps((__m256)a, (__m256)b);
+#endif
+    return a < b ? a : b;
+}
+template <class T, int W, class V = typename vec_of<T, W>::type>
+AA_INLINE V greatest(V a, V b) {
+    if constexpr (std::is_same_v<T, float> && W == 4) return (V)_mm_max_ps((__m128)a, (__m128)b);
+#ifdef __AVX2__
+    if constexpr (std::is_same_v<T, float> && W == 8) return (V)_mm256_max_ps((__m256)a, (__m256)b);
+#endif
+    return a > b ? a : b;
+}
+
 template <class T, int W>
 struct Lanes {
     using V = typename vec_of<T, W>::type;
@@ -49,7 +67,8 @@ struct Lanes {
 #define AA_OP(o) \
     friend AA_INLINE Lanes operator o(Lanes a, Lanes b) { return a.v o b.v; }
     AA_OP(+)
-    AA_OP(-) AA_OP(*) AA_OP(/)
+    AA_OP(-)
+    AA_OP(*) AA_OP(/)
 #undef AA_OP
         friend AA_INLINE Lanes
         operator-(Lanes a) {
@@ -58,12 +77,14 @@ struct Lanes {
 #define AA_CMP(o) \
     friend AA_INLINE auto operator o(Lanes a, Lanes b) { return a.v o b.v; }
     AA_CMP(<)
-    AA_CMP(>) AA_CMP(<=) AA_CMP(>=) AA_CMP(==) AA_CMP(!=)
+    AA_CMP(>)
+    AA_CMP(<=) AA_CMP(>=) AA_CMP(==) AA_CMP(!=)
 #undef AA_CMP
+        // min(x, NaN) == x and max(x, NaN) == x
         friend AA_INLINE Lanes min(Lanes a, Lanes b) {
-        return b.v < a.v ? b.v : a.v;
-    }                                                                               // min(x, NaN) == x
-    friend AA_INLINE Lanes max(Lanes a, Lanes b) { return a.v < b.v ? b.v : a.v; }  // max(x, NaN) == x
+        return least<T, W>(b.v, a.v);
+    }
+    friend AA_INLINE Lanes max(Lanes a, Lanes b) { return greatest<T, W>(b.v, a.v); }
     friend AA_INLINE Lanes abs(Lanes a) {
         V r;
         for (int i = 0; i < W; i++) r[i] = std::fabs(a.v[i]);
@@ -231,26 +252,31 @@ AA_INLINE Lanes<T, W> bits_scaled(Lanes<T, W> a, float mul, float add) {
         return r;
     }
 }
-// x^(1/3) and x^(1/5) for x > 0 by Newton's method from an exponent-halving seed; full precision of R.
-// Denormals are fine to 1e-30 absolute. x <= 0 gives a small positive number times zero: callers select.
+// x^(1/3) and x^(1/5) for x > 0, to the last bit or two of R for x in 1e-30..1e30. Newton's method for the reciprocal
+// root r, which needs no division, from a seed by the exponent's bits (4 % off); then one step for the root itself,
+// whose small correction costs no digits. x <= 0 gives some finite number: callers select.
+template <class R>
+inline constexpr int kRootSteps = std::is_same_v<Elem<R>, double> ? 4 : 2;
 template <class R>
 AA_INLINE R cbrt_positive(R x) {
-    R y = bits_scaled(x, 1.0f / 3.0f, 709921077.0f);
-    constexpr int steps = std::is_same_v<Elem<R>, double> ? 5 : 3;
-    const R third(Elem<R>(1) / Elem<R>(3));
-    for (int i = 0; i < steps; i++) y = (y + y + x / (y * y)) * third;
-    return y;
+    using T = Elem<R>;
+    const R third(T(1) / T(3)), fourThirds(T(4) / T(3));
+    R r = bits_scaled(x, -1.0f / 3.0f, 1419967600.0f);
+    for (int i = 0; i < kRootSteps<R>; i++) r = r * (fourThirds - x * (r * r) * r * third);
+    const R r2 = r * r, y = x * r2;
+    return y - (y * y * y - x) * r2 * third;
 }
 template <class R>
 AA_INLINE R fifth_root_positive(R x) {
-    R y = bits_scaled(x, 1.0f / 5.0f, 851902892.0f);
-    constexpr int steps = std::is_same_v<Elem<R>, double> ? 5 : 3;
-    const R fifth(Elem<R>(1) / Elem<R>(5)), four(Elem<R>(4));
-    for (int i = 0; i < steps; i++) {
-        const R y2 = y * y;
-        y = (four * y + x / (y2 * y2)) * fifth;
+    using T = Elem<R>;
+    const R fifth(T(1) / T(5)), sixFifths(T(6) / T(5));
+    R r = bits_scaled(x, -1.0f / 5.0f, 1277929000.0f);
+    for (int i = 0; i < kRootSteps<R>; i++) {
+        const R r2 = r * r;
+        r = r * (sixFifths - x * (r2 * r2) * r * fifth);
     }
-    return y;
+    const R r2 = r * r, r4 = r2 * r2, y = x * r4, y2 = y * y;
+    return y - (y2 * y2 * y - x) * r4 * fifth;
 }
 
 template <class R>
@@ -270,7 +296,8 @@ struct vec3 {
         return {a.x o b, a.y o b, a.z o b};                              \
     }
 AA_OP(+)
-AA_OP(-) AA_OP(*) AA_OP(/)
+AA_OP(-)
+AA_OP(*) AA_OP(/)
 #undef AA_OP
     template <class R>
     AA_INLINE vec3<R> abs(vec3<R> a) {

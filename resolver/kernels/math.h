@@ -71,6 +71,26 @@ AA_INLINE Lanes<T, W> power_of_two(Lanes<T, W> n) {
     }
 }
 
+// sum of c[k] x^k by pairs (Estrin): the steps of Horner's form wait for each other, these do not.
+template <class R, int n>
+AA_INLINE R polynomial(R x, const R (&c)[n]) {
+    if constexpr (n == 1)
+        return c[0];
+    else {
+        R pairs[(n + 1) / 2];
+        for (int i = 0; i < n / 2; i++) pairs[i] = c[2 * i] + c[2 * i + 1] * x;
+        if constexpr (n % 2) pairs[n / 2] = c[n - 1];
+        return polynomial(x * x, pairs);
+    }
+}
+// The power series of artanh(s) / s in s^2, with terms up to s^last.
+template <class R, int last>
+AA_INLINE R artanh_ratio(R s2) {
+    R c[(last + 1) / 2];
+    for (int k = 1; k <= last; k += 2) c[k / 2] = R(Elem<R>(1.0 / k));
+    return polynomial(s2, c);
+}
+
 // log2 of a normal x > 0: log(m) = 2 artanh(s), s = (m - 1) / (m + 1), |s| < 0.172, by its power series.
 template <class R>
 AA_INLINE R log2_positive(R x) {
@@ -78,20 +98,19 @@ AA_INLINE R log2_positive(R x) {
     constexpr int kLast = std::is_same_v<T, double> ? 21 : 9;  // s^(kLast + 2) is below the precision
     const Split<R> f = split_exponent(x);
     const R s = (f.mantissa - R(T(1))) / (f.mantissa + R(T(1))), s2 = s * s;
-    R sum{T(1.0 / kLast)};
-    for (int k = kLast - 2; k >= 1; k -= 2) sum = sum * s2 + R(T(1.0 / k));
-    return f.exponent + s * sum * R(T(2.8853900817779268));  // 2 / ln 2
+    return f.exponent + s * artanh_ratio<R, kLast>(s2) * R(T(2.8853900817779268));  // 2 / ln 2
 }
 // 2^x for x in [-126, 127] (clamped): whole part by the exponent's bits, the rest, |f| <= 1/2, by exp's power series.
 template <class R>
 AA_INLINE R exp2_clamped(R x) {
     using T = Elem<R>;
     constexpr int kLast = std::is_same_v<T, double> ? 13 : 7;
-    const R c = clamp(x, R(T(-126)), R(T(127))), n = min(floor(c + R(T(0.5))), R(T(127)));
-    const R f = (c - n) * R(T(0.69314718055994531));  // ln 2
-    R sum(T(1));
-    for (int k = kLast; k >= 1; k--) sum = sum * f * R(T(1.0 / k)) + R(T(1));
-    return sum * power_of_two(n);
+    const R held = clamp(x, R(T(-126)), R(T(127))), n = min(floor(held + R(T(0.5))), R(T(127)));
+    const R f = (held - n) * R(T(0.69314718055994531));  // ln 2
+    R c[kLast + 1];
+    double factorial = 1;
+    for (int k = 0; k <= kLast; k++, factorial *= k) c[k] = R(T(1 / factorial));
+    return polynomial(f, c) * power_of_two(n);
 }
 // x^y for 0 <= x; 0 for x below 1e-30 (0^0 too).
 template <class R>

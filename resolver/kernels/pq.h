@@ -11,19 +11,17 @@ template <class R>
 AA_INLINE R log2_of_ratio(R t) {
     using T = Elem<R>;
     constexpr int kLast = std::is_same_v<T, double> ? 21 : 9;
-    const R t2 = t * t;
-    R sum{T(1.0 / kLast)};
-    for (int k = kLast - 2; k >= 1; k -= 2) sum = sum * t2 + R(T(1.0 / k));
-    return t * sum * R(T(2.8853900817779268));  // 2 / ln 2
+    return t * artanh_ratio<R, kLast>(t * t) * R(T(2.8853900817779268));  // 2 / ln 2
 }
 // e^u - 1 for |u| <= 1/2 by its power series, exact to the last bits near 0.
 template <class R>
 AA_INLINE R expm1_small(R u) {
     using T = Elem<R>;
     constexpr int kLast = std::is_same_v<T, double> ? 15 : 8;
-    R sum(T(1));
-    for (int k = kLast; k >= 2; k--) sum = sum * u * R(T(1.0 / k)) + R(T(1));
-    return sum * u;
+    R c[kLast];
+    double factorial = 1;
+    for (int k = 1; k <= kLast; factorial *= ++k) c[k - 1] = R(T(1 / factorial));
+    return polynomial(u, c) * u;
 }
 
 // ((c1 + c2 lm) / (1 + c3 lm))^m2 with lm = (linear / 10000)^m1; c1 + c2 - c3 = 1.

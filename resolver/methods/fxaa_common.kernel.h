@@ -57,8 +57,8 @@ AA_INLINE R smooth(R t) {
     return t * t * (R(Elem<R>(3)) - R(Elem<R>(2)) * t);
 }
 
-// What the 3x3 neighbours say about a pixel of a row: the edge's orientation, the luma differences to either side of it,
-// and how far the pixel stands out of the mean of its neighbours in units of the local range (0..1).
+// What the 3x3 neighbours say about a pixel of a row: the edge's orientation, the luma differences to either side of
+// it, and how far the pixel stands out of the mean of its neighbours in units of the local range (0..1).
 inline constexpr int kChunk = 64;  // pixels that are classified before any is filtered
 struct Classes {
     uint64_t horizontal;
@@ -148,8 +148,8 @@ AA_INLINE LineEnds find_ends(const FxaaArgs& a, const EdgeLine& line) {
 // Shift that makes the pixel pair follow the line: nothing unless the nearer end bends toward this pixel.
 AA_INLINE double edge_shift(const LineEnds& ends, bool pixelBelowMiddle) {
     const bool nearNegative = ends.negativeHalfPx < ends.positiveHalfPx;
-    const bool bends = ((int(nearNegative) & int(ends.negativeBelow)) | (int(!nearNegative) & int(ends.positiveBelow))) !=
-                       int(pixelBelowMiddle);
+    const bool bends = ((int(nearNegative) & int(ends.negativeBelow)) |
+                        (int(!nearNegative) & int(ends.positiveBelow))) != int(pixelBelowMiddle);
     const int nearest = ends.negativeHalfPx < ends.positiveHalfPx ? ends.negativeHalfPx : ends.positiveHalfPx;
     return double(bends) * (0.5 - double(nearest) / double(ends.negativeHalfPx + ends.positiveHalfPx));
 }

@@ -155,21 +155,21 @@ __attribute__((flatten)) void karisRows(const KarisArgs& a, int y0, int y1) {
 
 template <class R>
 __attribute__((flatten)) void pqEncodeRows(const PqArgs& a, int y0, int y1) {
-    for (int c = 0; c < 3; c++)
-        for (int y = y0; y < y1; y++)
-            for (int x = 0; x < a.width; x += N<R>) {
-                const long o = long(y) * a.stride + x;
-                store(pq_encode(load<R>(a.in.c[c] + o)), a.out.c[c] + o);
-            }
+    for (int y = y0; y < y1; y++)
+        for (int x = 0; x < a.width; x += N<R>) {
+            const long o = long(y) * a.stride + x;
+            const vec3<R> c = load3<R>(a.in.c, o);  // three at a time: one alone waits for its own steps
+            store3(vec3<R>{pq_encode(c.x), pq_encode(c.y), pq_encode(c.z)}, a.out.c, o);
+        }
 }
 template <class R>
 __attribute__((flatten)) void pqDecodeRows(const PqArgs& a, int y0, int y1) {
-    for (int c = 0; c < 3; c++)
-        for (int y = y0; y < y1; y++)
-            for (int x = 0; x < a.width; x += N<R>) {
-                const long o = long(y) * a.stride + x;
-                store(pq_decode(load<R>(a.in.c[c] + o)), a.out.c[c] + o);
-            }
+    for (int y = y0; y < y1; y++)
+        for (int x = 0; x < a.width; x += N<R>) {
+            const long o = long(y) * a.stride + x;
+            const vec3<R> c = load3<R>(a.in.c, o);  // three at a time: one alone waits for its own steps
+            store3(vec3<R>{pq_decode(c.x), pq_decode(c.y), pq_decode(c.z)}, a.out.c, o);
+        }
 }
 
 }  // namespace AA_ARCH

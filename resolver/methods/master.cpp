@@ -15,7 +15,6 @@ class Master : public Method {
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         const Params& p = params_;
-        const bool bt601 = p.choice("luminance") == "bt601";
         TemporalIn in = temporal::frameView(frame, frame.colorEncoded);
         if (sharpen_ == SharpenKernel::none) in.out = view(out);
         history_.begin(frame, "master", in);
@@ -25,46 +24,18 @@ class Master : public Method {
         in.debug = debug_.begin(*this, frame.width, frame.height);
         fit(frame.width, frame.height);
         const float farDepth = farDepthOf(frame);
-        const MasterKernels& kernels = masterKernelsFor(exec.isa);
-
-        // S: one Sobel value per pixel.
-        const bool sobel = p.flag("sobel");
-        PlaneF* filtered = &sobel_;
-        if (sobel) {
-            MasterLuminanceArgs l{view(frame.albedoLinear),
-                                  view(frame.colorEncoded),
-                                  luminance_[0].row(0),
-                                  luminance_[1].row(0),
-                                  in.stride,
-                                  in.width,
-                                  bt601};
-            runKernel(kernels.luminance, exec, l, in.height);
-            for (auto& plane : luminance_) plane.fillBorder();
-            const float depthScale = p.choice("sobelDepth") == "zfar" ? 1.0f / farDepth : 1.0f;
-            MasterSobelArgs s{l.luminanceAlbedo, l.luminanceLit, in.depthView,  sobel_.row(0), in.stride,
-                              in.width,          p.realf("wU"),  p.realf("wL"), depthScale,    farDepth};
-            runKernel(kernels.sobel, exec, s, in.height);
-            sobel_.fillBorder();
-        }
-        // T: its past, and the past of colour and depth.
-        if (in.history) {
-            MasterPastArgs t{in,
-                             sobel_.row(0),
-                             previousDepth_.row(0),
-                             luminance_[0].row(0),
-                             p.realf("kmin"),
-                             p.realf("kmax"),
-                             p.flag("sobelTemporal"),
-                             p.choice("pastDepth") == "samePixel"};
-            runKernel(kernels.past, exec, t, in.height);
-            luminance_[0].fillBorder();
-            filtered = &luminance_[0];
-        }
         MasterArgs m{};
         m.in = in;
-        m.sobelFiltered = filtered->row(0);
+        m.albedoLinear = view(frame.albedoLinear);
         m.objectId = frame.objectId.row(0);
+        std::swap(depth_[0], depth_[1]);
+        m.keptDepth = depth_[0].row(0), m.previousDepth = depth_[1].row(0);
         m.expected = expectedDepth(frame);
+        m.weightAlbedo = p.realf("wU"), m.weightLit = p.realf("wL");
+        m.depthScale = p.choice("sobelDepth") == "zfar" ? 1.0f / farDepth : 1.0f;
+        m.bt601 = p.choice("luminance") == "bt601";
+        m.temporalSobel = p.flag("sobelTemporal");
+        m.samePixelDepth = p.choice("pastDepth") == "samePixel";
         m.kMin = p.realf("kmin"), m.kMax = p.realf("kmax");
         m.farDepth = farDepth;
         m.depthThreshold = p.realf("depthThreshold");
@@ -73,7 +44,7 @@ class Master : public Method {
         m.relativeThreshold = p.flag("relativeThreshold");
         m.compensate = p.flag("compensate");
         m.useModel = p.flag("model"), m.useDepth = p.flag("depth"), m.useDepthTemporal = p.flag("depthTemporal");
-        m.useSobel = sobel;
+        m.useSobel = p.flag("sobel");
         if (keepDebugLayers) {
             terms_.resize(5);
             for (auto& plane : terms_)
@@ -82,16 +53,13 @@ class Master : public Method {
             m.debugAliased = terms_[0].row(0), m.debugSobel = terms_[1].row(0), m.debugModel = terms_[2].row(0);
             m.debugDepth = terms_[3].row(0), m.debugDepthTemporal = terms_[4].row(0);
         }
-        m.keptDepth = previousDepth_.row(0);
-        runKernel(kernels.resolve, exec, m, in.height);
+        const int blocks = (frame.height + kMasterBlockRows - 1) / kMasterBlockRows;
+        runKernel(masterKernelsFor(exec.isa).resolve, exec, m, blocks, 1);
         history_.end();
-        previousDepth_.fillBorder();
+        depth_[0].fillBorder();
         if (sharpen_ != SharpenKernel::none) sharpenEncoded(history_.latest(), sharpen_, exec, out);
     }
-    size_t stateBytes() const override {
-        return history_.bytes() + luminance_[0].bytes() + luminance_[1].bytes() + sobel_.bytes() +
-               previousDepth_.bytes();
-    }
+    size_t stateBytes() const override { return history_.bytes() + depth_[0].bytes() + depth_[1].bytes(); }
     const PlaneF* rejection() const override { return debug_.rejection(); }
     std::vector<DebugLayer> debugLayers() const override {
         std::vector<DebugLayer> layers = debug_.layers();
@@ -103,8 +71,8 @@ class Master : public Method {
 
   private:
     void fit(int width, int height) {
-        if (sobel_.width() == width && sobel_.height() == height) return;
-        for (PlaneF* p : {&luminance_[0], &luminance_[1], &sobel_, &previousDepth_}) *p = PlaneF(width, height);
+        if (depth_[0].width() == width && depth_[0].height() == height) return;
+        for (PlaneF& p : depth_) p = PlaneF(width, height);
     }
     // The camera's far plane, or the largest depth that is not background.
     static float farDepthOf(const Frame& frame) {
@@ -128,9 +96,7 @@ class Master : public Method {
     Params params_;
     SharpenKernel sharpen_;
     ColourHistory history_;
-    PlaneF previousDepth_;
-    // Scratch of one frame. The first luminance makes way for the filtered Sobel value once pass S has read it.
-    PlaneF luminance_[2], sobel_;
+    PlaneF depth_[2];  // of this frame and of the last one
     TemporalDebugLayers debug_;
     std::vector<PlaneF> terms_;
 };

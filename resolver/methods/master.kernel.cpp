@@ -2,44 +2,87 @@
 #include "methods/master_kernels.h"
 #include "methods/master_terms.kernel.h"
 
+// All steps on one tile after the other, so that what lies between them stays in the second-level cache. Every step
+// needs a margin of the one before: three pixels of luminance for two of Sobel for one of its past.
 namespace AA_ARCH {
 
-template <class R>
-__attribute__((flatten)) void luminanceRows(const MasterLuminanceArgs& a, int y0, int y1) {
-    for (int y = y0; y < y1; y++)
-        for (int x = 0; x < a.width; x += N<R>) {
-            const long o = long(y) * a.stride + x;
-            const vec3<R> albedo = load3<R>(a.albedoLinear.c, o);
-            const vec3<R> encoded{srgb_encode(saturate(albedo.x)), srgb_encode(saturate(albedo.y)),
-                                  srgb_encode(saturate(albedo.z))};
-            store(luminance(encoded, a.bt601), a.luminanceAlbedo + o);
-            store(luminance(load3<R>(a.colorEncoded.c, o), a.bt601), a.luminanceLit + o);
-        }
-}
+template <class T>
+struct MasterTile {
+    static constexpr int kWidth = 256, kHeight = kMasterBlockRows, kMarginX = 8, kMarginY = 3,
+                         kStride = kWidth + 2 * kMarginX, kSize = (kHeight + 2 * kMarginY) * kStride;
+    alignas(64) T luminanceAlbedo[kSize], luminanceLit[kSize], sobel[kSize], filtered[kSize];
+    alignas(64) T past[3][kSize], pastDepth[kSize];  // colour, and depth: NaN where history is outside
+    int x0, x1, y0, y1, width, height;
 
+    AA_INLINE int offset(int x, int y) const { return (y - y0 + kMarginY) * kStride + x - x0 + kMarginX; }
+    template <class R>
+    AA_INLINE R get(const T* plane, int x, int y) const {
+        if constexpr (N<R> == 1)
+            return plane[offset(x, y)];
+        else
+            return load<R>(plane + offset(x, y));
+    }
+    template <class R>
+    AA_INLINE void put(T* plane, int x, int y, R value) {
+        store(value, plane + offset(x, y));
+    }
+    // Calls pixels(x, y) for the tile and `margin` pixels around it, as far as they lie in the picture.
+    template <class R, class Pixels>
+    AA_INLINE void cover(int margin, const Pixels& pixels) {
+        const int columns = (margin + N<R> - 1) / N<R> * N<R>;  // whole lanes
+        const int left = x0 - columns > 0 ? x0 - columns : 0, right = x1 + margin < width ? x1 + margin : width;
+        const int top = y0 - margin > 0 ? y0 - margin : 0, bottom = y1 + margin < height ? y1 + margin : height;
+        for (int y = top; y < bottom; y++)
+            for (int x = left; x < right; x += N<R>) pixels(x, y);
+    }
+    // Continues a plane `margin` pixels beyond the picture with its last value.
+    AA_INLINE void continueBeyond(T* plane, int margin) {
+        const int top = y0 - margin > 0 ? y0 - margin : 0, bottom = y1 + margin < height ? y1 + margin : height;
+        for (int y = top; y < bottom; y++) {
+            T* const row = plane + offset(0, y);
+            for (int x = x0 - margin; x < 0; x++) row[x] = row[0];
+            for (int x = width; x < x1 + margin; x++) row[x] = row[width - 1];
+        }
+        const auto copyRow = [&](int from, int to) __attribute__((always_inline)) {
+            __builtin_memcpy(plane + offset(x0 - margin, to), plane + offset(x0 - margin, from),
+                             size_t(x1 - x0 + 2 * margin) * sizeof(T));
+        };
+        for (int y = y0 - margin; y < 0; y++) copyRow(0, y);
+        for (int y = height; y < y1 + margin; y++) copyRow(height - 1, y);
+    }
+};
+
+// S: one Sobel value per pixel.
 template <class R>
-__attribute__((flatten)) void sobelRows(const MasterSobelArgs& a, int y0, int y1) {
+AA_INLINE void fill_luminance(const MasterArgs& a, MasterTile<Elem<R>>& tile, int x, int y) {
+    const long o = long(y) * a.in.stride + x;
+    const vec3<R> albedo = load3<R>(a.albedoLinear.c, o);
+    const vec3<R> encoded{srgb_encode(saturate(albedo.x)), srgb_encode(saturate(albedo.y)),
+                          srgb_encode(saturate(albedo.z))};
+    tile.template put<R>(tile.luminanceAlbedo, x, y, luminance(encoded, a.bt601));
+    tile.template put<R>(tile.luminanceLit, x, y, luminance(load3<R>(a.in.color.c, o), a.bt601));
+}
+template <class R>
+AA_INLINE void fill_sobel(const MasterArgs& a, MasterTile<Elem<R>>& tile, int x, int y) {
     using T = Elem<R>;
     const R farDepth = R(T(a.farDepth));
-    for (int y = y0; y < y1; y++)
-        for (int x = 0; x < a.width; x += N<R>) {
-            const long o = long(y) * a.stride + x;
-            const auto window = [&](const float* plane) __attribute__((always_inline)) {
-                return sobel_magnitude<R>([=](int i, int j) __attribute__((always_inline)) {
-                    return load<R>(plane + o + long(j) * a.stride + i);
-                });
-            };
-            const R depth = sobel_magnitude<R>([&](int i, int j) __attribute__((always_inline)) {
-                return min(farDepth, load<R>(a.depthView + o + long(j) * a.stride + i));
-            });
-            const R sum = window(a.luminanceAlbedo) * R(T(a.weightAlbedo)) +
-                          window(a.luminanceLit) * R(T(a.weightLit)) + depth * R(T(a.depthScale));
-            store(sobel_curve(sum), a.sobel + o);
-        }
+    const long o = long(y) * a.in.stride + x;
+    const auto window = [&](const T* plane) __attribute__((always_inline)) {
+        return sobel_magnitude<R>([&](int i, int j) __attribute__((always_inline)) {
+            return tile.template get<R>(plane, x + i, y + j);
+        });
+    };
+    const R depth = sobel_magnitude<R>([&](int i, int j) __attribute__((always_inline)) {
+        return min(farDepth, load<R>(a.in.depthView + o + long(j) * a.in.stride + i));
+    });
+    const R sum = window(tile.luminanceAlbedo) * R(T(a.weightAlbedo)) + window(tile.luminanceLit) * R(T(a.weightLit)) +
+                  depth * R(T(a.depthScale));
+    tile.template put<R>(tile.sobel, x, y, sobel_curve(sum));
 }
 
+// T: the Sobel value over time, and the past of colour and depth.
 template <class R>
-AA_INLINE void pastPixel(const MasterPastArgs& a, int x, int y) {
+AA_INLINE void fill_past(const MasterArgs& a, MasterTile<Elem<R>>& tile, int x, int y) {
     using T = Elem<R>;
     const TemporalIn& in = a.in;
     const long o = long(y) * in.stride + x;
@@ -48,7 +91,7 @@ AA_INLINE void pastPixel(const MasterPastArgs& a, int x, int y) {
     const Texel<R> past = fetch_bilinear<R>(in.history + 4 * o, in.stride, q);
 
     const auto sobelAt = [&](int i, int j) __attribute__((always_inline)) {
-        return load<R>(a.sobel + o + long(j) * in.stride + i);
+        return tile.template get<R>(tile.sobel, x + i, y + j);
     };
     const R now = sobelAt(0, 0);
     R filtered = now;
@@ -61,36 +104,29 @@ AA_INLINE void pastPixel(const MasterPastArgs& a, int x, int y) {
         const R k = min(luminance_feedback(now, held, a.kMin, a.kMax), R(T(in.feedbackCeiling)));
         filtered = select(q.inside, held + (now - held) * (R(T(1)) - k), now);
     }
-    store(filtered, a.sobelFiltered + o);
+    tile.template put<R>(tile.filtered, x, y, filtered);
 
     alignas(64) int k[N<R>];
     nearest_offsets(q, in.stride, k);
-    R depth = a.samePixelDepth ? load<R>(a.previousDepth + o) : gather<R>(a.previousDepth + o, k);
-    depth = select(q.inside, depth, R(T(__builtin_nanf(""))));
+    const R depth = a.samePixelDepth ? load<R>(a.previousDepth + o) : gather<R>(a.previousDepth + o, k);
+    tile.template put<R>(tile.pastDepth, x, y, select(q.inside, depth, R(T(__builtin_nanf("")))));
     const vec3<R> color = in.filter == HistoryFilter::bilinear ? past.rgb : fetch_history(in, x, y, q);
-    store_rgba(color, depth, in.next + 4 * o);
-    if (in.debug.feedback) store(motion.x, in.debug.motionXPx + o), store(motion.y, in.debug.motionYPx + o);
-}
-template <class R>
-__attribute__((flatten)) void pastRows(const MasterPastArgs& a, int y0, int y1) {
-    for (int y = y0; y < y1; y++)
-        for (int x = 0; x < a.in.width; x += N<R>) pastPixel<R>(a, x, y);
+    tile.template put<R>(tile.past[0], x, y, color.x);
+    tile.template put<R>(tile.past[1], x, y, color.y);
+    tile.template put<R>(tile.past[2], x, y, color.z);
 }
 
 template <class R>
-AA_INLINE void keep_depth(const MasterArgs& a, long o) {
-    if (a.keptDepth) store(load<R>(a.in.depthView + o), a.keptDepth + o);
-}
-template <class R>
-AA_INLINE void masterPixel(const MasterArgs& a, int x, int y) {
+AA_INLINE void masterPixel(const MasterArgs& a, const MasterTile<Elem<R>>& tile, int x, int y) {
     using T = Elem<R>;
     const TemporalIn& in = a.in;
     const R zero(T(0)), one(T(1)), farDepth = R(T(a.farDepth));
     const long o = long(y) * in.stride + x;
     const auto at = [&](int i, int j) __attribute__((always_inline)) { return o + long(j) * in.stride + i; };
-    const Texel<R> waiting = load_rgba<R>(in.next + 4 * o);
-    const vec3<R> current = load3<R>(in.color.c, o), history = waiting.rgb;
-    const R pastDepth = waiting.a;
+    const vec3<R> current = load3<R>(in.color.c, o);
+    const vec3<R> history{tile.template get<R>(tile.past[0], x, y), tile.template get<R>(tile.past[1], x, y),
+                          tile.template get<R>(tile.past[2], x, y)};
+    const R pastDepth = tile.template get<R>(tile.pastDepth, x, y);
     const auto inside = pastDepth == pastDepth;
 
     // How aliased is this pixel?
@@ -117,7 +153,9 @@ AA_INLINE void masterPixel(const MasterArgs& a, int x, int y) {
         variance.depthTemporal = a.useDepthTemporal ? select(inside, variance.depthTemporal, one) : zero;
     }
     if (a.useSobel) {
-        const auto s = [&](int i, int j) __attribute__((always_inline)) { return load<R>(a.sobelFiltered + at(i, j)); };
+        const auto s = [&](int i, int j) __attribute__((always_inline)) {
+            return tile.template get<R>(tile.filtered, x + i, y + j);
+        };
         const R plus = s(0, 0) + ((s(-1, 0) + s(1, 0)) + (s(0, -1) + s(0, 1)));
         const R square = plus + ((s(-1, -1) + s(1, -1)) + (s(-1, 1) + s(1, 1)));
         sobel = mix(plus * R(T(1) / T(5)), square * R(T(1) / T(9)), saturate(model + s(0, 0)));  // eqs 4.12, 4.13
@@ -136,30 +174,63 @@ AA_INLINE void masterPixel(const MasterArgs& a, int x, int y) {
     const R k = min(luminance_feedback(luma709(current), luma709(clipped), a.kMin, a.kMax), R(T(in.feedbackCeiling)));
     const vec3<R> mixed = select(inside, blend(current, clipped, k), current);
 
-    store_blend(in, x, y, sanitised(mixed, current, history), load<R>(a.sobelFiltered + o));
+    store_blend(in, x, y, sanitised(mixed, current, history), tile.template get<R>(tile.filtered, x, y));
     if (!in.debug.feedback) {
         store_debug(in.debug, o, Motion<R>{k, k}, inside, box, history, k);
     } else {
-        store_debug(in.debug, o, Motion<R>{load<R>(in.debug.motionXPx + o), load<R>(in.debug.motionYPx + o)}, inside,
-                    box, clipped - history, k);
+        store_debug(in.debug, o, dilated_motion<R>(in, o), inside, box, clipped - history, k);
         store(aliased, a.debugAliased + o), store(sobel, a.debugSobel + o), store(model, a.debugModel + o);
         store(variance.depth, a.debugDepth + o), store(variance.depthTemporal, a.debugDepthTemporal + o);
     }
 }
 template <class R>
-__attribute__((flatten)) void masterRows(const MasterArgs& a, int y0, int y1) {
-    for (int y = y0; y < y1; y++)
-        for (int x = 0; x < a.in.width; x += N<R>) {
-            const long o = long(y) * a.in.stride + x;
+AA_INLINE void masterTile(const MasterArgs& a, MasterTile<Elem<R>>& tile) {
+    using T = Elem<R>;
+    const int margin = a.in.history ? 2 : 0;
+    if (a.useSobel) {
+        tile.template cover<R>(
+            margin + 1, [&](int x, int y) __attribute__((always_inline)) { fill_luminance<R>(a, tile, x, y); });
+        tile.continueBeyond(tile.luminanceAlbedo, margin + 1);
+        tile.continueBeyond(tile.luminanceLit, margin + 1);
+        tile.template cover<R>(
+            margin, [&](int x, int y) __attribute__((always_inline)) { fill_sobel<R>(a, tile, x, y); });
+        tile.continueBeyond(tile.sobel, margin);
+    } else {
+        tile.template cover<R>(
+            margin, [&](int x, int y)
+                        __attribute__((always_inline)) { tile.template put<R>(tile.sobel, x, y, R(T(0))); });
+        tile.continueBeyond(tile.sobel, margin);
+    }
+    if (a.in.history) {
+        tile.template cover<R>(
+            1, [&](int x, int y) __attribute__((always_inline)) { fill_past<R>(a, tile, x, y); });
+        tile.continueBeyond(tile.filtered, 1);
+    }
+    tile.template cover<R>(
+        0, [&](int x, int y) __attribute__((always_inline)) {
             if (a.in.history)
-                masterPixel<R>(a, x, y);
+                masterPixel<R>(a, tile, x, y);
             else
-                store_first<R>(a.in, x, y, load<R>(a.sobelFiltered + o));
-            keep_depth<R>(a, o);
+                store_first<R>(a.in, x, y, tile.template get<R>(tile.sobel, x, y));
+            const long o = long(y) * a.in.stride + x;
+            store(load<R>(a.in.depthView + o), a.keptDepth + o);
+        });
+}
+template <class R>
+__attribute__((flatten)) void masterBlocks(const MasterArgs& a, int b0, int b1) {
+    using Tile = MasterTile<Elem<R>>;
+    Tile tile;
+    tile.width = a.in.width, tile.height = a.in.height;
+    for (int b = b0; b < b1; b++) {
+        tile.y0 = b * Tile::kHeight;
+        tile.y1 = tile.y0 + Tile::kHeight < tile.height ? tile.y0 + Tile::kHeight : tile.height;
+        for (tile.x0 = 0; tile.x0 < tile.width; tile.x0 += Tile::kWidth) {
+            tile.x1 = tile.x0 + Tile::kWidth < tile.width ? tile.x0 + Tile::kWidth : tile.width;
+            masterTile<R>(a, tile);
         }
+    }
 }
 
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::MasterKernels, masterKernels) = {AA_ROWS(luminanceRows), AA_ROWS(sobelRows), AA_ROWS(pastRows),
-                                                     AA_ROWS(masterRows)};
+AA_DEFINE_TABLE(aa::MasterKernels, masterKernels) = {AA_ROWS(masterBlocks)};

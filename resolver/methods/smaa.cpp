@@ -147,12 +147,7 @@ void Smaa::blend(const Rgb& in, Rgb& out, const PlaneF* const motion[2], PlaneF*
     diagonals_.resize(size_t(args.diagonalsSize) * size_t(blocks));
     args.scratch = scratch_.data();
     args.diagonals = diagonals_.data();
-    const auto& kernel = smaaBlendKernelsFor(exec.isa).blend;
-    const auto fn = exec.precision == Precision::fast     ? kernel.fast
-                    : exec.precision == Precision::scalar ? kernel.scalar
-                                                          : kernel.oracle;
-    forRows(
-        exec, blocks, [&](int b0, int b1) { fn(args, b0, b1); }, 1);
+    runKernel(smaaBlendKernelsFor(exec.isa).blend, exec, args, blocks, 1);
 }
 
 size_t Smaa::bytes() const {

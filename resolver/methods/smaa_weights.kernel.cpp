@@ -211,8 +211,8 @@ struct RowWeights {
         keep(debug, pixel, own[x], opposite[x]);
     }
 };
-// Of the row's top edges; sets the bits of the pixels that a diagonal took. `own`: the row lies in the block, and is not
-// the one after it.
+// Of the row's top edges; sets the bits of the pixels that a diagonal took. `own`: the row lies in the block, and is
+// not the one after it.
 template <class T>
 AA_INLINE void top_weights(const SmaaBlendArgs& a, const Corners<T>& corners, int y, bool own, RowWeights weights,
                            uint8_t* diagonals) {

@@ -54,6 +54,12 @@ AA_INLINE void texel_offsets(const Reprojection<R>& q, int stride, int* k) {
     } else
         for (int i = 0; i < N<R>; i++) k[i] = int(q.wholeY.v[i]) * stride + int(q.wholeX.v[i]) + i;
 }
+// No lane lies between texels: at rest, or moving by whole pixels. Both fetches below then give the texel itself.
+template <class R>
+AA_INLINE bool all_whole(const Reprojection<R>& q) {
+    const R zero(Elem<R>(0));
+    return !mask_bits<R>(either(q.fracX != zero, q.fracY != zero));
+}
 template <class R>
 AA_INLINE vec3<R> lerp_exact(vec3<R> a, vec3<R> b, R f, Mask<R> whole) {  // f = 0: a, whatever b is
     return select(whole, a, a + (b - a) * f);
@@ -63,6 +69,7 @@ template <class R>
 AA_INLINE Texel<R> fetch_bilinear(const float* p, int stride, const Reprojection<R>& q) {
     alignas(64) int k[N<R>];
     texel_offsets(q, stride, k);
+    if (all_whole(q)) return fetch_rgba<R>(p, k);
     const Mask<R> wholeX = q.fracX == R(Elem<R>(0)), wholeY = q.fracY == R(Elem<R>(0));
     auto row = [&](const float* r) __attribute__((always_inline)) {
         const Texel<R> a = fetch_rgba<R>(r, k), b = fetch_rgba<R>(r + 4, k);
@@ -104,6 +111,7 @@ AA_INLINE vec3<R> fetch_4x4(const float* p, int stride, const Reprojection<R>& q
     using T = Elem<R>;
     alignas(64) int k[N<R>];
     texel_offsets(q, stride, k);
+    if (all_whole(q)) return fetch_rgba<R>(p, k).rgb;
     const R zero(T(0)), inner = wx[1] + wx[2], all4 = corners ? inner + (wx[0] + wx[3]) : R(T(1));
     vec3<R> sum(zero), lo(zero), hi(zero), own(zero);
     R norm(zero);

@@ -10,7 +10,7 @@ SPATIAL = (
     "smaa1x:preset=LOW smaa1x:preset=MEDIUM smaa1x:preset=HIGH smaa1x:preset=ULTRA dlaa nfaa ssssaa"
 )
 EDGES = "gbaa gpaa d2e"
-SUBSAMPLES = "msaa csaa:slots=4 dmsaa deaa sraa sbaa"
+SUBSAMPLES = "msaa csaa:slots=4 dmsaa deaa sraa sraa:ids=always sbaa sbaa:ids=off"
 UNCHARTED = "uncharted unchartedNorm unchartedNoSharpen"
 # Each part of `master` switched off; its colour box open everywhere (minAlias=1); and a first frame that does not keep
 # its weight (warmup=ramp).
@@ -22,11 +22,12 @@ RAMPED = "unchartedNoSharpen:warmup=ramp master:sharpen=none,warmup=ramp"
 RAPTOR = "raptor raptor:lumaDiff=printed raptor:filterDomain=printed,lumaDiff=printed raptor:sharpen=0"
 BOXES = "inside karis salvi falcor donut"  # with `raptor`, `uncharted*` and `master`: history held by a box of colours
 IDENTITY = "accumReject accumReject:objectIds=off accumReject:depthTest=off"
-FILLS = "accumReject+fill=smaa1x accumReject+fill=fxaa311"
+FILLS = "accumReject+fill=smaa1x accumReject+fill=fxaa311 fsr2n+fill=smaa1x"
 TEMPORAL = f"taaSimplest {UNCHARTED} {ABLATIONS} {RAPTOR} {BOXES} fsr2n {IDENTITY} {FILLS}"
 RSAA = (
     "rsaa rsaa:tuning=off rsaa:measure=depth rsaa:measure=normal rsaa:measure=depth,tuning=off "
-    "rsaa:measure=normal,tuning=off"
+    "rsaa:measure=normal,tuning=off rsaa:ids=off rsaa:measure=depth,ids=off rsaa:measure=normal,ids=off "
+    "rsaa:training=halfPlanes"
 )
 
 

@@ -329,7 +329,11 @@ def _geometry_answers(run: Run, by_s: dict[int, Run]) -> list[str]:
         f"Is SADP with tuning better than {what}? " + verdict(run.gain("rsaa", variant))
         for what, variant in (
             ("depth alone", "rsaa:measure=depth"), ("normals alone", "rsaa:measure=normal"), ("SADP untuned", "rsaa:tuning=off"),
+            ("depth alone, not told apart by object id", "rsaa:measure=depth,ids=off"),
+            ("normals alone, not told apart by object id", "rsaa:measure=normal,ids=off"),
+            ("a table learned from half-planes alone", "rsaa:training=halfPlanes"),
         )
+        if variant in run
     ]  # fmt: skip
     for s in (4, 16):
         if s in by_s:
