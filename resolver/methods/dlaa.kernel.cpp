@@ -35,11 +35,12 @@ __attribute__((flatten)) void edgeRows(const DlaaEdgeArgs& a, int y0, int y1) {
                 const vec3<R> c = colour_at<R>(a.in, o);
                 const vec3<R> alongX = second_difference(a.in, o, 1, c),
                               alongY = second_difference(a.in, o, a.stride, c);
-                const R strength = saturate(luma709(abs(alongX + alongY) * four));  // 8-bit storage clamped it
+                const R strength = saturate(luma709(abs(alongX + alongY)) * four);  // 8-bit storage clamped it
                 store(strength, a.edge + o);
                 store(luma709(c), a.luma + o);
                 strong |= mask_bits<R>(strength >= fromHere) << i;
-                busy |= mask_bits<R>(either(luma709(abs(alongX)) > calm, luma709(abs(alongY)) > calm)) << i;
+                const R largest = max(max_component(abs(alongX)), max_component(abs(alongY)));
+                busy |= mask_bits<R>(largest > calm) << i;
             }
             const long group = long(y) * ((a.width + 7) / 8) + (x >> 3);
             a.strong[group] = uint8_t(__builtin_popcount(strong));

@@ -15,7 +15,7 @@ struct DlaaEdgeArgs {
     RgbIn in;
     float *edge, *luma;  // strength in [0,1]; the kernel fills their borders, as far as kDlaaReach
     // Of each group of 8 columns, (width + 7) / 8 per row: how many strengths reach kDlaaStrong, and a bit per pixel
-    // one of whose second differences, along x or along y, exceeds busyAbove in luma.
+    // one of whose second differences, along x or along y, exceeds busyAbove in a channel.
     uint8_t *strong, *busy;
     int stride, width, height;
     float busyAbove;
