@@ -81,6 +81,23 @@ TEST(FxaaConsole, BlursAlongTheEdgeOnly) {
     // d1 = (1, -1)/sqrt(2), half a pixel: each tap is bilinear at +-.3536 px across the stair.
     EXPECT_NEAR(diagonal.c[0].at(9, 10) + diagonal.c[0].at(10, 10), 1.0f, 0.02f);
 }
+// A line one pixel thin, dark alike above and below, that ends at x = 20 where one side turns bright: that side's pair
+// shows no end, the other's does. Ties of the two gradients go up in 3.11 and 1 (methods/02 s.2.1, 2.2), down in CS
+// (s.2.3).
+TEST(FxaaFamily, TiesOfTheTwoSidesGoWhereTheVariantSays) {
+    for (const bool brightBelow : {false, true}) {
+        Rgb image(48, 15, 0.0f);
+        for (auto& p : image.c)
+            for (int x = 0; x < 48; x++) p.at(x, x < 20 ? 7 : brightBelow ? 8 : 6) = 1.0f;
+        const auto shifted = [&](const char* spec) { return resolveOnce(spec, image).c[1].at(17, 7) < 0.99f; };
+        EXPECT_EQ(shifted("fxaa311:subpix=0,preset=39"), brightBelow);
+        EXPECT_EQ(shifted("fxaacs:subpixelRemoval=0,blendSpace=encoded"), !brightBelow);
+    }
+}
+TEST(FxaaCs, RefusesAThresholdOfZero) {
+    EXPECT_THROW(parseMethod("fxaacs:contrastThreshold=0"), UsageError);
+    EXPECT_NO_THROW(parseMethod("fxaacs:contrastThreshold=0.01"));
+}
 
 }  // namespace
 }  // namespace aa
