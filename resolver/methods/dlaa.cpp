@@ -8,7 +8,7 @@
 namespace aa {
 namespace {
 
-constexpr int kStripRows = 32;  // of 5 planes: 1 MB at 1080p
+constexpr int kStripRows = 32;  // of colours, strengths and lumas: 1.2 MB at 1080p
 
 template <class Args>
 auto rowsOf(const RowKernel<Args>& kernel, Precision precision) {

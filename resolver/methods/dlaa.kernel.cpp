@@ -17,6 +17,7 @@ AA_INLINE vec3<R> second_difference(const RgbIn& in, long o, long step, vec3<R> 
 AA_INLINE void repeat_border(const DlaaEdgeArgs& a, float* plane, int y) {
     float* const row = plane + long(y) * a.stride;
     for (int k = 1; k <= kDlaaReach; k++) row[-k] = row[0], row[a.width - 1 + k] = row[a.width - 1];
+    if (y > 0 && y < a.height - 1) return;
     for (int k = 1; k <= kDlaaReach; k++)
         for (int x = -kDlaaReach; x < a.width + kDlaaReach; x++) {
             if (y == 0) row[x - long(k) * a.stride] = row[x];
