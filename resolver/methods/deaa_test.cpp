@@ -83,6 +83,41 @@ TEST(Deaa, KeepsTheBoxWhereNoPlaneFits) {
     EXPECT_TRUE(resolved("deaa", flat).samePixels(resolved("ssaa", flat)));
 }
 TEST(Deaa, NeedsSubSamples) { EXPECT_THROW(parseMethod("deaa").create({.width = 8, .height = 8}), InputError); }
+// methods/04 s.4.4 step 2 and the degenerate cases: the box stays where it says so.
+TEST(Deaa, KeepsTheBoxOfIsolatedAndComplexPixels) {
+    const auto keepsBox = [](const Frame& f) {
+        return resolved("deaa:fitTolerance=1", f).samePixels(resolved("ssaa", f));
+    };
+    // One cut pixel alone; two beside each other are an edge.
+    const auto dot = [](double right) {
+        return [right](double x, double y) { return !(x > 20 && x < right && y > 10 && y < 10.4); };
+    };
+    EXPECT_TRUE(keepsBox(sampled(dot(20.6), k4x)));
+    EXPECT_FALSE(keepsBox(sampled(dot(21.6), k4x)));
+    // Every pixel of the neighbourhood is cut: a grid of bars of half a pixel's pitch around it.
+    const Frame bars = sampled([](double x, double y) { return std::fmod(x + 0.13 * y, 0.7) < 0.4; }, k4x);
+    const Rgb box = resolved("ssaa", bars), out = resolved("deaa:fitTolerance=1", bars);
+    int complex = 0, changed = 0;
+    for (int y = 1; y < kH - 1; y++)
+        for (int x = 1; x < kW - 1; x++) {
+            int cut = 0;
+            for (int j = -1; j <= 1; j++)
+                for (int i = -1; i <= 1; i++) {
+                    float least = 2, most = 0;
+                    for (const auto& s : bars.subSamples) {
+                        const float v = s.colorLinear.c[0].at(x + i, y + j);
+                        least = std::min(least, v), most = std::max(most, v);
+                    }
+                    cut += most - least > 0.01f;
+                }
+            changed += out.c[0].at(x, y) != box.c[0].at(x, y);
+            if (cut != 9) continue;
+            complex++;
+            ASSERT_EQ(out.c[0].at(x, y), box.c[0].at(x, y)) << x << "," << y;
+        }
+    EXPECT_GT(complex, 50);
+    EXPECT_GT(changed, 50);
+}
 
 }  // namespace
 }  // namespace aa

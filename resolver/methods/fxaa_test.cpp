@@ -103,6 +103,64 @@ TEST(Fxaa311, RejectsParametersOutOfRange) {
     EXPECT_THROW(parseMethod("fxaa311:subpix=1.5"), UsageError);
     EXPECT_THROW(parseMethod("fxaa311:edgeThreshold=-0.1"), UsageError);
 }
+// methods/02 s.2.1 step 2: where both sums are the same by construction the span is horizontal, in every precision.
+TEST(Fxaa311, StructuralTiesAreHorizontal) {
+    Rgb image(24, 17, 0.13f);
+    for (auto& p : image.c) {
+        p.at(4, 4) = 0.87f, p.at(11, 12) = 0.61f;  // points, and a vertical line
+        for (int y = 0; y < 17; y++) p.at(19, y) = 0.7f;
+    }
+    const Frame f = frameOf(image);
+    for (const auto precision : {Precision::fast, Precision::scalar, Precision::oracle}) {
+        const auto method = parseMethod("fxaa311:edgeThreshold=0.063").create({.width = 24, .height = 17});
+        Rgb out(24, 17);
+        method->keepDebugLayers = true;
+        method->resolve(f, execOf(precision), out);
+        const auto layers = method->debugLayers();
+        ASSERT_EQ(layers[0].name, "edges");  // gold: horizontal; blue: vertical
+        const auto horizontal = [&](int x, int y) {
+            return layers[0].planes[0].at(x, y) > layers[0].planes[2].at(x, y);
+        };
+        const auto vertical = [&](int x, int y) { return layers[0].planes[0].at(x, y) < layers[0].planes[2].at(x, y); };
+        // At a point and beside it the second differences sum up to the same along x and along y.
+        for (const auto& [x, y] : {std::pair{4, 4}, {4, 3}, {3, 4}, {5, 4}, {11, 12}, {10, 12}})
+            EXPECT_TRUE(horizontal(x, y)) << x << "," << y;
+        EXPECT_TRUE(vertical(19, 9));
+    }
+}
+// methods/02 s.2.1, degenerate: with both thresholds 0 a flat pixel still exits, before it divides by its range.
+TEST(Fxaa311, ThresholdsOfZeroLeaveFlatPixelsAlone) {
+    Rgb image(40, 12, 0.4f);
+    for (auto& p : image.c) p.at(20, 6) = 0.400001f;
+    for (const char* spec : {"fxaa311:edgeThreshold=0,edgeThresholdMin=0", "fxaa311:luma=green,edgeThresholdMin=0"}) {
+        const Rgb out = resolveOnce(spec, image);
+        for (int y = 0; y < 12; y++)
+            for (int x = 0; x < 40; x++) {
+                ASSERT_TRUE(std::isfinite(out.c[0].at(x, y))) << spec;
+                if (std::abs(x - 20) > 1 || std::abs(y - 6) > 1) {
+                    ASSERT_EQ(out.c[0].at(x, y), 0.4f) << spec;
+                }
+            }
+    }
+}
+// What each luma sees: a red edge has no green; sqrtLin weighs linear light, where mid greys are darker.
+TEST(Fxaa311, LumaOptionsDecideByTheirOwnPlane) {
+    const auto step = [](float r, float g, float b) {
+        Rgb image = stepImage();
+        for (size_t c = 0; c < 3; c++)
+            for (int y = 0; y < 9; y++)
+                for (int x = 0; x < 64; x++) image.c[c].at(x, y) *= c == 0 ? r : c == 1 ? g : b;
+        return image;
+    };
+    const auto changed = [](const char* spec, const Rgb& image) { return !resolveOnce(spec, image).samePixels(image); };
+    EXPECT_TRUE(changed("fxaa311", step(1, 0, 0)));
+    EXPECT_TRUE(changed("fxaa311:luma=sqrtLin", step(1, 0, 0)));
+    EXPECT_FALSE(changed("fxaa311:luma=green", step(1, 0, 1)));
+    EXPECT_TRUE(changed("fxaa311:luma=green", step(0, 1, 0)));
+    // Encoded red of 0.2: luma 0.06 of 601; sqrt(0.299 * 0.0331) = 0.0995 of linear light. The threshold is 0.0833.
+    EXPECT_FALSE(changed("fxaa311", step(0.2f, 0, 0)));
+    EXPECT_TRUE(changed("fxaa311:luma=sqrtLin", step(0.2f, 0, 0)));
+}
 
 }  // namespace
 }  // namespace aa

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <tuple>
+
 #include "image/error.h"
 #include "methods/fxaa.h"
 #include "methods/spatial_testing.h"
@@ -80,6 +83,86 @@ TEST(FxaaConsole, BlursAlongTheEdgeOnly) {
     EXPECT_GT(diagonal.c[0].at(10, 10), 0.1f);
     // d1 = (1, -1)/sqrt(2), half a pixel: each tap is bilinear at +-.3536 px across the stair.
     EXPECT_NEAR(diagonal.c[0].at(9, 10) + diagonal.c[0].at(10, 10), 1.0f, 0.02f);
+}
+// A line one pixel thin, dark alike above and below, that ends at x = 20 where one side turns bright: that side's pair
+// shows no end, the other's does. Ties of the two gradients go up in 3.11 and 1 (methods/02 s.2.1, 2.2), down in CS
+// (s.2.3).
+TEST(FxaaFamily, TiesOfTheTwoSidesGoWhereTheVariantSays) {
+    for (const bool brightBelow : {false, true}) {
+        Rgb image(48, 15, 0.0f);
+        for (auto& p : image.c)
+            for (int x = 0; x < 48; x++) p.at(x, x < 20 ? 7 : brightBelow ? 8 : 6) = 1.0f;
+        const auto shifted = [&](const char* spec) { return resolveOnce(spec, image).c[1].at(17, 7) < 0.99f; };
+        EXPECT_EQ(shifted("fxaa311:subpix=0,preset=39"), brightBelow);
+        EXPECT_EQ(shifted("fxaacs:subpixelRemoval=0,blendSpace=encoded"), !brightBelow);
+    }
+}
+TEST(FxaaCs, RefusesAThresholdOfZero) {
+    EXPECT_THROW(parseMethod("fxaacs:contrastThreshold=0"), UsageError);
+    EXPECT_NO_THROW(parseMethod("fxaacs:contrastThreshold=0.01"));
+}
+// methods/02 s.2.4 written a second time: per pixel, in double, with clamped bilinear reads.
+TEST(FxaaConsole, ConformsToTheSpecification) {
+    using C = std::array<double, 4>;  // RGB and luma
+    for (const auto& [spec, reach, sharpness] :
+         {std::tuple{"fxaaconsole", 0.5, 8.0}, {"fxaaconsole:reach=0.33,sharpness=4", 0.33, 4.0}})
+        for (const Rgb& image : {randomShapes(97, 61, 7), randomCodes(40, 33, 11), stepImage()}) {
+            const auto at = [&image](int x, int y) {
+                C c{};
+                for (size_t k = 0; k < 3; k++) c[k] = image.c[k].clamped(x, y);
+                c[3] = 0.299 * c[0] + 0.587 * c[1] + 0.114 * c[2];
+                return c;
+            };
+            const auto tap = [&](double x, double y) {
+                const double ax = std::floor(x), ay = std::floor(y), fx = x - ax, fy = y - ay;
+                C sum{};
+                for (int j = 0; j < 2; j++)
+                    for (int i = 0; i < 2; i++) {
+                        const C c = at(int(ax) + i, int(ay) + j);
+                        for (size_t k = 0; k < 4; k++) sum[k] += (i ? fx : 1 - fx) * (j ? fy : 1 - fy) * c[k];
+                    }
+                return sum;
+            };
+            const auto mean = [](const C& a, const C& b) {
+                C m;
+                for (size_t k = 0; k < 4; k++) m[k] = (a[k] + b[k]) / 2;
+                return m;
+            };
+            const Rgb out = resolveOnce(spec, image);
+            int narrow = 0, wide = 0, ties = 0;
+            for (int y = 0; y < image.height(); y++)
+                for (int x = 0; x < image.width(); x++) {
+                    const double nw = tap(x - .5, y - .5)[3], ne = tap(x + .5, y - .5)[3] + 1.0 / 384,
+                                 sw = tap(x - .5, y + .5)[3], se = tap(x + .5, y + .5)[3], m = at(x, y)[3];
+                    const double most = std::max({nw, ne, sw, se}), least = std::min({nw, ne, sw, se});
+                    const double over = std::max(most, m) - std::min(least, m) - std::max(0.05, most * 0.125);
+                    double dx = (sw - ne) + (se - nw), dy = (sw - ne) - (se - nw);
+                    const double length = std::hypot(dx, dy);
+                    C expected = at(x, y);
+                    bool tie = std::abs(over) < 1e-6;
+                    if (over >= 0) {
+                        dx /= length, dy /= length;
+                        const double smallest = sharpness * std::min(std::abs(dx), std::abs(dy));
+                        const double fx = std::clamp(dx / smallest, -2.0, 2.0),
+                                     fy = std::clamp(dy / smallest, -2.0, 2.0);
+                        const C a = mean(tap(x - reach * dx, y - reach * dy), tap(x + reach * dx, y + reach * dy));
+                        const C b = mean(a, mean(tap(x - 2 * fx, y - 2 * fy), tap(x + 2 * fx, y + 2 * fy)));
+                        const bool kept = b[3] >= least && b[3] <= most;
+                        expected = kept ? b : a;
+                        (kept ? wide : narrow)++;
+                        // Rounding of a luma turns a short direction or moves a bound.
+                        tie = tie || length < 1e-3 || std::min(std::abs(b[3] - least), std::abs(b[3] - most)) < 1e-5;
+                    }
+                    ties += tie;
+                    for (size_t c = 0; c < 3 && !tie; c++)
+                        ASSERT_NEAR(out.c[c].at(x, y), expected[c], 1e-3 * (over >= 0)) << spec << x << "," << y;
+                }
+            EXPECT_GT(wide, 30) << spec;
+            EXPECT_LT(ties, 0.03 * image.width() * image.height()) << spec;
+            if (image.width() != 64) {
+                EXPECT_GT(narrow, 30) << spec;
+            }
+        }
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "image/error.h"
 
 namespace aa {
@@ -26,6 +28,26 @@ TEST(ResolveFilters, ReferenceValues) {
     EXPECT_NEAR(filterWeight({.filter = F::sinc, .diameterPx = 2, .textbookSinc = true}, 1), 0, 1e-12);
     EXPECT_NEAR(filterWeight({F::tent, 2}, 0.25), 0.75, 1e-12);
     EXPECT_NEAR(filterWeight({F::smoothstep, 2}, 0.5), 0.5, 1e-12);
+    EXPECT_NEAR(filterWeight({F::smoothstep, 2}, 0.25), 1 - 0.0625 * 2.5, 1e-12);
+    EXPECT_NEAR(filterWeight({F::gaussian, 2}, 0.5), std::exp(-0.5), 1e-12);  // at one sigma
+    EXPECT_NEAR(filterWeight({.filter = F::gaussian, .diameterPx = 2, .sigma = 0.25}, 0.5), std::exp(-2.0), 1e-12);
+    // B-spline: 2/3, 23/48, 1/6 and 1/48 at t = 0, .5, 1, 1.5; the general cubic at its parameters is the same.
+    const double bspline[] = {2 / 3., 23 / 48., 1 / 6., 1 / 48.};
+    for (int i = 0; i < 4; i++) {
+        EXPECT_NEAR(filterWeight({F::bspline, 2}, i * 0.25), bspline[i], 1e-12);
+        EXPECT_NEAR(filterWeight({.filter = F::cubic, .diameterPx = 2, .b = 1, .c = 0}, i * 0.25), bspline[i], 1e-12);
+        EXPECT_NEAR(filterWeight({.filter = F::cubic, .diameterPx = 2, .b = 1 / 3., .c = 1 / 3.}, i * 0.25),
+                    mitchell[i], 1e-6);
+    }
+    // sin(pi u) / (pi u) at u = 2 |dx| = 1/2 and, textbook, at |dx| = 1/2.
+    const double atHalf = 2 / 3.141592653589793;
+    EXPECT_NEAR(filterWeight({F::sinc, 2}, 0.25), atHalf, 1e-12);
+    EXPECT_NEAR(filterWeight({.filter = F::sinc, .diameterPx = 2, .textbookSinc = true}, 0.5), atHalf, 1e-12);
+    EXPECT_EQ(filterWeight({F::sinc, 2}, 1e-4), 1);
+    // Lanczos of two lobes, radius 2 px: sinc(u) sinc(u / 2) at u = 1/2 and 1.
+    const double quarter = std::sin(3.141592653589793 / 4) / (3.141592653589793 / 4);
+    EXPECT_NEAR(filterWeight({F::lanczos, 4}, 0.25), atHalf * quarter, 1e-12);
+    EXPECT_NEAR(filterWeight({F::lanczos, 4}, 0.5), 0, 1e-12);
 }
 TEST(ResolveFilters, WeightsAreNormalisedAndSymmetric) {
     const std::vector<glm::dvec2> grid = {{-.25, -.25}, {.25, -.25}, {-.25, .25}, {.25, .25}};

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "methods/rsaa_lut_data.h"
 
@@ -76,6 +77,27 @@ TEST(RsaaLearn, MasksWithoutTrainingTakeTheMeanOfTheNearestOnes) {
     EXPECT_EQ(table[2 * 0b0000 + 1], 0.25f);
     EXPECT_EQ(table[2 * 0b1111], 0.0f);  // all ones never move
     for (const float v : rsaaTable(4, {})) EXPECT_EQ(v, 0.0f);
+}
+// methods/05 s.5.5.5: half-planes realise 9 / 35 / 130 masks; s.5.5.3: tables of 16, 256 and 65536 entries.
+TEST(RsaaLearn, MasksThatHalfPlanesRealise) {
+    for (const auto& [samples, masks] : {std::pair{4u, 9u}, {8u, 35u}, {16u, 130u}}) {
+        const auto positionsPx = d3dPattern(samples);
+        std::set<uint32_t> seen;
+        for (int i = 0; i < 7200; i++)
+            for (int j = -300; j <= 300; j++) {
+                const double angle = 6.283185307179586 * (i + 0.37) / 7200, r = 0.75 * (j + 0.21) / 300;
+                const double nx = std::cos(angle), ny = std::sin(angle);
+                uint32_t mask = 0;
+                for (size_t k = 0; k < samples; k++)
+                    mask |= uint32_t((nx * positionsPx[k].x + ny * positionsPx[k].y < r) == (0 < r)) << k;
+                seen.insert(mask);
+            }
+        EXPECT_NEAR(double(seen.size()), masks, samples == 16 ? 2 : 0) << samples;
+        const auto learned = learnRsaa(positionsPx, RsaaTraining::halfPlanes);
+        EXPECT_LE(learned.size(), seen.size());
+        for (const auto& e : learned) EXPECT_TRUE(seen.count(e.mask)) << samples << " " << e.mask;
+        EXPECT_EQ(rsaaTable(samples, learned).size(), size_t(2) << samples);
+    }
 }
 
 }  // namespace

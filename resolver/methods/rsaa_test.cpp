@@ -333,6 +333,26 @@ TEST(Rsaa, AsksForWhatItReads) {
     EXPECT_EQ(passes("rsaa:mask=geometry,tuning=off"), base | Pass::depth | Pass::normal | Pass::object);
     EXPECT_EQ(passes("rsaa:mask=pass"), base | Pass::depth | Pass::normal | Pass::object);
 }
+// methods/05 s.5.5.5, acceptance: the full picture of a scene of two planes, masks by SADP, 8 samples: 8 dB or more.
+TEST(Rsaa, GainOnTheTwoPlanesScene) {
+    SynthOptions o;
+    o.scene = "two_planes", o.subsamples = "d3d8", o.jitter = "none";
+    o.width = 240, o.height = 135, o.frames = 1;
+    const SynthShot shot(o);
+    const Frame f = shot.frame(0);
+    const Rgb truth = shot.truth(0).a;
+    const auto mse = [&](const Rgb& image) {
+        double sum = 0;
+        for (size_t c = 0; c < 3; c++)
+            for (int y = 0; y < f.height; y++)
+                for (int x = 0; x < f.width; x++)
+                    sum += std::pow(double(image.c[c].at(x, y)) - double(truth.c[c].at(x, y)), 2);
+        return sum;
+    };
+    const double plain = mse(f.colorLinear);
+    EXPECT_GE(10 * std::log10(plain / mse(resolved(geometryOnly("mask=geometry"), f))), 8.0);
+    EXPECT_GE(10 * std::log10(plain / mse(resolved("rsaa", f))), 8.0);
+}
 
 }  // namespace
 }  // namespace aa

@@ -4,6 +4,7 @@
 
 #include "image/error.h"
 #include "methods/smaa.h"
+#include "methods/smaa_areas.h"
 #include "methods/spatial_testing.h"
 
 namespace aa {
@@ -107,6 +108,11 @@ TEST(SmaaT2x, VelocityWeightOfTheSpecification) {
         method->resolve(jitteredFrame(white, 0, {0, 0}, {0, 0}), {}, out);
         method->resolve(jitteredFrame(black, 1, {0, 0}, {uv * kW, 0}), {}, out);
         EXPECT_NEAR(out.c[0].at(kW / 2, kH / 2), weight, 2e-3) << uv;
+        // In units of 1080 px, whatever the resolution.
+        const auto pixels = parseMethod("smaaT2x:velocityUnit=px1080").create({.width = kW, .height = kH});
+        pixels->resolve(jitteredFrame(white, 0, {0, 0}, {0, 0}), {}, out);
+        pixels->resolve(jitteredFrame(black, 1, {0, 0}, {0, uv * 1080}), {}, out);
+        EXPECT_NEAR(out.c[0].at(kW / 2, kH / 2), weight, 2e-3) << uv;
     }
 }
 TEST(SmaaT2x, TakesNothingFromOutsideThePreviousFrame) {
@@ -186,6 +192,64 @@ TEST(SmaaMulti, OtherPatternsAreInputErrors) {
     EXPECT_THROW(
         parseMethod("smaa4x").create({.width = 8, .height = 8, .subSamplePositionsPx = {{.25, .25}, {-.25, .25}}}),
         InputError);
+}
+// methods/03 s.3.5: the tiles of the published table for the four net positions, orthogonal ones as their offsets
+// across vertical and horizontal edges. y is down here, up there.
+TEST(SmaaMulti, TilesAreThoseOfThePublishedIndices) {
+    const double tiles[] = {0, -.25, .25, -.125, .125, -.375, .375};
+    struct Sample {
+        glm::dvec2 positionPx;
+        int vertical, horizontal;
+    };
+    for (const Sample& s : {Sample{{.375, .125}, 5, 3},
+                            {{-.125, -.375}, 4, 6},
+                            {{.125, .375}, 3, 5},
+                            {{-.375, -.125}, 6, 4},
+                            {{.25, .25}, 1, 1},  // T2x
+                            {{-.25, -.25}, 2, 2}})
+        for (const bool vertical : {false, true}) {
+            Rgb image(vertical ? 9 : 64, vertical ? 64 : 9);
+            const Rgb step = stepImage();
+            for (size_t c = 0; c < 3; c++)
+                for (int y = 0; y < 9; y++)
+                    for (int x = 0; x < 64; x++) image.c[c].at(vertical ? y : x, vertical ? x : y) = step.c[c].at(x, y);
+            Frame f = jitteredFrame(image, 0, s.positionPx);
+            const auto method =
+                parseMethod("smaaT2x:preset=MEDIUM").create({.width = image.width(), .height = image.height()});
+            Rgb out(image.width(), image.height());
+            method->keepDebugLayers = true;
+            method->resolve(f, {}, out);
+            const auto layers = method->debugLayers();
+            const std::string wanted = vertical ? "weights.left" : "weights.top";
+            const auto layer = std::find_if(layers.begin(), layers.end(),
+                                            [&](const auto& l) { return l.name.find(wanted) != std::string::npos; });
+            ASSERT_NE(layer, layers.end());
+            // 7 px before the step, which crosses on the pixel's own side; nothing within 15 px on the other hand.
+            const SmaaAreas a = orthogonalArea(0, 3, 15, 7, tiles[vertical ? s.vertical : s.horizontal]);
+            const int x = vertical ? 4 : 24, y = vertical ? 24 : 4;
+            EXPECT_GT(a.own + a.opposite, 0.01);
+            EXPECT_NEAR(layer->planes[0].at(x, y), a.own, 1e-6) << s.positionPx.x << vertical;
+            EXPECT_NEAR(layer->planes[1].at(x, y), a.opposite, 1e-6) << s.positionPx.x << vertical;
+        }
+}
+// The diagonal tiles: half of the displacement across a diagonal in x, half in y, of opposite signs for the two kinds.
+TEST(SmaaMulti, JitteredDiagonalsComeBack) {
+    for (const double direction : {1.0, -1.0}) {
+        double back = 0, unmoved = 0, wrong = 0;
+        for (int k = 0; k < 12; k++) {
+            const double slope = direction * (0.94 + 0.01 * k), y0 = (direction > 0 ? -19.3 : 58.1) + 0.29 * k;
+            const Rgb truth = coverage(y0, slope, false);
+            const auto error = [&](glm::dvec2 rendered, glm::dvec2 declared) {
+                const Rgb image = shallowEdge(y0, slope, false, rendered);
+                return squaredError(
+                    resolveOnce("smaaT2x:blendSpace=encoded,preset=ULTRA", jitteredFrame(image, 0, declared)), truth);
+            };
+            const glm::dvec2 across(0.25, -0.25 * direction);
+            back += error(across, across), unmoved += error(across, {0, 0}), wrong += error(across, -across);
+        }
+        EXPECT_LT(back, 0.7 * unmoved) << direction;
+        EXPECT_LT(unmoved, 0.8 * wrong) << direction;
+    }
 }
 
 }  // namespace

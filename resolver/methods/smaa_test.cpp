@@ -225,6 +225,23 @@ TEST(Smaa1x, DebugLayersShowEdgesWeightsAndSearches) {
     EXPECT_FLOAT_EQ(layers[2].planes[1].at(32, 4), .078125f);
     EXPECT_EQ(layers[3].planes[1].at(24, 4), 7.0f);  // px to the step
 }
+// methods/03 s.3.2.2: along an endless edge the left search stops at 2 steps - 1 px, the right one at 2 steps.
+TEST(Smaa1x, SearchesEndAtTheirCaps) {
+    Rgb image(200, 10, 0.0f);
+    for (auto& p : image.c)
+        for (int y = 0; y < 5; y++)
+            for (int x = 0; x < 200; x++) p.at(x, y) = 1.0f;
+    for (const auto& [preset, steps] : {std::pair{"LOW", 4}, {"MEDIUM", 8}, {"HIGH", 16}, {"ULTRA", 32}}) {
+        const auto method = parseMethod(std::string("smaa1x:preset=") + preset).create({.width = 200, .height = 10});
+        Rgb out(200, 10);
+        method->keepDebugLayers = true;
+        method->resolve(frameOf(image), {}, out);
+        const auto layers = method->debugLayers();
+        EXPECT_EQ(layers[3].name, "search.top");
+        EXPECT_EQ(layers[3].planes[0].at(100, 5), float(2 * steps - 1)) << preset;
+        EXPECT_EQ(layers[3].planes[1].at(100, 5), float(2 * steps)) << preset;
+    }
+}
 
 }  // namespace
 }  // namespace aa

@@ -60,6 +60,7 @@ TEST(Ssaa, OneSampleEqualsNoaaAndConstantsStayExact) {
     f.colorLinear = f.subSamples[0].colorLinear;
     Rgb plain(17, 3);
     noaaDescriptor().create(Params("noaa", {}, {}), {})->resolve(f, {}, plain);
+    EXPECT_TRUE(plain.samePixels(f.colorLinear));  // noaa: what was rendered, bit by bit
     EXPECT_TRUE(resolved(f).samePixels(plain));
     for (const size_t count : {3u, 7u, 64u})
         EXPECT_TRUE(resolved(frameOf(9, 2, count, [](auto...) { return 0.1f; })).samePixels(Rgb(9, 2, 0.1f))) << count;

@@ -95,6 +95,9 @@ TEST(TemporalBlocks, RoundedBoxVectors) {
     EXPECT_EQ(roundedHigh(-1, 1), 0.5);
     EXPECT_EQ(roundedHigh(0, 0), 1.0);
     EXPECT_EQ(roundedHigh(0, -1), 1.0);
+    const auto corner =
+        box_of(neighbours<double>([&](int i, int j) { return oneInWindow(i, j, 1, 1); }), Neighbourhood::rounded);
+    EXPECT_EQ(corner.lo.x, 0.0);
     const auto window = neighbours<double>([](int i, int j) { return oneInWindow(i, j, 1, 1); });
     EXPECT_EQ(window.plus.hi.x, 0.0);
     EXPECT_NEAR(window.meanSquare.x, 1.0 / 9, 1e-12);

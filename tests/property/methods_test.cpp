@@ -96,6 +96,40 @@ TEST_P(EveryMethod, LanesAgreeWithDouble) {
     EXPECT_LE(double(far), 0.002 * double(all));
 }
 
+// methods/08 s.8.4: a blend stays within what it blends; a checkerboard, noise, lone bright and dark pixels. Filters
+// with negative lobes and sharpening may leave it.
+TEST_P(EveryMethod, BlendsStayWithinTheirInput) {
+    const MethodSpec spec = parseMethod(GetParam());
+    if (spec.method->temporal) GTEST_SKIP() << "the torture set of the temporal methods bounds them";
+    for (const char* overshooting : {"mitchell", "catmullRom", "cubic", "sinc", "lanczos"})
+        if (GetParam().find(overshooting) != std::string::npos) GTEST_SKIP() << "negative lobes";
+    const auto flat = [](double v) { return Surface{glm::vec3(float(v)), 5.0f, {0, 0, 1}, 1 + uint32_t(v * 8)}; };
+    const Scene checker = [&](double x, double y) {
+        return flat((int(std::floor(x)) + int(std::floor(y))) % 2 ? 0.875 : 0.25);
+    };
+    const Scene points = [&](double x, double y) {
+        const int i = int(std::floor(x)) % 7, j = int(std::floor(y)) % 5;
+        return flat(i == 3 && j == 2 ? 0.875 : i == 5 && j == 4 ? 0.25 : 0.5);
+    };
+    const Scene noisy = [&](double x, double y) { return flat(0.25 + 0.625 * double(noise(3)(x, y).color.x)); };
+    for (const Scene& scene : {checker, points, noisy}) {
+        Subject s = makeSubject(GetParam(), 40, 24);
+        const Rgb out = step(s, renderFrame(scene, 40, 24, 1, {0, 0}, {0, 0}, s.samples));
+        float least = 0.25f, most = 0.875f;
+        if (spec.outputSpace() == Space::encoded) {
+            Rgb encoded;
+            encode(Rgb(2, 1, least), {}, {}, encoded), least = encoded.c[0].at(0, 0);
+            encode(Rgb(2, 1, most), {}, {}, encoded), most = encoded.c[0].at(0, 0);
+        }
+        for (const auto& p : out.c)
+            for (int y = 0; y < 24; y++)
+                for (int x = 0; x < 40; x++) {
+                    ASSERT_GE(p.at(x, y), least - 1e-6f) << x << "," << y;
+                    ASSERT_LE(p.at(x, y), most + 1e-6f) << x << "," << y;
+                }
+    }
+}
+
 TEST_P(EveryMethod, ResetForgetsTheHistory) {
     Subject used = makeSubject(GetParam(), 48, 30), fresh = makeSubject(GetParam(), 48, 30);
     for (int n = 1; n <= 3; n++)
