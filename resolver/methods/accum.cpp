@@ -7,7 +7,7 @@ namespace {
 
 class Accum : public Method {
   public:
-    explicit Accum(int samples) : samples_(samples) {}
+    Accum(int samples, bool encoded) : samples_(samples), encoded_(encoded) {}
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         if (frame.reset || sum_[0].width() != frame.width || sum_[0].height() != frame.height) {
@@ -21,7 +21,7 @@ class Accum : public Method {
             for (size_t c = 0; c < 3; c++)
                 for (int y = y0; y < y1; y++) {
                     double* sum = sum_[c].row(y);
-                    const float* color = frame.colorLinear.c[c].row(y);
+                    const float* color = (encoded_ ? frame.colorEncoded : frame.colorLinear).c[c].row(y);
                     float* o = out.c[c].row(y);
                     for (int x = 0; x < frame.width; x++) {
                         if (adds) sum[x] += double(color[x]);
@@ -34,27 +34,33 @@ class Accum : public Method {
 
   private:
     int samples_, count_ = 0;
+    bool encoded_;
     std::array<Plane<double>, 3> sum_;
 };
 
 }  // namespace
 
 MethodDescriptor accumDescriptor() {
-    return {.id = "accum",
-            .title = "Accumulation buffer",
-            .family = "reference",
-            .summary = "Mean of the jittered frames of a static scene, in linear light.",
-            .source = "Haeberli & Akeley 1990; methods/01 s.1.3",
-            .passes = Pass::color,
-            .temporal = true,
-            .params = {intParam("samples", "128", 1, 100000, "frames averaged; later frames leave the mean as it is",
-                                "seed 000 s.4.1.3")},
-            .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
-                if (!shot.isStatic)
-                    throw InputError(
-                        "accum: averages the frames of a static shot, and this shot moves; use accumReject, or "
-                        "ssaa on sub-sample colours");
-                return std::make_unique<Accum>(p.integer("samples"));
-            }};
+    return {
+        .id = "accum",
+        .title = "Accumulation buffer",
+        .family = "reference",
+        .summary = "Mean of the jittered frames of a static scene.",
+        .source = "Haeberli & Akeley 1990; methods/01 s.1.3",
+        .passes = Pass::color,
+        .temporal = true,
+        .params = {intParam("samples", "128", 1, 100000, "frames averaged; later frames leave the mean as it is",
+                            "seed 000 s.4.1.3"),
+                   choiceParam("space", "linear", {"linear", "encoded"},
+                               "values that are averaged: light, or display values as a GL accumulation buffer held",
+                               "methods/01 s.1.3 (accumEncoded)")},
+        .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
+            if (!shot.isStatic)
+                throw InputError(
+                    "accum: averages the frames of a static shot, and this shot moves; use accumReject, or "
+                    "ssaa on sub-sample colours");
+            return std::make_unique<Accum>(p.integer("samples"), p.choice("space") == "encoded");
+        },
+        .outputSpace = [](const Params& p) { return p.choice("space") == "encoded" ? Space::encoded : Space::linear; }};
 }
 }  // namespace aa

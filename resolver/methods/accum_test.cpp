@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "image/colour.h"
 #include "image/error.h"
 #include "methods/temporal_test_frames.h"
 
@@ -36,6 +37,16 @@ TEST(Accum, FirefliesAndResets) {
     const Frame cut = temporalFrame(0, 3, 2, noisePicture(4));
     m.resolve(cut, {}, {});
     EXPECT_TRUE(m.out.samePixels(cut.colorLinear));
+}
+// Light of 1 and 0.25 in turn: display values 1 and 0.5371.
+TEST(Accum, EncodedAveragesDisplayValues) {
+    RunningMethod encoded = running("accum:space=encoded", 3, 2, true);
+    for (int n = 0; n < 8; n++) {
+        Frame f = temporalFrame(n, 3, 2, [n](int, int, int) { return n % 2 ? 1.0f : 0.25f; });
+        encode(f.colorLinear, {}, {}, f.colorEncoded);
+        encoded.resolve(f, {}, {});
+    }
+    EXPECT_NEAR(encoded.out.c[0].at(1, 1), (1 + 0.5370987) / 2, 1e-6);
 }
 TEST(Accum, MovingShotsAreInputErrors) { EXPECT_THROW(running("accum", 8, 8, false), InputError); }
 

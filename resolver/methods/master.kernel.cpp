@@ -16,15 +16,11 @@ struct MasterTile {
 
     AA_INLINE int offset(int x, int y) const { return (y - y0 + kMarginY) * kStride + x - x0 + kMarginX; }
     template <class R>
-    AA_INLINE R get(const T* plane, int x, int y) const {
+    static AA_INLINE R get(const T* p) {
         if constexpr (N<R> == 1)
-            return plane[offset(x, y)];
+            return *p;
         else
-            return load<R>(plane + offset(x, y));
-    }
-    template <class R>
-    AA_INLINE void put(T* plane, int x, int y, R value) {
-        store(value, plane + offset(x, y));
+            return load<R>(p);
     }
     // Calls pixels(x, y) for the tile and `margin` pixels around it, as far as they lie in the picture.
     template <class R, class Pixels>
@@ -56,20 +52,23 @@ struct MasterTile {
 template <class R>
 AA_INLINE void fill_luminance(const MasterArgs& a, MasterTile<Elem<R>>& tile, int x, int y) {
     const long o = long(y) * a.in.stride + x;
+    const int t = tile.offset(x, y);
     const vec3<R> albedo = load3<R>(a.albedoLinear.c, o);
     const vec3<R> encoded{srgb_encode(saturate(albedo.x)), srgb_encode(saturate(albedo.y)),
                           srgb_encode(saturate(albedo.z))};
-    tile.template put<R>(tile.luminanceAlbedo, x, y, luminance(encoded, a.bt601));
-    tile.template put<R>(tile.luminanceLit, x, y, luminance(load3<R>(a.in.color.c, o), a.bt601));
+    store(luminance(encoded, a.bt601), tile.luminanceAlbedo + t);
+    store(luminance(load3<R>(a.in.color.c, o), a.bt601), tile.luminanceLit + t);
 }
 template <class R>
 AA_INLINE void fill_sobel(const MasterArgs& a, MasterTile<Elem<R>>& tile, int x, int y) {
     using T = Elem<R>;
+    using Tile = MasterTile<T>;
     const R farDepth = R(T(a.farDepth));
     const long o = long(y) * a.in.stride + x;
+    const int t = tile.offset(x, y);
     const auto window = [&](const T* plane) __attribute__((always_inline)) {
         return sobel_magnitude<R>([&](int i, int j) __attribute__((always_inline)) {
-            return tile.template get<R>(plane, x + i, y + j);
+            return Tile::template get<R>(plane + t + j * Tile::kStride + i);
         });
     };
     const R depth = sobel_magnitude<R>([&](int i, int j) __attribute__((always_inline)) {
@@ -77,21 +76,23 @@ AA_INLINE void fill_sobel(const MasterArgs& a, MasterTile<Elem<R>>& tile, int x,
     });
     const R sum = window(tile.luminanceAlbedo) * R(T(a.weightAlbedo)) + window(tile.luminanceLit) * R(T(a.weightLit)) +
                   depth * R(T(a.depthScale));
-    tile.template put<R>(tile.sobel, x, y, sobel_curve(sum));
+    store(sobel_curve(sum), tile.sobel + t);
 }
 
 // T: the Sobel value over time, and the past of colour and depth.
 template <class R>
 AA_INLINE void fill_past(const MasterArgs& a, MasterTile<Elem<R>>& tile, int x, int y) {
     using T = Elem<R>;
+    using Tile = MasterTile<T>;
     const TemporalIn& in = a.in;
     const long o = long(y) * in.stride + x;
+    const int t = tile.offset(x, y);
     const Motion<R> motion = dilated_motion<R>(in, o);
     const Reprojection<R> q = reproject(in, motion, x, y);
     const Texel<R> past = fetch_bilinear<R>(in.history + 4 * o, in.stride, q);
 
     const auto sobelAt = [&](int i, int j) __attribute__((always_inline)) {
-        return tile.template get<R>(tile.sobel, x + i, y + j);
+        return Tile::template get<R>(tile.sobel + t + j * Tile::kStride + i);
     };
     const R now = sobelAt(0, 0);
     R filtered = now;
@@ -104,29 +105,31 @@ AA_INLINE void fill_past(const MasterArgs& a, MasterTile<Elem<R>>& tile, int x, 
         const R k = min(luminance_feedback(now, held, a.kMin, a.kMax), R(T(in.feedbackCeiling)));
         filtered = select(q.inside, held + (now - held) * (R(T(1)) - k), now);
     }
-    tile.template put<R>(tile.filtered, x, y, filtered);
+    store(filtered, tile.filtered + t);
 
     alignas(64) int k[N<R>];
     nearest_offsets(q, in.stride, k);
     const R depth = a.samePixelDepth ? load<R>(a.previousDepth + o) : gather<R>(a.previousDepth + o, k);
-    tile.template put<R>(tile.pastDepth, x, y, select(q.inside, depth, R(T(__builtin_nanf("")))));
+    store(select(q.inside, depth, R(T(__builtin_nanf("")))), tile.pastDepth + t);
     const vec3<R> color = in.filter == HistoryFilter::bilinear ? past.rgb : fetch_history(in, x, y, q);
-    tile.template put<R>(tile.past[0], x, y, color.x);
-    tile.template put<R>(tile.past[1], x, y, color.y);
-    tile.template put<R>(tile.past[2], x, y, color.z);
+    store(color.x, tile.past[0] + t);
+    store(color.y, tile.past[1] + t);
+    store(color.z, tile.past[2] + t);
 }
 
 template <class R>
 AA_INLINE void masterPixel(const MasterArgs& a, const MasterTile<Elem<R>>& tile, int x, int y) {
     using T = Elem<R>;
+    using Tile = MasterTile<T>;
     const TemporalIn& in = a.in;
     const R zero(T(0)), one(T(1)), farDepth = R(T(a.farDepth));
     const long o = long(y) * in.stride + x;
+    const int t = tile.offset(x, y);
     const auto at = [&](int i, int j) __attribute__((always_inline)) { return o + long(j) * in.stride + i; };
     const vec3<R> current = load3<R>(in.color.c, o);
-    const vec3<R> history{tile.template get<R>(tile.past[0], x, y), tile.template get<R>(tile.past[1], x, y),
-                          tile.template get<R>(tile.past[2], x, y)};
-    const R pastDepth = tile.template get<R>(tile.pastDepth, x, y);
+    const vec3<R> history{Tile::template get<R>(tile.past[0] + t), Tile::template get<R>(tile.past[1] + t),
+                          Tile::template get<R>(tile.past[2] + t)};
+    const R pastDepth = Tile::template get<R>(tile.pastDepth + t);
     const auto inside = pastDepth == pastDepth;
 
     // How aliased is this pixel?
@@ -154,7 +157,7 @@ AA_INLINE void masterPixel(const MasterArgs& a, const MasterTile<Elem<R>>& tile,
     }
     if (a.useSobel) {
         const auto s = [&](int i, int j) __attribute__((always_inline)) {
-            return tile.template get<R>(tile.filtered, x + i, y + j);
+            return Tile::template get<R>(tile.filtered + t + j * Tile::kStride + i);
         };
         const R plus = s(0, 0) + ((s(-1, 0) + s(1, 0)) + (s(0, -1) + s(0, 1)));
         const R square = plus + ((s(-1, -1) + s(1, -1)) + (s(-1, 1) + s(1, 1)));
@@ -174,7 +177,7 @@ AA_INLINE void masterPixel(const MasterArgs& a, const MasterTile<Elem<R>>& tile,
     const R k = min(luminance_feedback(luma709(current), luma709(clipped), a.kMin, a.kMax), R(T(in.feedbackCeiling)));
     const vec3<R> mixed = select(inside, blend(current, clipped, k), current);
 
-    store_blend(in, x, y, sanitised(mixed, current, history), tile.template get<R>(tile.filtered, x, y));
+    store_blend(in, x, y, sanitised(mixed, current, history), Tile::template get<R>(tile.filtered + t));
     if (!in.debug.feedback) {
         store_debug(in.debug, o, Motion<R>{k, k}, inside, box, history, k);
     } else {
@@ -198,7 +201,7 @@ AA_INLINE void masterTile(const MasterArgs& a, MasterTile<Elem<R>>& tile) {
     } else {
         tile.template cover<R>(
             margin, [&](int x, int y)
-                        __attribute__((always_inline)) { tile.template put<R>(tile.sobel, x, y, R(T(0))); });
+                        __attribute__((always_inline)) { store(R(T(0)), tile.sobel + tile.offset(x, y)); });
         tile.continueBeyond(tile.sobel, margin);
     }
     if (a.in.history) {
@@ -211,7 +214,7 @@ AA_INLINE void masterTile(const MasterArgs& a, MasterTile<Elem<R>>& tile) {
             if (a.in.history)
                 masterPixel<R>(a, tile, x, y);
             else
-                store_first<R>(a.in, x, y, tile.template get<R>(tile.sobel, x, y));
+                store_first<R>(a.in, x, y, MasterTile<T>::template get<R>(tile.sobel + tile.offset(x, y)));
             const long o = long(y) * a.in.stride + x;
             store(load<R>(a.in.depthView + o), a.keptDepth + o);
         });

@@ -64,7 +64,7 @@ PassSet MethodSpec::passes() const {
 bool MethodSpec::readsEncoded() const {
     for (const auto& stage : stages)
         if (aa::readsEncoded(stage)) return true;
-    return method->input == Space::encoded;
+    return method->input == Space::encoded || outputSpace() == Space::encoded;
 }
 
 Space MethodSpec::outputSpace() const { return method->outputSpace ? method->outputSpace(params()) : method->output; }

@@ -39,12 +39,7 @@ class Mlaa : public Method {
                                  out.stride(),
                                  width_,
                                  height_};
-        const auto& kernel = mlaaKernelsFor(exec.isa).blend;
-        const auto fn = exec.precision == Precision::fast     ? kernel.fast
-                        : exec.precision == Precision::scalar ? kernel.scalar
-                                                              : kernel.oracle;
-        forRows(
-            exec, int(blocks), [&](int b0, int b1) { fn(args, b0, b1); }, 1);
+        runKernel(mlaaKernelsFor(exec.isa).blend, exec, args, int(blocks), 1);
     }
     size_t stateBytes() const override {
         return top_.bytes() + left_.bytes() + topByColumn_.bytes() + leftByColumn_.bytes() +
