@@ -124,7 +124,7 @@ def prepare(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> None:
     """Settings that every render of an export shares; nothing that changes the look of the scene."""
     scene.render.engine = "CYCLES"
     settings = scene.render.image_settings
-    settings.file_format = "OPEN_EXR_MULTILAYER"
+    compat.set_multilayer_exr(settings)
     settings.color_depth = "32"
     settings.exr_codec = "NONE"  # read back at once: packing would only cost time
     scene.render.use_file_extension = False
