@@ -4,12 +4,13 @@
     blender -b --factory-startup --python-exit-code 9 -P tests/bench/exporter_bench.py -- [--pattern d3d8]
         [--resolution 480 270] [--triangles 200000] [--rounds 7]
 
-User + system time of the Blender process. Every round measures all of them one after the other, so that a busy machine
-slows them alike: the seconds are the least of the rounds, the ratios the median of the rounds' own ratios.
+User + system time of the Blender process. A round runs each of them twice in a row and times the second: as in a long
+export, what stays between frames stays. The seconds are the least of the rounds, the ratios the median of the rounds'
+own ratios, so that a busy machine slows both sides alike.
 
-Renders include reading them back and bringing them to the arrays that the exporter writes. A frame is all that the
-exporter does for it, to the file on disk; the line below it, what sub-samples add to that: also their mask, packing and
-writing. Nothing is cached between rounds but what the exporter itself keeps between frames.
+Renders include reading them back and bringing them to the arrays that the exporter writes. What sub-samples cost is a
+main pass with them less one without: Cycles transfers the geometry again when the override material comes and when it
+goes, and the latter shows in the main pass. A frame is all that the exporter does for it, to the file on disk.
 """
 
 from __future__ import annotations
@@ -151,20 +152,24 @@ def main() -> None:
     count = len(plan.positions)
     works = {
         "main": lambda: main_pass(every),
+        "plain": lambda: main_pass(every - {"albedo"}),
         "lean": lambda: main_pass({"depth", "normal", "object"}),
-        "views": multi_view,
+        "main+": lambda: (main_pass(every), multi_view()),
+        "plain+": lambda: (main_pass(every - {"albedo"}), multi_view()),
+        "lean+": lambda: (main_pass({"depth", "normal", "object"}), multi_view()),
         "separate": separately,
         "frame": lambda: frame(every),
-        "full": lambda: frame(every | {"subsamples"}),
+        "frame+": lambda: frame(every | {"subsamples"}),
     }
     seconds: dict[str, list[float]] = {name: [] for name in works}
-    for work in works.values():
-        work()  # the first one also builds what stays
     for _ in range(options.rounds):
         for name, work in works.items():
+            work()  # brings Cycles to where the frame before would have left it
             seconds[name].append(cpu_seconds(work))
-    # What sub-samples add is the difference of two frames of one round.
-    added = [full - frame for full, frame in zip(seconds["full"], seconds["frame"])]
+    added = {
+        name: [both - one for both, one in zip(seconds[f"{name}+"], seconds[name])]
+        for name in ("main", "plain", "lean", "frame")
+    }
 
     def line(text: str, values: list[float], base: str, what: str) -> str:
         ratio = statistics.median(v / one for v, one in zip(values, seconds[base]))
@@ -174,12 +179,15 @@ def main() -> None:
     for text in (
         f"{triangles} triangles, {width} x {height}, {options.rounds} rounds: least seconds, median ratios",
         line("main pass", seconds["main"], "main", "colour, albedo, depth, normal, object ids, motion"),
+        line("plain main pass", seconds["plain"], "main", "the same without albedo"),
         line("lean main pass", seconds["lean"], "main", "colour, depth, normal, object ids"),
-        line(f"{count} sub-samples", seconds["views"], "main", "depth, normal, object ids: multi-view, override"),
-        line(f"{count} sub-samples", seconds["views"], "lean", "the same beside the lean main pass"),
+        line(f"{count} sub-samples", added["main"], "main", "depth, normal, object ids: multi-view, override"),
+        line("", added["plain"], "plain", "the same beside the plain main pass"),
+        line("", added["lean"], "lean", "the same beside the lean main pass"),
         line(f"{count} separate renders", seconds["separate"], "main", "of the lean main pass"),
+        line("", seconds["separate"], "plain", "the same beside the plain main pass"),
         line("frame", seconds["frame"], "frame", "main pass, packed and written"),
-        line(f"{count} sub-samples in a frame", added, "frame", "added to it: mask, packing and writing too"),
+        line(f"{count} sub-samples in a frame", added["frame"], "frame", "added to it: mask, packing and writing too"),
     ):  # fmt: skip
         reporter.say("bench", text)
 
