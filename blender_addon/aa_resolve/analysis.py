@@ -361,7 +361,7 @@ def notes_on_edges() -> list[str]:
         if material.users
         and material.use_nodes
         and material.node_tree
-        and material.cycles.displacement_method != "BUMP"
+        and compat.displacement_method(material) != "BUMP"
         and any(
             node.bl_idname == "ShaderNodeOutputMaterial" and node.inputs["Displacement"].is_linked
             for node in material.node_tree.nodes

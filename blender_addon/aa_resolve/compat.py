@@ -66,6 +66,19 @@ def strips(scene: bpy.types.Scene) -> list:
     return list(getattr(editor, "strips_all", None) or getattr(editor, "sequences_all", []))
 
 
+def set_multilayer_exr(settings) -> None:
+    """Image settings for one multilayer EXR with every pass and view in the same part."""
+    set_if_present(settings, "media_type", "MULTI_LAYER_IMAGE")  # since 5.0 it decides which formats there are
+    settings.file_format = "OPEN_EXR_MULTILAYER"
+    set_if_present(settings, "use_exr_interleave", True)  # else, since 5.0, a part for every pass
+
+
+def displacement_method(material: bpy.types.Material) -> str:
+    """``BUMP`` where displacement only bends normals: Cycles' own setting before 4.1, the material's since."""
+    owner = material if hasattr(material, "displacement_method") else material.cycles
+    return owner.displacement_method
+
+
 def set_compositing(scene: bpy.types.Scene, enabled: bool) -> None:
     """Compositor and sequencer on or off for renders."""
     scene.render.use_compositing = enabled

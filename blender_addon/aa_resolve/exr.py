@@ -52,11 +52,13 @@ class Part:
         return first.shape[0], first.shape[1]
 
     def planes(self) -> list[np.ndarray]:
-        """One H x W plane per channel, in the channel's type."""
+        """One H x W plane per channel, in the channel's type; the part's own pixels where that is theirs."""
         planes = (
             self.pixels if isinstance(self.pixels, list) else list(np.moveaxis(self.pixels, -1, 0))
         )
-        return [plane.astype(_TYPES[kind][1]) for plane, kind in zip(planes, self.types)]
+        return [
+            plane.astype(_TYPES[kind][1], copy=False) for plane, kind in zip(planes, self.types)
+        ]
 
 
 def _attribute(name: str, kind: str, value: bytes) -> bytes:
@@ -92,16 +94,17 @@ def _header(part: Part, display: tuple[int, int], order: list[int], blocks: int)
     )
 
 
-def _pack(raw: bytes, compression: str) -> bytes:
+def _pack(data: np.ndarray, compression: str) -> bytes:
     """One block as it is stored: bytes halved into even and odd ones, differences, deflate; raw if that is no gain."""
     if compression == "none":
-        return raw
-    data = np.frombuffer(raw, np.uint8)
+        return data.tobytes()
     sorted_bytes = np.concatenate((data[0::2], data[1::2]))
-    differences = sorted_bytes.copy()
-    differences[1:] = sorted_bytes[1:] - sorted_bytes[:-1] + np.uint8(128)
-    packed = zlib.compress(differences.tobytes(), _ZLIB_LEVEL)
-    return packed if len(packed) < len(raw) else raw
+    differences = np.empty_like(sorted_bytes)
+    differences[:1] = sorted_bytes[:1]
+    np.subtract(sorted_bytes[1:], sorted_bytes[:-1], out=differences[1:])
+    differences[1:] += np.uint8(128)
+    packed = zlib.compress(differences, _ZLIB_LEVEL)
+    return packed if len(packed) < len(data) else data.tobytes()
 
 
 def _unpack(stored: bytes, size: int) -> bytes:
@@ -117,14 +120,10 @@ def _unpack(stored: bytes, size: int) -> bytes:
     return data.tobytes()
 
 
-def _blocks_of(part: Part, order: list[int]) -> list[bytes]:
-    """Uncompressed blocks: line by line, in each line channel by channel."""
-    planes, height = part.planes(), part.shape[0]
-    lines = np.concatenate(
-        [planes[index].view(np.uint8).reshape(height, -1) for index in order], axis=1
-    )
-    step = COMPRESSIONS[part.compression][1]
-    return [lines[row : row + step].tobytes() for row in range(0, height, step)]
+def _block(planes: list[np.ndarray], row: int, lines: int) -> np.ndarray:
+    """Bytes of some lines, not compressed: line by line, in each line channel by channel."""
+    rows = [np.ascontiguousarray(plane[row : row + lines]).view(np.uint8) for plane in planes]
+    return np.concatenate(rows, axis=1).reshape(-1)
 
 
 def write_parts(path: str, parts: list[Part]) -> dict[str, int]:
@@ -140,12 +139,17 @@ def write_parts(path: str, parts: list[Part]) -> dict[str, int]:
             order = sorted(
                 range(len(part.channels)), key=lambda index: part.channels[index].encode()
             )
-            blocks = _blocks_of(part, order)
-            headers.append(_header(part, parts[0].shape, order, len(blocks)))
-            stored.append(
-                list(pool.map(lambda raw, kind=part.compression: _pack(raw, kind), blocks))
-            )
-            lines.append(COMPRESSIONS[part.compression][1])
+            planes = part.planes()
+            ordered = [planes[index] for index in order]
+            step = COMPRESSIONS[part.compression][1]
+            rows = range(0, part.shape[0], step)
+            headers.append(_header(part, parts[0].shape, order, len(rows)))
+
+            def packed(row, planes=ordered, lines=step, kind=part.compression) -> bytes:
+                return _pack(_block(planes, row, lines), kind)
+
+            stored.append(list(pool.map(packed, rows)))
+            lines.append(step)
     flags = _VERSION | (_MULTIPART if many else 0)
     start = struct.pack("<ii", _MAGIC, flags) + b"".join(headers) + (b"\0" if many else b"")
     position = len(start) + 8 * sum(len(blocks) for blocks in stored)
@@ -234,9 +238,9 @@ def read_channels(path: str) -> dict[str, np.ndarray]:
     Reads scanline files without compression, ZIPS or ZIP. Without compression the arrays are views of the file's
     bytes: a channel that nobody looks at costs nothing."""
     try:
-        with open(path, "rb") as file:
-            content = memoryview(file.read())
-        return _read(content)
+        # Into an array of numpy's, whose large ones lie in huge pages: the page faults of a bytes object cost more
+        # than the reading.
+        return _read(memoryview(np.fromfile(path, np.uint8)))
     except (OSError, IndexError, ValueError, KeyError, struct.error, zlib.error) as error:
         raise SceneError(f"{path}: cannot be read as EXR ({error})") from error
 

@@ -107,12 +107,12 @@ class ObjectIds:
 
     def resolve(self, layers: rendering.Layers, view: str = "") -> np.ndarray:
         """Ids (H x W uint32) of a render."""
-        index = np.rint(layers.get("IndexOB", view)[:, :, 0]).astype(np.int64)
-        strange = sorted(set(np.unique(index)) - set(self.table))
-        if strange:
+        index = np.rint(layers.get("IndexOB", view)[:, :, 0]).astype(np.int32)
+        strange = index[(index < 0) | (index >= len(self.table))]  # the table counts from 0 without gaps
+        if strange.size:
             raise SceneError(
-                f"the render shows the object index {strange[0]}, which no object was given: is an object's pass index "
-                "animated or driven? Remove that animation"
+                f"the render shows the object index {strange.min()}, which no object was given: is an object's pass "
+                "index animated or driven? Remove that animation"
             )
         ids = index.astype(np.uint32)
         if not self._instances:

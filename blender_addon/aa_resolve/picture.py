@@ -223,7 +223,7 @@ class Pictures:
                 f"part '{name}' holds values above 65504, too large for half: use --color-type float"
             )
         kinds = (kind,) * len(tuple(channels))
-        pixels = pixels.astype(np.uint32) if kind == "uint" else pixels.astype(np.float32)
+        pixels = pixels.astype(np.uint32 if kind == "uint" else np.float32, copy=False)
         return exr.Part(name, tuple(channels), kinds, pixels, self.plan.settings.compression)
 
     def _is_reset(

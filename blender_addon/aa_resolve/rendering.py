@@ -36,12 +36,28 @@ class Layers:
             key = candidate, view
             if key in self.planes:
                 if key not in self._stacked:
-                    self._stacked[key] = np.stack(self.planes[key], axis=-1).astype(np.float32)
+                    self._stacked[key] = _stacked(self.planes[key])
                 return self._stacked[key]
         found = ", ".join(sorted({key[0] for key in self.planes}))
         raise SceneError(
             f"Cycles delivered no pass '{name}' (found: {found}); is this Blender version supported?"
         )
+
+
+def _stacked(planes: list[np.ndarray]) -> np.ndarray:
+    """H x W planes as H x W x C float32; a view where they lie at equal distances, as in a file without compression:
+    copies of a render's many passes would cost as much as reading them."""
+    first = planes[0]
+    starts = [plane.__array_interface__["data"][0] for plane in planes]
+    distances = {after - before for before, after in zip(starts, starts[1:])} or {0}
+    if len(distances) == 1 and all(
+        plane.dtype == np.float32 and plane.strides == first.strides and plane.base is first.base
+        for plane in planes
+    ):
+        return np.lib.stride_tricks.as_strided(
+            first, (*first.shape, len(planes)), (*first.strides, distances.pop())
+        )
+    return np.stack(planes, axis=-1).astype(np.float32, copy=False)
 
 
 _ORDER = {"R": 0, "G": 1, "B": 2, "A": 3, "X": 0, "Y": 1, "Z": 2, "W": 3, "V": 0}
@@ -108,7 +124,7 @@ def prepare(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> None:
     """Settings that every render of an export shares; nothing that changes the look of the scene."""
     scene.render.engine = "CYCLES"
     settings = scene.render.image_settings
-    settings.file_format = "OPEN_EXR_MULTILAYER"
+    compat.set_multilayer_exr(settings)
     settings.color_depth = "32"
     settings.exr_codec = "NONE"  # read back at once: packing would only cost time
     scene.render.use_file_extension = False

@@ -31,8 +31,7 @@ def render(
             if subsamples.uses_override(wants_color, plan.cutout):
                 plan.view_layer.material_override = plan.ids.override()
             try:
-                # The instances' channel is an AOV, which Cycles counts among colours.
-                return [views.render(plan.view_layer, plan.folder, plan.ids.tells_instances)]
+                return [views.render(plan.view_layer, plan.folder)]
             finally:
                 plan.view_layer.material_override = own_override
     renders = []

@@ -40,13 +40,8 @@ class ViewSet:
         for camera, (x, y) in zip(self.cameras, self.positions):
             camera.aim(frame, depsgraph, jitter[0] + x, jitter[1] + y)
 
-    def render(
-        self, view_layer: bpy.types.ViewLayer, folder: str, wants_color: bool = True
-    ) -> rendering.Layers:
-        """Renders all views with the current passes, lights and materials.
-
-        Without ``wants_color`` Cycles' colour passes, which cannot be left out, are written in half the bytes; data
-        passes are floats either way."""
+    def render(self, view_layer: bpy.types.ViewLayer, folder: str) -> rendering.Layers:
+        """Renders all views with the current passes, lights and materials."""
         render = self.scene.render
         previous = self.scene.camera
         render.use_multiview = True
@@ -59,7 +54,6 @@ class ViewSet:
             view = render.views.new(name)
             view.camera_suffix = f".{name}"
             added.append(view)
-        render.image_settings.color_depth = "32" if wants_color else "16"
         try:
             self.scene.camera = self.cameras[0].object
             return rendering.render(self.scene, view_layer, folder, self.names)
@@ -70,7 +64,6 @@ class ViewSet:
             for view in render.views:
                 view.use = True
             render.use_multiview = False
-            render.image_settings.color_depth = "32"
             render.image_settings.views_format = "INDIVIDUAL"
 
 
@@ -113,6 +106,7 @@ def geometry_dissimilarity(
 
 
 _SADP_FLOOR = 0.2  # methods/05-geometry.md 5.5: below it everything counts as one surface
+_BAND_PIXELS = 8192  # what a band needs stays in the cache: whole pictures took twice as long
 
 
 def surface_mask(
@@ -128,6 +122,26 @@ def surface_mask(
     One k-means step with two clusters on SADP (5.5.2); a sub-sample on another object is as far away as can be.
     ``centre`` and ``samples`` hold ``depth`` (H x W), ``normal`` (H x W x 3, world) and ``id`` (H x W).
     """
+    height, width = centre["depth"].shape
+    mask = np.empty((height, width), np.uint32)
+    band = max(1, _BAND_PIXELS // width)
+    for first in range(0, height, band):
+        rows = slice(first, min(first + band, height))
+        mask[rows] = _mask_of_rows(rows, centre, samples, frame, camera, jitter, positions)
+    return mask
+
+
+def _mask_of_rows(
+    rows: slice,
+    centre: dict[str, np.ndarray],
+    samples: list[dict[str, np.ndarray]],
+    frame: cam.Frame,
+    camera: cam.CameraState,
+    jitter: tuple[float, float],
+    positions: list[tuple[float, float]],
+) -> np.ndarray:
+    """``surface_mask`` of some rows of the picture."""
+    centre = {name: pixels[rows] for name, pixels in centre.items()}
     to_view = camera.view[:3, :3]
 
     def placed(
@@ -136,7 +150,7 @@ def surface_mask(
         x, y = cam.sample_positions(frame, *offset)
         depth = sample["depth"].astype(np.float64)
         return (
-            cam.unproject(x, y, depth, frame, camera),
+            cam.unproject(x, y[rows], depth, frame, camera),
             sample["normal"].astype(np.float64) @ to_view.T,
         )
 
@@ -144,6 +158,7 @@ def surface_mask(
     centre_empty = centre["depth"] >= cam.BACKGROUND_DEPTH
     distances = np.empty((len(samples), *centre["depth"].shape), np.float64)
     for index, (sample, (x, y)) in enumerate(zip(samples, positions)):
+        sample = {name: pixels[rows] for name, pixels in sample.items()}
         point, normal = placed(sample, (jitter[0] + x, jitter[1] + y))
         apart = geometry_dissimilarity(centre_point, centre_normal, point, normal, centre["depth"])
         empty = sample["depth"] >= cam.BACKGROUND_DEPTH

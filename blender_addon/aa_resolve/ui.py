@@ -53,10 +53,15 @@ class AA_RESOLVE_OT_add_preset(AddPresetBase, bpy.types.Operator):
         return [f"settings.{name}" for name in names]
 
 
+def _letters(context, margin: int) -> int:
+    """How many letters of mean width fit into a line of the panel beside ``margin`` (pixels at a scale of 1)."""
+    scale = context.preferences.system.ui_scale
+    return int((context.region.width - margin * scale) / (6.2 * scale))
+
+
 def draw_text(layout: bpy.types.UILayout, context, text: str) -> None:
     """A sentence in as many lines as the width of the panel asks for: labels would cut it off."""
-    scale = context.preferences.system.ui_scale
-    letters = max(20, int((context.region.width - 50 * scale) / (6.2 * scale)))
+    letters = max(20, _letters(context, 50))
     column = layout.column(align=True)
     column.scale_y = 0.8
     for line in textwrap.wrap(text, letters):
@@ -88,14 +93,14 @@ class AA_RESOLVE_PT_main(_Panel, bpy.types.Panel):
         layout.use_property_decorate = False
         column = layout.column()
         column.prop(settings, "out")
-        column.prop(settings, "use_scene_range")
+        column.column(heading="Range").prop(settings, "use_scene_range", text="Scene")
         if not settings.use_scene_range:
             row = column.row(align=True)
             row.prop(settings, "first", text="Frames")
             row.prop(settings, "last", text="")
         column.prop(settings, "use_resolution")
         if settings.use_resolution:
-            column.prop(settings, "resolution")
+            column.prop(settings, "resolution", text="Pixels")
         running = State.running
         if running is not None:
             compat.draw_progress(layout, running.fraction)
@@ -104,7 +109,7 @@ class AA_RESOLVE_PT_main(_Panel, bpy.types.Panel):
             return
         buttons = layout.grid_flow(columns=0, even_columns=True, align=True)  # one below the other where it is narrow
         buttons.operator(AA_RESOLVE_OT_export.bl_idname, icon="RENDER_ANIMATION")
-        buttons.operator(AA_RESOLVE_OT_compare.bl_idname, icon="VIEWZOOM")
+        buttons.operator(AA_RESOLVE_OT_compare.bl_idname, text="Compare", icon="VIEWZOOM")
         buttons.operator(AA_RESOLVE_OT_estimate.bl_idname, icon="TIME")
         buttons.operator(AA_RESOLVE_OT_open_report.bl_idname, icon="URL")
         for text in (State.estimate, State.result):
@@ -119,13 +124,16 @@ class AA_RESOLVE_PT_methods(_Panel, bpy.types.Panel):
         settings = context.scene.aa_resolve
         families: dict[str, list[str]] = {}
         for name, method in registry.load_methods().items():
-            families.setdefault(method["family"], []).append(name)
-        for family, names in families.items():
+            families.setdefault(method["family"], []).append((name, method["title"]))
+        letters = _letters(context, 64)
+        for family, methods in families.items():
             box = self.layout.box()
             box.label(text=family.replace("-", " ").capitalize())
             grid = box.grid_flow(columns=0, even_columns=True, align=True)
-            for name in names:
-                grid.prop(settings, method_property(name))
+            for name, title in methods:
+                # A title that is cut off tells several methods apart no longer; their ids do, and stay short.
+                text = title if len(title) <= letters else name
+                grid.prop(settings, method_property(name), text=text)
         chosen = settings.chosen()
         if chosen:
             passes = registry.required_passes([registry.MethodChoice(name) for name in chosen])
@@ -142,8 +150,10 @@ class AA_RESOLVE_PT_quality(_Panel, bpy.types.Panel):
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        for name in ("truth", "truth_samples", "samples"):
-            layout.prop(settings, name)
+        # Short labels: two fifths of a narrow editor hold eight letters. The tooltips say the rest.
+        layout.prop(settings, "truth")
+        layout.prop(settings, "truth_samples", text="Samples")
+        layout.prop(settings, "samples", text="Shading")
         chosen = [registry.MethodChoice(name) for name in settings.chosen()]
         column = layout.column()
         column.enabled = bool(registry.required_passes(chosen, "jittered"))
@@ -151,18 +161,18 @@ class AA_RESOLVE_PT_quality(_Panel, bpy.types.Panel):
         column.prop(settings, "period")
         layout.prop(settings, "lighting")
         if settings.lighting == "noise-free":
-            layout.prop(settings, "use_ambient")
+            layout.column(heading="Ambient").prop(settings, "use_ambient", text="Own")
             if settings.use_ambient:
-                layout.prop(settings, "ambient")
+                layout.prop(settings, "ambient", text="Colour")
         else:
             causes = lighting.noise_causes(context.scene, settings.samples)
             if causes:
                 draw_text(layout, context, f"Noisy because of {'; '.join(causes)}")
         row = layout.row()
         row.enabled = reads_subsamples(settings.chosen())
-        row.prop(settings, "pattern")
-        layout.prop(settings, "color_type")
-        layout.prop(settings, "overwrite")
+        row.prop(settings, "pattern", text="Pattern")
+        layout.prop(settings, "color_type", text="Type")
+        layout.column(heading="Old Shot").prop(settings, "overwrite", text="Replace")
 
 
 _CLASSES = (

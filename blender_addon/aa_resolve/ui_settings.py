@@ -75,8 +75,8 @@ class AAResolveSettings(bpy.types.PropertyGroup):
         name="Truth",
         description="Which frames get ground truth; a shot at rest needs one for all its frames",
         items=(
-            ("ALL", "Every Frame", "Truth for every frame"),
-            ("ENDS", "First, Middle, Last", "Truth for three frames"),
+            ("ALL", "All", "Truth for every frame"),
+            ("ENDS", "Three", "Truth for the first, the middle and the last frame"),
             ("NONE", "None", "No ground truth: nothing can be measured"),
         ),
         default="ENDS",
@@ -112,7 +112,7 @@ class AAResolveSettings(bpy.types.PropertyGroup):
         items=(
             (
                 "noise-free",
-                "Free of Noise",
+                "No Noise",
                 "Lights without size, ambient in place of the world's light, no bounces",
             ),
             ("as-is", "As It Is", "The scene's own light; noise has to be averaged by samples"),

@@ -8,6 +8,7 @@ import json
 import os
 import subprocess
 import sys
+import types
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import support as t  # noqa: E402
@@ -120,6 +121,41 @@ def test_only_compat_knows_versions() -> None:
                 text = file.read()
             assert "app.version " not in text and "app.version[" not in text, name
             assert "hasattr(" not in text, f"{name}: ask compat.py"
+            for moved in ('"OPEN_EXR_MULTILAYER"', ".cycles.displacement_method"):
+                assert moved not in text, f"{name}: ask compat.py"
+
+
+def test_settings_of_later_versions() -> None:
+    """What moved since 3.4, on stand-ins that refuse as those versions do (none of them is installed here)."""
+    from aa_resolve import compat
+
+    class ImageSettings50:
+        """A format that does not belong to the media type cannot be chosen."""
+
+        media_type, use_exr_interleave, _format = "IMAGE", False, "PNG"
+
+        @property
+        def file_format(self) -> str:
+            return self._format
+
+        @file_format.setter
+        def file_format(self, name: str) -> None:
+            if (name == "OPEN_EXR_MULTILAYER") != (self.media_type == "MULTI_LAYER_IMAGE"):
+                raise TypeError(f"enum {name} not found")
+            self._format = name
+
+    settings = ImageSettings50()
+    compat.set_multilayer_exr(settings)
+    assert settings.file_format == "OPEN_EXR_MULTILAYER" and settings.use_exr_interleave
+    old = bpy.context.scene.render.image_settings
+    compat.set_multilayer_exr(old)
+    assert old.file_format == "OPEN_EXR_MULTILAYER"
+
+    new = types.SimpleNamespace(displacement_method="BOTH", cycles=types.SimpleNamespace())
+    assert compat.displacement_method(new) == "BOTH"  # 4.1
+    material = bpy.data.materials.new("Displaced")
+    material.cycles.displacement_method = "DISPLACEMENT"
+    assert compat.displacement_method(material) == "DISPLACEMENT"
 
 
 def test_installed_from_zip() -> None:
@@ -195,6 +231,7 @@ if __name__ == "__main__":
     t.main(
         test_manifests_agree,
         test_only_compat_knows_versions,
+        test_settings_of_later_versions,
         test_installed_from_zip,
         test_job_reports_and_cancels,
     )

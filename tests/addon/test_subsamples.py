@@ -168,11 +168,17 @@ def scalar_mask(centre, others) -> int:
 
 
 def test_mask() -> None:
+    from aa_resolve import subsamples
+
     scene = scene_with_edges()
     projection = t.Projection(scene.camera, 48, 32)
-    shot, samples, path = exported(
-        "--passes", "subsamples,depth,normal,object", "--subsamples", "d3d8"
-    )
+    pixels, subsamples._BAND_PIXELS = subsamples._BAND_PIXELS, 5 * 48  # six bands and a smaller one
+    try:
+        shot, samples, path = exported(
+            "--passes", "subsamples,depth,normal,object", "--subsamples", "d3d8"
+        )
+    finally:
+        subsamples._BAND_PIXELS = pixels
     mask = samples["mask"]
     assert mask.dtype == np.uint32
     depth, ids = t.read_part(path, "depth")["Z"], t.read_part(path, "object")["id"]
@@ -299,9 +305,35 @@ def test_uint_channels_are_exact() -> None:
         assert np.array_equal(own["n"], noise), compression
 
 
+def test_passes_with_and_without_a_copy() -> None:
+    """Passes of a render are views of the file where its channels allow; their values are the same either way."""
+    from aa_resolve import exr, rendering
+
+    path = os.path.join(t.temporary_folder(), "layers.exr")
+    pixels = np.random.default_rng(2).normal(size=(19, 7, 9)).astype(np.float32)
+    channels = [f"L.Combined.{c}" for c in "RGBA"] + [f"L.Vector.s01.{c}" for c in "XYZW"] + ["L.Depth.Z"]
+    for kind in ("float", "half"):
+        for compression in exr.COMPRESSIONS:
+            part = exr.Part("", tuple(channels), (kind,) * 9, pixels, compression)
+            exr.write_parts(path, [part])
+            stored = pixels.astype(np.float16 if kind == "half" else np.float32).astype(np.float32)
+            layers = rendering.Layers(rendering._group(exr.read_channels(path), "L", ("s01",)))
+            for name, view, right in (
+                ("Combined", "", stored[:, :, :4]),
+                ("Vector", "s01", stored[:, :, 4:8]),
+                ("Depth", "", stored[:, :, 8:]),
+            ):
+                found = layers.get(name, view)
+                assert found.dtype == np.float32 and np.array_equal(found, right), (name, kind)
+                plane = layers.planes[name, view][0]
+                in_order = name != "Vector"  # W comes before X in a file
+                assert np.shares_memory(found, plane) == (kind == "float" and in_order), (name, kind)
+
+
 if __name__ == "__main__":
     t.main(
         test_uint_channels_are_exact,
+        test_passes_with_and_without_a_copy,
         test_views_equal_separate_renders,
         test_jittered_and_centre_frames,
         test_methods_choose_the_pattern,

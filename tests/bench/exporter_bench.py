@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""CPU seconds of a frame's main pass, of K sub-samples by multi-view and of K separate renders.
+"""CPU seconds of a frame's main pass, of K sub-samples by multi-view, of K separate renders, and of whole frames.
 
     blender -b --factory-startup --python-exit-code 9 -P tests/bench/exporter_bench.py -- [--pattern d3d8]
-        [--resolution 480 270] [--triangles 200000] [--repeats 3]
+        [--resolution 480 270] [--triangles 200000] [--rounds 7]
 
-User + system time of the Blender process, the least of the repeats. A benchmark, not a test: a busy machine changes
-its figures, though less their ratios.
+User + system time of the Blender process. A round runs each of them twice in a row and times the second: as in a long
+export, what stays between frames stays. The seconds are the least of the rounds, the ratios the median of the rounds'
+own ratios, so that a busy machine slows both sides alike.
+
+Renders include reading them back and bringing them to the arrays that the exporter writes. What sub-samples cost is a
+main pass with them less one without: Cycles transfers the geometry again when the override material comes and when it
+goes, and the latter shows in the main pass. A frame is all that the exporter does for it, to the file on disk.
 """
 
 from __future__ import annotations
@@ -14,6 +19,7 @@ import argparse
 import math
 import os
 import resource
+import statistics
 import sys
 
 import bpy
@@ -22,7 +28,7 @@ import numpy as np
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path.insert(0, os.path.join(ROOT, "blender_addon"))
 
-from aa_resolve import headless, picture, rendering, sample_part  # noqa: E402
+from aa_resolve import headless, lighting, picture, rendering, sample_part  # noqa: E402
 from aa_resolve.export import Exporter  # noqa: E402
 from aa_resolve.report import Reporter  # noqa: E402
 
@@ -99,12 +105,12 @@ def main() -> None:
     parser.add_argument("--pattern", default="d3d8")
     parser.add_argument("--resolution", nargs=2, default=["480", "270"])
     parser.add_argument("--triangles", type=int, default=200_000)
-    parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--rounds", type=int, default=7)
     options = parser.parse_args(sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else [])
     triangles = make_scene(options.triangles)
     arguments = headless.build_parser().parse_args(
         [
-            "--out", "unused", "--frames", "2-3", "--passes", "depth,normal,object,motion,subsamples",
+            "--out", "unused", "--frames", "2-3", "--passes", "albedo,depth,normal,object,motion,subsamples",
             "--subsamples", options.pattern, "--resolution", *options.resolution, "--truth-frames", "none",
         ]
     )  # fmt: skip
@@ -114,37 +120,76 @@ def main() -> None:
     exporter.prepare()
     plan = exporter.plan
     pictures = picture.Pictures(plan)
-    passes = plan.passes_of["frames"]
+    every = {"albedo", "depth", "normal", "object", "motion"}
     pictures._go_to(2)
     rendering.sample_points(scene, 1)
+    file = os.path.join(bpy.app.tempdir, "frame.exr")
 
-    def main_pass() -> None:
-        pictures._aim(2, (0.0, 0.0))
-        pictures._render_lights(plan.cycles_passes(passes))
+    def main_pass(passes: set[str], offset: tuple[float, float] = (0.0, 0.0)) -> None:
+        pictures._aim(2, offset)
+        renders = pictures._render_lights(plan.cycles_passes(passes))
+        lighting.compose(plan.light, renders)
+        if "albedo" in passes:
+            rendering.unlit_albedo(renders[0])
+        if "motion" in passes:
+            renders[0].get("Vector")
+        renders[0].get("Depth"), renders[0].get("Normal"), plan.ids.resolve(renders[0])
 
     def multi_view() -> None:
-        sample_part.render(plan, pictures._views(2), passes, (0.0, 0.0))
+        views = pictures._views(2)
+        layers = sample_part.render(plan, views, {"subsamples"}, (0.0, 0.0))[0]
+        for name in views.names:
+            layers.get("Depth", name), layers.get("Normal", name), plan.ids.resolve(layers, name)
 
     def separately() -> None:
         for place in plan.positions:
-            pictures._aim(2, place)
-            pictures._render_lights(plan.cycles_passes({"depth", "normal", "object"}))
+            main_pass({"depth", "normal", "object"}, place)
+
+    def frame(passes: set[str]) -> None:
+        plan.passes_of["frames"] = passes
+        pictures.frame("frames", 2, file)
 
     count = len(plan.positions)
-    least = {}
-    for name, work in (
-        ("main pass", main_pass),
-        (f"{count} sub-samples, multi-view with override", multi_view),
-        (f"{count} separate renders", separately),
-    ):
-        work()  # the first one also builds what stays
-        least[name] = min(cpu_seconds(work) for _ in range(options.repeats))
+    works = {
+        "main": lambda: main_pass(every),
+        "plain": lambda: main_pass(every - {"albedo"}),
+        "lean": lambda: main_pass({"depth", "normal", "object"}),
+        "main+": lambda: (main_pass(every), multi_view()),
+        "plain+": lambda: (main_pass(every - {"albedo"}), multi_view()),
+        "lean+": lambda: (main_pass({"depth", "normal", "object"}), multi_view()),
+        "separate": separately,
+        "frame": lambda: frame(every),
+        "frame+": lambda: frame(every | {"subsamples"}),
+    }
+    seconds: dict[str, list[float]] = {name: [] for name in works}
+    for _ in range(options.rounds):
+        for name, work in works.items():
+            work()  # brings Cycles to where the frame before would have left it
+            seconds[name].append(cpu_seconds(work))
+    added = {
+        name: [both - one for both, one in zip(seconds[f"{name}+"], seconds[name])]
+        for name in ("main", "plain", "lean", "frame")
+    }
+
+    def line(text: str, values: list[float], base: str, what: str) -> str:
+        ratio = statistics.median(v / one for v, one in zip(values, seconds[base]))
+        return f"{text:26s} {min(values):7.3f} CPU s {ratio:6.2f} x {base:6s} {what}"
+
     width, height = options.resolution
-    lines = [f"{triangles} triangles, {width} x {height}, least of {options.repeats}"]
-    one = least["main pass"]
-    lines += [f"{name:42s} {value:7.3f} CPU s  {value / one:5.2f} x main" for name, value in least.items()]
-    for line in lines:
-        reporter.say("bench", line)
+    for text in (
+        f"{triangles} triangles, {width} x {height}, {options.rounds} rounds: least seconds, median ratios",
+        line("main pass", seconds["main"], "main", "colour, albedo, depth, normal, object ids, motion"),
+        line("plain main pass", seconds["plain"], "main", "the same without albedo"),
+        line("lean main pass", seconds["lean"], "main", "colour, depth, normal, object ids"),
+        line(f"{count} sub-samples", added["main"], "main", "depth, normal, object ids: multi-view, override"),
+        line("", added["plain"], "plain", "the same beside the plain main pass"),
+        line("", added["lean"], "lean", "the same beside the lean main pass"),
+        line(f"{count} separate renders", seconds["separate"], "main", "of the lean main pass"),
+        line("", seconds["separate"], "plain", "the same beside the plain main pass"),
+        line("frame", seconds["frame"], "frame", "main pass, packed and written"),
+        line(f"{count} sub-samples in a frame", added["frame"], "frame", "added to it: mask, packing and writing too"),
+    ):  # fmt: skip
+        reporter.say("bench", text)
 
 
 main()
