@@ -46,6 +46,17 @@ TEST(Coverage, DiscsOfKnownArea) {
     EXPECT_NEAR(sum, std::numbers::pi * 17.2 * 17.2, 1e-11);
 }
 
+// Areas as counting finds them, none below 0, and together the pixel.
+void expectCountedAndFull(std::span<const Region* const> regions, int trial) {
+    const auto exact = visibleAreas(kPixel, regions), counted = countedAreas(regions);
+    double sum = 0;
+    for (size_t i = 0; i < exact.size(); i++) {
+        EXPECT_NEAR(exact[i], counted[i], 3e-3) << trial << " " << i;
+        EXPECT_GE(exact[i], -1e-12);
+        sum += exact[i];
+    }
+    EXPECT_NEAR(sum, 1, 1e-12);
+}
 TEST(Coverage, LayersAgreeWithCountingAndFillThePixel) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> u(-0.6, 1.6);
@@ -54,15 +65,7 @@ TEST(Coverage, LayersAgreeWithCountingAndFillThePixel) {
         const Region a = Polygon{p(), p(), p()}, disc = Disc{p(), 0.2 + 0.4 * std::abs(u(random))},
                      c = Polygon{p(), p(), p()};
         const Region* orders[][3] = {{&a, &disc, &c}, {&disc, &a, &c}, {&a, &c, &disc}};
-        const auto regions = std::span<const Region* const>(orders[trial % 3]);
-        const auto exact = visibleAreas(kPixel, regions), counted = countedAreas(regions);
-        double sum = 0;
-        for (size_t i = 0; i < exact.size(); i++) {
-            EXPECT_NEAR(exact[i], counted[i], 3e-3) << trial << " " << i;
-            EXPECT_GE(exact[i], -1e-12);
-            sum += exact[i];
-        }
-        EXPECT_NEAR(sum, 1, 1e-12);
+        expectCountedAndFull(orders[trial % 3], trial);
     }
 }
 
@@ -74,15 +77,7 @@ TEST(Coverage, OverlappingDiscsAgreeWithCountingAndFillThePixel) {
         const auto disc = [&] { return Region(Disc{p(), 0.1 + 0.5 * std::abs(u(random))}); };
         const Region a = disc(), b = disc(), c = Polygon{p(), p(), p()}, d = disc(), e = disc();
         const Region* orders[][6] = {{&a, &b, &c, &d, &e, &a}, {&c, &a, &b, &d, &d, &e}, {&a, &b, &d, &e, &c, &b}};
-        const auto regions = std::span<const Region* const>(orders[trial % 3]);
-        const auto exact = visibleAreas(kPixel, regions), counted = countedAreas(regions);
-        double sum = 0;
-        for (size_t i = 0; i < exact.size(); i++) {
-            EXPECT_NEAR(exact[i], counted[i], 3e-3) << trial << " " << i;
-            EXPECT_GE(exact[i], -1e-12);
-            sum += exact[i];
-        }
-        EXPECT_NEAR(sum, 1, 1e-12);
+        expectCountedAndFull(orders[trial % 3], trial);
     }
 }
 

@@ -264,20 +264,26 @@ def check_instances(scene, label: str, name: str) -> dict:
     return shot
 
 
-def test_particles() -> None:
-    """Cubes on a moving emitter: particle instances."""
-    scene, _ = stage()
+def grains(scene: bpy.types.Scene, count: int, first: int, last: int, size: float) -> bpy.types.Object:
+    """An upright emitter of cubes that live for ever and fall not, born from frame ``first`` to ``last``."""
     source = t.add_object(scene, "Grain", t.cube_mesh("Grain", 1.0), (0, -40, 0))
     mesh = bpy.data.meshes.new("Emitter")
     mesh.from_pydata([(-2, -1, 0), (2, -1, 0), (2, -1, 2.4), (-2, -1, 2.4)], [], [(0, 1, 2, 3)])
     emitter = t.add_object(scene, "Emitter", mesh)
     emitter.modifiers.new("Particles", "PARTICLE_SYSTEM")
     settings = emitter.particle_systems[0].settings
-    settings.count, settings.frame_start, settings.frame_end = 14, -20, -10
+    settings.count, settings.frame_start, settings.frame_end = count, first, last
     settings.lifetime, settings.physics_type = 1000, "NEWTON"
     settings.normal_factor, settings.effector_weights.gravity = 0.0, 0.0
+    settings.render_type, settings.instance_object, settings.particle_size = "OBJECT", source, size
+    return emitter
+
+
+def test_particles() -> None:
+    """Cubes on a moving emitter: particle instances."""
+    scene, _ = stage()
+    settings = grains(scene, 14, -20, -10, 0.35).particle_systems[0].settings
     settings.object_factor, settings.factor_random = 0.0, 1.2
-    settings.render_type, settings.instance_object, settings.particle_size = "OBJECT", source, 0.35
     for frame in range(-20, FRAME + 2):
         scene.frame_set(frame)
     check_instances(scene, "particles", "Grain")
@@ -438,16 +444,7 @@ def test_jumps_of_the_camera() -> None:
 def test_new_instances_are_invalid() -> None:
     """Particles that are born in a frame have no motion there; those that were there before have."""
     scene, _ = stage()
-    source = t.add_object(scene, "Grain", t.cube_mesh("Grain", 1.0), (0, -40, 0))
-    mesh = bpy.data.meshes.new("Emitter")
-    mesh.from_pydata([(-2, -1, 0), (2, -1, 0), (2, -1, 2.4), (-2, -1, 2.4)], [], [(0, 1, 2, 3)])
-    emitter = t.add_object(scene, "Emitter", mesh)
-    emitter.modifiers.new("Particles", "PARTICLE_SYSTEM")
-    settings = emitter.particle_systems[0].settings
-    settings.count, settings.frame_start, settings.frame_end = 24, 1, 9
-    settings.lifetime, settings.physics_type = 1000, "NEWTON"
-    settings.normal_factor, settings.effector_weights.gravity = 0.0, 0.0
-    settings.render_type, settings.instance_object, settings.particle_size = "OBJECT", source, 0.4
+    emitter = grains(scene, 24, 1, 9, 0.4)
     emitter.show_instancer_for_render = False
     for frame in range(1, FRAME + 2):
         scene.frame_set(frame)
