@@ -34,12 +34,14 @@ void forRows(const Exec& exec, int height, const Fn& rows, int grain = 8) {
         tbb::blocked_range<int>(0, height, size_t(grain)), [&](const auto& r) { rows(r.begin(), r.end()); },
         tbb::simple_partitioner{});
 }
+template <class Args>
+auto rowsOf(const RowKernel<Args>& kernel, Precision precision) {
+    return precision == Precision::fast ? kernel.fast : precision == Precision::scalar ? kernel.scalar : kernel.oracle;
+}
 // `height` rows, or blocks of rows where the kernel's table says so: those with grain 1.
 template <class Args>
 void runKernel(const RowKernel<Args>& kernel, const Exec& exec, const Args& args, int height, int grain = 8) {
-    const auto fn = exec.precision == Precision::fast     ? kernel.fast
-                    : exec.precision == Precision::scalar ? kernel.scalar
-                                                          : kernel.oracle;
+    const auto fn = rowsOf(kernel, exec.precision);
     forRows(
         exec, height, [&](int y0, int y1) { fn(args, y0, y1); }, grain);
 }

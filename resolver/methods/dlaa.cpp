@@ -10,11 +10,6 @@ namespace {
 
 constexpr int kStripRows = 32;  // of colours, strengths and lumas: 1.2 MB at 1080p
 
-template <class Args>
-auto rowsOf(const RowKernel<Args>& kernel, Precision precision) {
-    return precision == Precision::fast ? kernel.fast : precision == Precision::scalar ? kernel.scalar : kernel.oracle;
-}
-
 class Dlaa : public Method {
   public:
     explicit Dlaa(const Params& p) {
