@@ -248,7 +248,7 @@ void execute(const Options& o) {
                 frames.reset();
                 frames = synthetic ? synthFrames(o, specs, scene, pattern) : shotFrames(o, specs);
                 for (auto* sampled : {&frames->jittered, &frames->centre})
-                    for (auto& f : *sampled) encode(f.colorLinear, {}, exec, f.colorEncoded);
+                    for (auto& f : *sampled) encodeFrame(f, {}, exec);
                 frames->edgeShare = edgeShare(frames->centre.empty() ? frames->jittered : frames->centre);
             }
             const ShotInfo& info = frames->info;

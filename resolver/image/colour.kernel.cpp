@@ -40,4 +40,4 @@ __attribute__((flatten)) void decodeRows(const ColourArgs& a, int y0, int y1) {
 }
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::ColourKernels, colourKernels) = {AA_ROWS(encodeRows), AA_ROWS(decodeRows)};
+AA_DEFINE_TABLE(aa::ColourKernels, colourKernels) = {AA_WIDE_ROWS(encodeRows), AA_WIDE_ROWS(decodeRows)};

@@ -37,12 +37,24 @@ struct ints_of {
     typedef int32_t unaligned __attribute__((vector_size(W * 4), aligned(4), may_alias));
 };
 
+// GCC 12 keeps to 256 bits where it vectorises by itself, so 16 lanes name their instructions.
+#ifdef __AVX512F__
+template <class T, int W>
+inline constexpr bool kZmm = std::is_same_v<T, float> && W == 16;
+#else
+template <class T, int W>
+inline constexpr bool kZmm = false;
+#endif
+
 // a < b ? a : b and a > b ? a : b: one instruction, which GCC 12 misses where an operand is constant.
 template <class T, int W, class V = typename vec_of<T, W>::type>
 AA_INLINE V least(V a, V b) {
     if constexpr (std::is_same_v<T, float> && W == 4) return (V)_mm_min_ps((__m128)a, (__m128)b);
 #ifdef __AVX2__
     if constexpr (std::is_same_v<T, float> && W == 8) return (V)_mm256_min_ps((__m256)a, (__m256)b);
+#endif
+#ifdef __AVX512F__
+    if constexpr (kZmm<T, W>) return (V)_mm512_min_ps((__m512)a, (__m512)b);
 #endif
     return a < b ? a : b;
 }
@@ -51,6 +63,9 @@ AA_INLINE V greatest(V a, V b) {
     if constexpr (std::is_same_v<T, float> && W == 4) return (V)_mm_max_ps((__m128)a, (__m128)b);
 #ifdef __AVX2__
     if constexpr (std::is_same_v<T, float> && W == 8) return (V)_mm256_max_ps((__m256)a, (__m256)b);
+#endif
+#ifdef __AVX512F__
+    if constexpr (kZmm<T, W>) return (V)_mm512_max_ps((__m512)a, (__m512)b);
 #endif
     return a > b ? a : b;
 }
@@ -86,16 +101,25 @@ struct Lanes {
     }
     friend AA_INLINE Lanes max(Lanes a, Lanes b) { return greatest<T, W>(b.v, a.v); }
     friend AA_INLINE Lanes abs(Lanes a) {
+#ifdef __AVX512F__
+        if constexpr (kZmm<T, W>) return (V)_mm512_abs_ps((__m512)a.v);
+#endif
         V r;
         for (int i = 0; i < W; i++) r[i] = std::fabs(a.v[i]);
         return r;
     }
     friend AA_INLINE Lanes sqrt(Lanes a) {
+#ifdef __AVX512F__
+        if constexpr (kZmm<T, W>) return (V)_mm512_sqrt_ps((__m512)a.v);
+#endif
         V r;
         for (int i = 0; i < W; i++) r[i] = std::sqrt(a.v[i]);
         return r;
     }
     friend AA_INLINE Lanes floor(Lanes a) {
+#ifdef __AVX512F__
+        if constexpr (kZmm<T, W>) return (V)_mm512_floor_ps((__m512)a.v);
+#endif
         V r;
         for (int i = 0; i < W; i++) r[i] = std::floor(a.v[i]);
         return r;
@@ -155,6 +179,10 @@ AA_INLINE unsigned mask_bits(Mask<R> m) {
 #ifdef __AVX2__
     else if constexpr (std::is_same_v<R, Lanes<float, 8>>)
         return unsigned(_mm256_movemask_ps((__m256)m));
+#endif
+#ifdef __AVX512F__
+    else if constexpr (std::is_same_v<R, Lanes<float, 16>>)
+        return unsigned(_mm512_movepi32_mask((__m512i)m));
 #endif
     else if constexpr (std::is_same_v<R, Lanes<float, 4>>)
         return unsigned(_mm_movemask_ps((__m128)m));
@@ -345,56 +373,6 @@ template <class R>
 AA_INLINE R luma601(vec3<R> c) {
     using T = Elem<R>;
     return c.x * R(T(0.299)) + c.y * R(T(0.587)) + c.z * R(T(0.114));
-}
-
-// W texels of an interleaved RGBA image at element offsets 4 * k[i]. The one place with intrinsics: one 128-bit load
-// per texel and 4x4 transposes is four times faster than planar gathers and costs the same whatever the motion.
-template <class R>
-AA_INLINE vec3<R> fetch_rgb(const float* p, const int* k) {
-    if constexpr (N<R> == 1) return {R(p[4l * k[0]]), R(p[4l * k[0] + 1]), R(p[4l * k[0] + 2])};
-#ifdef __AVX2__
-    else if constexpr (std::is_same_v<R, Lanes<float, 8>>) {
-        auto pair = [&](int i, int j) __attribute__((always_inline)) {
-            return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(p + 4l * k[i])),
-                                        _mm_loadu_ps(p + 4l * k[j]), 1);
-        };
-        const __m256 a = pair(0, 4), b = pair(1, 5), c = pair(2, 6), d = pair(3, 7);
-        const __m256 lo = _mm256_unpacklo_ps(a, b), hi = _mm256_unpacklo_ps(c, d), zl = _mm256_unpackhi_ps(a, b),
-                     zh = _mm256_unpackhi_ps(c, d);
-        using V = typename R::V;
-        return {(V)_mm256_shuffle_ps(lo, hi, 0x44), (V)_mm256_shuffle_ps(lo, hi, 0xEE),
-                (V)_mm256_shuffle_ps(zl, zh, 0x44)};
-    }
-#endif
-    else if constexpr (std::is_same_v<R, Lanes<float, 4>>) {
-        const __m128 a = _mm_loadu_ps(p + 4l * k[0]), b = _mm_loadu_ps(p + 4l * k[1]), c = _mm_loadu_ps(p + 4l * k[2]),
-                     d = _mm_loadu_ps(p + 4l * k[3]);
-        const __m128 lo = _mm_unpacklo_ps(a, b), hi = _mm_unpacklo_ps(c, d), zl = _mm_unpackhi_ps(a, b),
-                     zh = _mm_unpackhi_ps(c, d);
-        using V = typename R::V;
-        return {(V)_mm_movelh_ps(lo, hi), (V)_mm_movehl_ps(hi, lo), (V)_mm_movelh_ps(zl, zh)};
-    } else {
-        vec3<R> r;
-        for (int i = 0; i < N<R>; i++) {
-            r.x.v[i] = p[4l * k[i]];
-            r.y.v[i] = p[4l * k[i] + 1];
-            r.z.v[i] = p[4l * k[i] + 2];
-        }
-        return r;
-    }
-}
-// The counterpart: W texels stored interleaved with alpha 1.
-template <class R>
-AA_INLINE void store_rgba(vec3<R> c, float* p) {
-    if constexpr (N<R> == 1) {
-        p[0] = float(c.x), p[1] = float(c.y), p[2] = float(c.z), p[3] = 1.0f;
-    } else
-        for (int i = 0; i < N<R>; i++) {
-            p[4 * i] = float(c.x.v[i]);
-            p[4 * i + 1] = float(c.y.v[i]);
-            p[4 * i + 2] = float(c.z.v[i]);
-            p[4 * i + 3] = 1.0f;
-        }
 }
 
 }  // namespace AA_ARCH

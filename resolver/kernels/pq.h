@@ -3,6 +3,8 @@
 // (4e-5 of a round trip); both directions therefore work with the difference from 1 (2e-6).
 #pragma once
 #include "kernels/math.h"
+#include "kernels/pq_tables.h"
+#include "kernels/texels.h"
 
 namespace AA_ARCH {
 
@@ -42,6 +44,91 @@ AA_INLINE R pq_decode(R encoded) {
     const R u = expm1_small(log2_positive(e) * R(T(0.69314718055994531 / 78.84375)));  // ln 2 / m2
     const R lm = max(u + R(T(0.1640625)), R(T(0))) / (R(T(0.1640625)) - u * R(T(18.6875)));
     return pow_positive(lm, R(T(1.0 / 0.1593017578125))) * R(T(1e4));
+}
+
+// ---- the same by table: what float uses
+// ------------------------------------------------------------------------------ Five times faster, and within the
+// rounding of float of the exact curve (1e-8 of an encoded value, relative of a linear one): the fit is made in double
+// once. Fits a cubic in x - start through four Chebyshev nodes of [start, start + width].
+template <class Fn>
+AA_INLINE void fit_cubic(const Fn& f, double start, double width, float* coefficients) {
+    double x[4], d[4];
+    for (int i = 0; i < 4; i++) {
+        constexpr double kNodes[] = {0.03806023374435663, 0.30865828381745514, 0.69134171618254486,
+                                     0.96193976625564337};
+        x[i] = width * kNodes[i], d[i] = f(start + x[i]);
+    }
+    for (int k = 1; k < 4; k++)  // divided differences, then Newton's form multiplied out
+        for (int i = 3; i >= k; i--) d[i] = (d[i] - d[i - 1]) / (x[i] - x[i - k]);
+    double c[4] = {d[3], 0, 0, 0};
+    for (int k = 2; k >= 0; k--) {
+        for (int i = 3 - k; i > 0; i--) c[i] = c[i - 1] - c[i] * x[k];
+        c[0] = d[k] - c[0] * x[k];
+    }
+    for (int i = 0; i < 4; i++) coefficients[i] = float(c[i]);
+}
+// Part k of a table covers floats from part_start on: `parts` per octave, the first octave from 2^first on.
+template <int first, int parts, class Fn>
+AA_INLINE void fill_table(const Fn& f, int octaves, float* table) {
+    for (int octave = 0; octave < octaves; octave++) {
+        const double low = power_of_two(double(first + octave));
+        for (int k = 0; k < parts; k++)
+            fit_cubic([&](double x) { return f(low * x); }, 1.0 + double(k) / parts, 1.0 / parts,
+                      table + 4 * (octave * parts + k));
+    }
+}
+// The cubic of x's part at x; 2^first <= x < 2^(first + octaves).
+template <int first, int parts>
+AA_INLINE float from_table(const float* table, float x) {
+    constexpr int kShift = 23 - __builtin_ctz(parts);
+    int32_t bits;
+    std::memcpy(&bits, &x, 4);
+    const float* c = table + 4 * ((bits >> kShift) - ((first + 127) * parts));
+    bits = (bits & ((1 << kShift) - 1)) | 0x3f800000;
+    float t;
+    std::memcpy(&t, &bits, 4);
+    t = t - 1.0f;
+    return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
+}
+template <int first, int parts, int W>
+AA_INLINE Lanes<float, W> from_table(const float* table, Lanes<float, W> x) {
+    using R = Lanes<float, W>;
+    using I = typename ints_of<W>::type;
+    constexpr int kShift = 23 - __builtin_ctz(parts);
+    const I bits = (I)x.v, part = (bits >> kShift) - ((first + 127) * parts);
+    alignas(64) int k[W];
+    *(I*)k = part;
+    const Texel<R> c = fetch_rgba<R>(table, k);
+    const R t = R((typename R::V)((bits & ((1 << kShift) - 1)) | 0x3f800000)) - R(1.0f);
+    return c.rgb.x + t * (c.rgb.y + t * (c.rgb.z + t * c.a));
+}
+
+AA_INLINE void fill_tables(aa::PqTables& t) {
+    using P = aa::PqTables;
+    fill_table<P::kEncodeFirst, P::kEncodeParts>([](double x) { return pq_encode(x); }, P::kEncodeOctaves, t.encode);
+    fill_table<P::kDecodeFirst, P::kDecodeParts>([](double x) { return pq_decode(x); }, P::kDecodeOctaves, t.decode);
+    t.black = float(pq_encode(0.0));
+}
+template <class R>
+AA_INLINE R pq_encode(const aa::PqTables& t, R linear) {
+    using P = aa::PqTables;
+    if constexpr (std::is_same_v<Elem<R>, double>)
+        return pq_encode(linear);
+    else {
+        const R darkest(5.4210108624275222e-20f);             // 2^-64
+        const R inside = min(max(darkest, linear), R(1e4f));  // NaN: darkest
+        return select(linear > darkest, from_table<P::kEncodeFirst, P::kEncodeParts>(t.encode, inside), R(t.black));
+    }
+}
+template <class R>
+AA_INLINE R pq_decode(const aa::PqTables& t, R encoded) {
+    using P = aa::PqTables;
+    if constexpr (std::is_same_v<Elem<R>, double>)
+        return pq_decode(encoded);
+    else {
+        const R inside = min(max(R(4.76837158203125e-7f), encoded), R(1.0f));  // 2^-21
+        return select(encoded > R(t.black), from_table<P::kDecodeFirst, P::kDecodeParts>(t.decode, inside), R(0.0f));
+    }
 }
 
 }  // namespace AA_ARCH

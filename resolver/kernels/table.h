@@ -48,5 +48,8 @@ struct RowKernel {
     extern const Type table;         \
     }                                \
     const Type AA_ARCH::table
+// AA_WIDE_ROWS: for kernels that compute much per pixel and whose tiles have room for 16 pixels at a time.
+#define AA_WIDE_ROWS(fn) \
+    { fn<AA_ARCH::Lanes<float, AA_WIDE_LANES>>, fn<float>, fn<double> }
 #define AA_ROWS(fn) \
     { fn<AA_ARCH::Lanes<float, AA_LANES>>, fn<float>, fn<double> }

@@ -78,7 +78,7 @@ class Pictures {
         auto& made = frames_[{subsamples, jittered, index}];
         if (made.width == 0) {
             made = shot.frame(index, jittered ? Sampling::jittered : Sampling::centre);
-            encode(made.colorLinear, {}, exec_, made.colorEncoded);
+            encodeFrame(made, {}, exec_);
         }
         return made;
     }

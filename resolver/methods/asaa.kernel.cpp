@@ -131,4 +131,4 @@ __attribute__((flatten)) void asaaRows(const AsaaArgs& a, int y0, int y1) {
 
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::AsaaKernels, asaaKernels) = {AA_ROWS(asaaRows)};
+AA_DEFINE_TABLE(aa::AsaaKernels, asaaKernels) = {AA_WIDE_ROWS(asaaRows)};

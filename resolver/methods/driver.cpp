@@ -28,10 +28,15 @@ ShotInfo shotInfo(const Manifest& m) {
             .subSamplePositionsPx = m.subsamplePositionsPx};
 }
 
+void encodeFrame(Frame& frame, const DisplayChain& chain, const Exec& exec) {
+    encode(frame.colorLinear, chain, exec, frame.colorEncoded);
+    if (!frame.albedoLinear.empty()) encode(frame.albedoLinear, {}, exec, frame.albedoEncoded);
+}
+
 void prepareFrame(Frame& frame, const std::vector<RunningMethod>& methods, const DisplayChain& chain,
                   const Exec& exec) {
     for (const auto& m : methods)
-        if (m.spec.readsEncoded()) return encode(frame.colorLinear, chain, exec, frame.colorEncoded);
+        if (m.spec.readsEncoded()) return encodeFrame(frame, chain, exec);
 }
 
 }  // namespace aa

@@ -17,7 +17,9 @@ struct RunningMethod {
 };
 
 ShotInfo shotInfo(const Manifest& manifest);
-// Fills frame.colorEncoded when one of the methods reads encoded colour.
+// Fills frame.colorEncoded, and frame.albedoEncoded where there is albedo.
+void encodeFrame(Frame& frame, const DisplayChain& chain, const Exec& exec);
+// The same, when one of the methods reads encoded colour.
 void prepareFrame(Frame& frame, const std::vector<RunningMethod>& methods, const DisplayChain& chain, const Exec& exec);
 
 }  // namespace aa

@@ -119,4 +119,4 @@ __attribute__((flatten)) void ssssaaRows(const EdgeBlurArgs& a, int y0, int y1) 
 }
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::EdgeBlurKernels, edgeBlurKernels) = {AA_ROWS(nfaaRows), AA_ROWS(ssssaaRows)};
+AA_DEFINE_TABLE(aa::EdgeBlurKernels, edgeBlurKernels) = {AA_WIDE_ROWS(nfaaRows), AA_WIDE_ROWS(ssssaaRows)};

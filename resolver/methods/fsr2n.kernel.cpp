@@ -197,4 +197,4 @@ __attribute__((flatten)) void fsr2nRows(const Fsr2nArgs& a, int y0, int y1) {
 
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::Fsr2nKernels, fsr2nKernels) = {AA_ROWS(fsr2nScatterRows), AA_ROWS(fsr2nRows)};
+AA_DEFINE_TABLE(aa::Fsr2nKernels, fsr2nKernels) = {AA_WIDE_ROWS(fsr2nScatterRows), AA_WIDE_ROWS(fsr2nRows)};

@@ -91,4 +91,4 @@ __attribute__((flatten)) void d2eRows(const EdgeBlendArgs& a, int y0, int y1) {
 }
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::GbaaKernels, gbaaKernels) = {AA_ROWS(gbaaRows), AA_ROWS(d2eRows)};
+AA_DEFINE_TABLE(aa::GbaaKernels, gbaaKernels) = {AA_WIDE_ROWS(gbaaRows), AA_WIDE_ROWS(d2eRows)};

@@ -84,4 +84,4 @@ __attribute__((flatten)) void insideRows(const InsideArgs& a, int y0, int y1) {
 
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::InsideKernels, insideKernels) = {AA_ROWS(insideRows)};
+AA_DEFINE_TABLE(aa::InsideKernels, insideKernels) = {AA_WIDE_ROWS(insideRows)};

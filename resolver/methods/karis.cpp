@@ -1,12 +1,16 @@
 #include "methods/karis.h"
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "methods/karis_kernels.h"
 #include "methods/temporal.h"
 
 namespace aa {
 namespace {
+
+constexpr int kStripRows = 8;  // a tile of the kernel
 
 class Karis : public Method {
   public:
@@ -40,22 +44,35 @@ class Karis : public Method {
                 args.filter[(j + 1) * 3 + i + 1] = float(std::exp(-2.29 * (dx * dx + dy * dy)));  // Karis 2014
             }
         args.in.debug = debug_.begin(*this, frame.width, frame.height);
-        runKernel(kernels.resolve, exec, args, frame.height);
+        const auto resolve = rowsOf(kernels.resolve, exec.precision);
+        const auto decode = rowsOf(kernels.pqDecode, exec.precision);
+        const PqArgs decoded{view(std::as_const(out)), view(out), out.stride(), frame.width, &pqTables()};
+        forRows(exec, frame.height, [&](int y0, int y1) {
+            for (int y = y0; y < y1; y += kStripRows) {
+                const int end = std::min(y + kStripRows, y1);
+                resolve(args, y, end);
+                if (pq_) decode(decoded, y, end);  // while the strip is in the cache
+            }
+        });
         history_.end();
-        if (pq_) {
-            const PqArgs decode{view(std::as_const(out)), view(out), out.stride(), frame.width};
-            runKernel(kernels.pqDecode, exec, decode, frame.height);
-        }
     }
     size_t stateBytes() const override { return history_.bytes() + encoded_.bytes(); }
     const PlaneF* rejection() const override { return debug_.rejection(); }
     std::vector<DebugLayer> debugLayers() const override { return debug_.layers(); }
 
   private:
+    static const PqTables& pqTables() {
+        static const auto tables = [] {
+            auto t = std::make_unique<PqTables>();
+            karisKernelsFor(Isa::v2).fillPqTables(*t);
+            return t;
+        }();
+        return *tables;
+    }
     const Rgb& encoded(const Frame& frame, const Exec& exec) {
         if (encoded_.width() != frame.width || encoded_.height() != frame.height)
             encoded_ = Rgb(frame.width, frame.height);
-        const PqArgs args{view(frame.colorLinear), view(encoded_), encoded_.stride(), frame.width};
+        const PqArgs args{view(frame.colorLinear), view(encoded_), encoded_.stride(), frame.width, &pqTables()};
         runKernel(karisKernelsFor(exec.isa).pqEncode, exec, args, frame.height);
         encoded_.fillBorder();
         return encoded_;

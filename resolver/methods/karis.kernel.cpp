@@ -31,7 +31,7 @@ AA_INLINE R falcorWeight(R alpha, R low, R high, R lumaHistory) {
 // filter: what all nine neighbours of a pixel would compute again is computed once, into a buffer of the cache's size.
 template <class T>
 struct KarisTile {
-    static constexpr int kWidth = 128, kHeight = 8, kMargin = 8, kStride = kWidth + 2 * kMargin;
+    static constexpr int kWidth = 128, kHeight = 8, kMargin = 16, kStride = kWidth + 2 * kMargin;
     alignas(64) T c[3][(kHeight + 2) * kStride], weight[(kHeight + 2) * kStride];
     int x0, y0;
     AA_INLINE int offset(int x, int y) const { return (y - y0 + 1) * kStride + x - x0 + kMargin; }
@@ -155,23 +155,28 @@ __attribute__((flatten)) void karisRows(const KarisArgs& a, int y0, int y1) {
 
 template <class R>
 __attribute__((flatten)) void pqEncodeRows(const PqArgs& a, int y0, int y1) {
+    const PqTables& t = *a.tables;
     for (int y = y0; y < y1; y++)
         for (int x = 0; x < a.width; x += N<R>) {
             const long o = long(y) * a.stride + x;
-            const vec3<R> c = load3<R>(a.in.c, o);  // three at a time: one alone waits for its own steps
-            store3(vec3<R>{pq_encode(c.x), pq_encode(c.y), pq_encode(c.z)}, a.out.c, o);
+            const vec3<R> c = load3<R>(a.in.c, o);
+            store3(vec3<R>{pq_encode(t, c.x), pq_encode(t, c.y), pq_encode(t, c.z)}, a.out.c, o);
         }
 }
 template <class R>
 __attribute__((flatten)) void pqDecodeRows(const PqArgs& a, int y0, int y1) {
+    const PqTables& t = *a.tables;
     for (int y = y0; y < y1; y++)
         for (int x = 0; x < a.width; x += N<R>) {
             const long o = long(y) * a.stride + x;
-            const vec3<R> c = load3<R>(a.in.c, o);  // three at a time: one alone waits for its own steps
-            store3(vec3<R>{pq_decode(c.x), pq_decode(c.y), pq_decode(c.z)}, a.out.c, o);
+            const vec3<R> c = load3<R>(a.in.c, o);
+            store3(vec3<R>{pq_decode(t, c.x), pq_decode(t, c.y), pq_decode(t, c.z)}, a.out.c, o);
         }
 }
 
+void fillPqTables(PqTables& t) { fill_tables(t); }
+
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::KarisKernels, karisKernels) = {AA_ROWS(karisRows), AA_ROWS(pqEncodeRows), AA_ROWS(pqDecodeRows)};
+AA_DEFINE_TABLE(aa::KarisKernels, karisKernels) = {AA_WIDE_ROWS(karisRows), AA_WIDE_ROWS(pqEncodeRows),
+                                                   AA_WIDE_ROWS(pqDecodeRows), fillPqTables};

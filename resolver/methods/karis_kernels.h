@@ -1,4 +1,5 @@
 #pragma once
+#include "kernels/pq_tables.h"
 #include "methods/temporal_kernels.h"
 
 namespace aa {
@@ -21,10 +22,12 @@ struct PqArgs {
     RgbIn in;
     RgbOut out;
     int stride, width;
+    const PqTables* tables;
 };
 struct KarisKernels {
     RowKernel<KarisArgs> resolve;
     RowKernel<PqArgs> pqEncode, pqDecode;
+    void (*fillPqTables)(PqTables&);  // the same bits on every instruction set
 };
 }  // namespace aa
 AA_KERNEL_TABLE(aa::KarisKernels, karisKernels)

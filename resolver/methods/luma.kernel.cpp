@@ -81,4 +81,4 @@ __attribute__((flatten)) void lumaRows(const LumaArgs& a, int y0, int y1) {
 }
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::LumaKernels, lumaKernels) = {AA_ROWS(lumaRows)};
+AA_DEFINE_TABLE(aa::LumaKernels, lumaKernels) = {AA_WIDE_ROWS(lumaRows)};

@@ -26,7 +26,7 @@ class Master : public Method {
         const float farDepth = farDepthOf(frame);
         MasterArgs m{};
         m.in = in;
-        m.albedoLinear = view(frame.albedoLinear);
+        m.albedoEncoded = view(frame.albedoEncoded);
         m.objectId = frame.objectId.row(0);
         std::swap(depth_[0], depth_[1]);
         m.keptDepth = depth_[0].row(0), m.previousDepth = depth_[1].row(0);

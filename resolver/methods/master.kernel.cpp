@@ -1,4 +1,3 @@
-#include "kernels/srgb.h"
 #include "methods/master_kernels.h"
 #include "methods/master_terms.kernel.h"
 
@@ -8,7 +7,7 @@ namespace AA_ARCH {
 
 template <class T>
 struct MasterTile {
-    static constexpr int kWidth = 256, kHeight = kMasterBlockRows, kMarginX = 8, kMarginY = 3,
+    static constexpr int kWidth = 512, kHeight = kMasterBlockRows, kMarginX = 16, kMarginY = 3,
                          kStride = kWidth + 2 * kMarginX, kSize = (kHeight + 2 * kMarginY) * kStride;
     alignas(64) T luminanceAlbedo[kSize], luminanceLit[kSize], sobel[kSize], filtered[kSize];
     alignas(64) T past[3][kSize], pastDepth[kSize];  // colour, and depth: NaN where history is outside
@@ -53,10 +52,7 @@ template <class R>
 AA_INLINE void fill_luminance(const MasterArgs& a, MasterTile<Elem<R>>& tile, int x, int y) {
     const long o = long(y) * a.in.stride + x;
     const int t = tile.offset(x, y);
-    const vec3<R> albedo = load3<R>(a.albedoLinear.c, o);
-    const vec3<R> encoded{srgb_encode(saturate(albedo.x)), srgb_encode(saturate(albedo.y)),
-                          srgb_encode(saturate(albedo.z))};
-    store(luminance(encoded, a.bt601), tile.luminanceAlbedo + t);
+    store(luminance(load3<R>(a.albedoEncoded.c, o), a.bt601), tile.luminanceAlbedo + t);
     store(luminance(load3<R>(a.in.color.c, o), a.bt601), tile.luminanceLit + t);
 }
 template <class R>
@@ -236,4 +232,4 @@ __attribute__((flatten)) void masterBlocks(const MasterArgs& a, int b0, int b1) 
 
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::MasterKernels, masterKernels) = {AA_ROWS(masterBlocks)};
+AA_DEFINE_TABLE(aa::MasterKernels, masterKernels) = {AA_WIDE_ROWS(masterBlocks)};

@@ -6,7 +6,7 @@ namespace aa {
 inline constexpr int kMasterBlockRows = 32;
 struct MasterArgs {
     TemporalIn in;  // encoded colour; alpha of the history: the Sobel value, filtered over time
-    RgbIn albedoLinear;
+    RgbIn albedoEncoded;
     const uint32_t* objectId;
     const float* previousDepth;
     float* keptDepth;  // this frame's depth for the next one

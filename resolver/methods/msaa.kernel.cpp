@@ -130,4 +130,4 @@ __attribute__((flatten)) void msaaRows(const MsaaArgs& a, int y0, int y1) {
 }
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::MsaaKernels, msaaKernels) = {AA_ROWS(msaaRows)};
+AA_DEFINE_TABLE(aa::MsaaKernels, msaaKernels) = {AA_WIDE_ROWS(msaaRows)};

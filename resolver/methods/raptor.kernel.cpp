@@ -114,4 +114,4 @@ __attribute__((flatten)) void raptorRows(const RaptorArgs& a, int y0, int y1) {
 
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::RaptorKernels, raptorKernels) = {AA_ROWS(raptorRows)};
+AA_DEFINE_TABLE(aa::RaptorKernels, raptorKernels) = {AA_WIDE_ROWS(raptorRows)};

@@ -48,4 +48,4 @@ __attribute__((flatten)) void resolveRows(const ResolveArgs& a, int y0, int y1) 
 }
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::ResolveKernels, resolveKernels) = {AA_ROWS(resolveRows)};
+AA_DEFINE_TABLE(aa::ResolveKernels, resolveKernels) = {AA_WIDE_ROWS(resolveRows)};

@@ -254,4 +254,4 @@ __attribute__((flatten)) void rsaaRows(const RsaaArgs& a, int y0, int y1) {
 }
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::RsaaKernels, rsaaKernels) = {AA_ROWS(rsaaRows)};
+AA_DEFINE_TABLE(aa::RsaaKernels, rsaaKernels) = {AA_WIDE_ROWS(rsaaRows)};

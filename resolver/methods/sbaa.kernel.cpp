@@ -70,15 +70,15 @@ struct Sbaa {
         }
         // Shaded once, at the member nearest to the cluster's centroid.
         AA_INLINE vec3<T> shade(const Cluster& c) const {
-            T x = 0, y = 0;
+            T x = 0, y = 0;  // times the coverage: exact for positions on a grid of 1/16, so that equals tie
             for (int k = 0; k < m.g.samples; k++)
                 if (c.members >> k & 1u) x = x + T(m.g.sample[k].offsetPx[0]), y = y + T(m.g.sample[k].offsetPx[1]);
-            x = x / T(c.coverage), y = y / T(c.coverage);
+            const T n = T(c.coverage);
             int nearest = -1;
             T least = 0;
             for (int k = 0; k < m.g.samples; k++) {
                 if (!(c.members >> k & 1u)) continue;
-                const T dx = T(m.g.sample[k].offsetPx[0]) - x, dy = T(m.g.sample[k].offsetPx[1]) - y;
+                const T dx = n * T(m.g.sample[k].offsetPx[0]) - x, dy = n * T(m.g.sample[k].offsetPx[1]) - y;
                 const T d = dx * dx + dy * dy;
                 if (nearest < 0 || d < least) nearest = k, least = d;
             }
@@ -148,4 +148,4 @@ __attribute__((flatten)) void sbaaRows(const SbaaArgs& a, int y0, int y1) {
 }
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::SbaaKernels, sbaaKernels) = {AA_ROWS(sbaaRows)};
+AA_DEFINE_TABLE(aa::SbaaKernels, sbaaKernels) = {AA_WIDE_ROWS(sbaaRows)};

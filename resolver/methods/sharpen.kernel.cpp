@@ -53,4 +53,4 @@ __attribute__((flatten)) void sharpenRows(const SharpenArgs& a, int y0, int y1) 
 }
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::SharpenKernels, sharpenKernels) = {AA_ROWS(sharpenRows)};
+AA_DEFINE_TABLE(aa::SharpenKernels, sharpenKernels) = {AA_WIDE_ROWS(sharpenRows)};

@@ -43,4 +43,4 @@ __attribute__((flatten)) void resolveRows(const SmaaTemporalArgs& a, int y0, int
 }
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::SmaaTemporalKernels, smaaTemporalKernels) = {AA_ROWS(resolveRows)};
+AA_DEFINE_TABLE(aa::SmaaTemporalKernels, smaaTemporalKernels) = {AA_WIDE_ROWS(resolveRows)};

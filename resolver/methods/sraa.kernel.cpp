@@ -100,4 +100,4 @@ __attribute__((flatten)) void sraaRows(const SraaArgs& a, int y0, int y1) {
 }
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::SraaKernels, sraaKernels) = {AA_ROWS(sraaRows)};
+AA_DEFINE_TABLE(aa::SraaKernels, sraaKernels) = {AA_WIDE_ROWS(sraaRows)};

@@ -79,4 +79,4 @@ __attribute__((flatten)) void t2msaaRows(const T2msaaArgs& a, int y0, int y1) {
 
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::T2msaaKernels, t2msaaKernels) = {AA_ROWS(t2msaaRows)};
+AA_DEFINE_TABLE(aa::T2msaaKernels, t2msaaKernels) = {AA_WIDE_ROWS(t2msaaRows)};

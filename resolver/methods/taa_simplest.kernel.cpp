@@ -30,4 +30,4 @@ __attribute__((flatten)) void taaSimplestRows(const TaaSimplestArgs& a, int y0, 
 
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::TaaSimplestKernels, taaSimplestKernels) = {AA_ROWS(taaSimplestRows)};
+AA_DEFINE_TABLE(aa::TaaSimplestKernels, taaSimplestKernels) = {AA_WIDE_ROWS(taaSimplestRows)};

@@ -32,4 +32,4 @@ __attribute__((flatten)) void sharpenHistoryRows(const SharpenHistoryArgs& a, in
 
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::TemporalKernels, temporalKernels) = {AA_ROWS(sharpenHistoryRows)};
+AA_DEFINE_TABLE(aa::TemporalKernels, temporalKernels) = {AA_WIDE_ROWS(sharpenHistoryRows)};

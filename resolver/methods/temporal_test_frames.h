@@ -25,7 +25,7 @@ inline Frame temporalFrame(int number, int w, int h, const Picture& picture, glm
             for (int x = 0; x < w; x++) f.colorLinear.c[c].at(x, y) = picture(x, y, int(c));
     f.colorLinear.fillBorder();
     f.albedoLinear = f.colorLinear;
-    encode(f.colorLinear, {}, {}, f.colorEncoded);
+    encodeFrame(f, {}, {});
     return f;
 }
 inline Picture noisePicture(unsigned seed) {

@@ -41,4 +41,4 @@ __attribute__((flatten)) void unchartedRows(const UnchartedArgs& a, int y0, int 
 
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::UnchartedKernels, unchartedKernels) = {AA_ROWS(unchartedRows)};
+AA_DEFINE_TABLE(aa::UnchartedKernels, unchartedKernels) = {AA_WIDE_ROWS(unchartedRows)};

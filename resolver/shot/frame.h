@@ -35,6 +35,7 @@ struct Frame {
     Rgb colorLinear;
     Rgb colorEncoded;  // D(colorLinear); filled by the driver when a method reads encoded colour
     Rgb albedoLinear;
+    Rgb albedoEncoded;  // sRGB of albedoLinear, whatever the display chain; filled with colorEncoded
     PlaneF depthView;  // planar z > 0, background 1e10
     Rgb normalWorld;
     PlaneU objectId;              // 0 = background

@@ -180,7 +180,7 @@ inline Subject makeSubject(const std::string& text, int w, int h) {
     throw std::runtime_error(text + ": accepts no sub-sample pattern: " + why);
 }
 inline const Rgb& step(Subject& s, Frame f, const Exec& exec = {}) {
-    encode(f.colorLinear, {}, exec, f.colorEncoded);
+    encodeFrame(f, {}, exec);
     s.running.resolve(f, {}, exec);
     return s.running.out;
 }
