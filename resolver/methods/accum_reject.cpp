@@ -44,7 +44,7 @@ class AccumReject : public Method {
         args.nMaxMoving = p.realf("nMaxMoving");
         runKernel(kernels.resolve, exec, args, frame.height);
 
-        history_.end();
+        history_.end({}, exec);
         std::swap(residual_[0], residual_[1]);
         residual_[0].fillBorder();
         if (p.flag("objectIds")) previousId_ = frame.objectId;

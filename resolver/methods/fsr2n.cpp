@@ -72,7 +72,7 @@ class Fsr2n : public Method {
             args.debugDepthClip = depthClip_.row(0), args.debugLock = lock_.row(0);
         }
         runKernel(kernels.resolve, exec, args, frame.height);
-        history_.end();
+        history_.end({}, exec);
         std::swap(luma_[0], luma_[1]);
         luma_[0].fillBorder();
     }

@@ -20,7 +20,9 @@ class Inside : public Method {
                         p.flag("unjitterColor"),
                         p.flag("unjitterNeighbourhood"),
                         temporal::dilation(p) == Dilation::none && p.flag("unjitterReprojection"),
-                        p.flag("ycocg")};
+                        p.flag("ycocg"),
+                        p.realf("motionBlur"),
+                        uint32_t(frame.number)};
         args.in.out = view(out);
         history_.begin(frame, "inside", args.in);
         args.in.feedbackCeiling = temporal::feedbackCeiling(p, history_.framesSinceReset());
@@ -29,7 +31,7 @@ class Inside : public Method {
         args.in.clampOutside = p.choice("outside") == "clamp";
         args.in.debug = debug_.begin(*this, frame.width, frame.height);
         runKernel(insideKernelsFor(exec.isa).resolve, exec, args, frame.height);
-        history_.end();
+        history_.end(temporal::historyStorage(p), exec);
     }
     size_t stateBytes() const override { return history_.bytes(); }
     const PlaneF* rejection() const override { return debug_.rejection(); }
@@ -65,7 +67,11 @@ MethodDescriptor insideDescriptor() {
                    temporal::clipTargetParam("aabbCentre", "Pedersen 2016"),
                    temporal::dilationParam("closest3x3", "Pedersen 2016"),
                    temporal::historyFilterParam("bilinear", "Pedersen 2016"), temporal::outsideParam(),
-                   temporal::warmupParam()},
+                   realParam("motionBlur", "0", 0, 16,
+                             "length of the blur of what moves by more than 2 px, in frame intervals; the history "
+                             "stays sharp; 0 = off, as the truth is an instant",
+                             "Pedersen 2016"),
+                   temporal::warmupParam(), temporal::historyBitsParam(Space::encoded), temporal::ditherParam()},
         .create =
             [](const Params& p, const ShotInfo&) {
                 temporal::requireOrdered("inside", p);

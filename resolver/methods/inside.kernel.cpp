@@ -1,3 +1,4 @@
+#include "kernels/hash.h"
 #include "methods/inside_kernels.h"
 #include "methods/temporal_blocks.kernel.h"
 
@@ -14,6 +15,41 @@ AA_INLINE Box<R> four_tap_box(const At& at, R s, vec3<R>& mean) {
     const vec3<R> a = tap(-1, -1), b = tap(1, -1), d = tap(-1, 1), e = tap(1, 1);
     mean = a + ((b - a) + (d - a) + (e - a)) * R(Elem<R>(0.25));
     return {min(min(a, b), min(d, e)), max(max(a, b), max(d, e))};
+}
+
+// The current colours at p + (dx, dy), bilinear, held to the picture.
+template <class R>
+AA_INLINE vec3<R> color_at(TemporalIn in, R dx, R dy, int x, int y) {
+    in.clampOutside = true;
+    const Reprojection<R> q = reproject(in, Motion<R>{-dx, -dy}, x, y);
+    alignas(64) int k[N<R>];
+    texel_offsets(q, in.stride, k);
+    const auto channel = [&](const float* p) __attribute__((always_inline)) {
+        const R top = mix(gather<R>(p, k), gather<R>(p + 1, k), q.fracX),
+                bottom = mix(gather<R>(p + in.stride, k), gather<R>(p + in.stride + 1, k), q.fracX);
+        return mix(top, bottom, q.fracY);
+    };
+    const long o = long(y) * in.stride + x;
+    return {channel(in.color.c[0] + o), channel(in.color.c[1] + o), channel(in.color.c[2] + o)};
+}
+// What the screen shows: seven taps along the motion of the current frame, offset by chance, instead of the result
+// where motion is fast (2 px: none of it, 15 px: all).
+template <class R>
+AA_INLINE vec3<R> blurred_by_motion(const InsideArgs& a, Motion<R> motion, vec3<R> result, int x, int y) {
+    using T = Elem<R>;
+    const R zero(T(0)), one(T(1));
+    const R speed = sqrt(motion.x * motion.x + motion.y * motion.y);
+    const R share = clamp(speed - R(T(2)), zero, R(T(13))) * R(T(1) / T(13));
+    const R step = R(T(a.motionBlur) * T(0.5) / T(3));
+    const R chance = noise<R>(noise_seed(a.frame, uint32_t(y)), uint32_t(x)) - R(T(0.5));
+    const R ownX(a.unjitterColor ? -T(a.in.jitterXPx) : T(0)), ownY(a.unjitterColor ? -T(a.in.jitterYPx) : T(0));
+    vec3<R> sum(zero);
+    for (int tap = -3; tap <= 3; tap++) {
+        const R at = (R(T(tap)) + chance) * step;
+        sum = sum + color_at(a.in, ownX + motion.x * at, ownY + motion.y * at, x, y);
+    }
+    const vec3<R> smeared = sum * R(T(1) / T(7));
+    return select(both(share > zero, finite(smeared)), mix(result, smeared, min(share, one)), result);
 }
 
 template <class R>
@@ -65,7 +101,9 @@ AA_INLINE void insidePixel(const InsideArgs& a, bool ycocg, bool unjitterWindow,
     const vec3<R> mixed = blend(current, held, k);
     const vec3<R> rgb = ycocg ? saturate(from_ycocg(mixed)) : mixed;
 
-    store_blend(in, x, y, sanitised(select(q.inside, rgb, currentRgb), load3<R>(in.color.c, o), past), R(T(1)));
+    const vec3<R> result = sanitised(select(q.inside, rgb, currentRgb), load3<R>(in.color.c, o), past);
+    store_blend(in, x, y, result, R(T(1)));
+    if (a.motionBlur > 0) store3(blurred_by_motion(a, motion, result, x, y), in.out.c, o);
     store_debug(in.debug, o, motion, q.inside, box, held - history, k);
 }
 template <class R>

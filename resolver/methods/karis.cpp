@@ -54,7 +54,7 @@ class Karis : public Method {
                 if (pq_) decode(decoded, y, end);  // while the strip is in the cache
             }
         });
-        history_.end();
+        history_.end(temporal::historyStorage(p), exec);
     }
     size_t stateBytes() const override { return history_.bytes() + encoded_.bytes(); }
     const PlaneF* rejection() const override { return debug_.rejection(); }
@@ -122,7 +122,7 @@ MethodDescriptor descriptor(const Preset& d) {
                                    "public UE4.x; Falcor"),
                        flag("inverseLuminance", d.inverseLuminance, "blend with weights 1/(1+Y)", d.source),
                        temporal::dilationParam(d.dilation, d.source), temporal::historyFilterParam(d.history, d.source),
-                       temporal::warmupParam()},
+                       temporal::warmupParam(), temporal::historyBitsParam(Space::linear), temporal::ditherParam()},
             .create = [id = d.id, pq = d.id == "donut"](const Params& p,
                                                         const ShotInfo&) { return std::make_unique<Karis>(id, p, pq); },
             .morePasses = temporal::dilationPasses};

@@ -22,6 +22,24 @@ TEST(Pq, PartsAgreeWithLibm) {
     EXPECT_NEAR(block_test::pq_encode(10000.0), 1.0, 1e-12);
 }
 
+TEST(Pq, TablesAgreeWithTheCurve) {
+    static PqTables tables;
+    block_test::fill_tables(tables);
+    double encoded = 0, decoded = 0;
+    for (int i = 0; i <= 100000; i++) {
+        const float linear = float(std::pow(10.0, -12 + 16.0 * i / 100000));
+        const float e = block_test::pq_encode(tables, linear), back = block_test::pq_decode(tables, e);
+        encoded = std::max(encoded, std::abs(double(e) - block_test::pq_encode(double(linear))));
+        const double exact = block_test::pq_decode(double(e));
+        decoded = std::max(decoded, std::abs(double(back) - exact) / exact);
+    }
+    EXPECT_LT(encoded, 1.2e-7);
+    EXPECT_LT(decoded, 2e-7);
+    for (const float dark : {0.0f, -1.0f, 1e-30f, NAN, -INFINITY})
+        EXPECT_EQ(block_test::pq_decode(tables, block_test::pq_encode(tables, dark)), 0.0f) << dark;
+    for (const float bright : {1e4f, 1e6f, INFINITY})
+        EXPECT_EQ(block_test::pq_decode(tables, block_test::pq_encode(tables, bright)), 1e4f) << bright;
+}
 // A linear value through donut: first frame encodes and decodes only.
 TEST(Donut, PqIsItsOwnInverse) {
     RunningMethod m = running("donut", 64, 1);

@@ -55,7 +55,7 @@ class Master : public Method {
         }
         const int blocks = (frame.height + kMasterBlockRows - 1) / kMasterBlockRows;
         runKernel(masterKernelsFor(exec.isa).resolve, exec, m, blocks, 1);
-        history_.end();
+        history_.end(temporal::historyStorage(p), exec);
         depth_[0].fillBorder();
         if (sharpen_ != SharpenKernel::none) sharpenEncoded(history_.latest(), sharpen_, exec, out);
     }
@@ -144,7 +144,9 @@ MethodDescriptor masterDescriptor() {
                    temporal::clipTargetParam("aabbCentre", "methods/11 nr 6"),
                    temporal::dilationParam("closest3x3", "seed 000 s.3.6.2"),
                    temporal::historyFilterParam("bilinear", "methods/06 B1"),
-                   temporal::warmupParam()},
+                   temporal::warmupParam(),
+                   temporal::historyBitsParam(Space::encoded),
+                   temporal::ditherParam()},
         .create = [](const Params& p, const ShotInfo&) {
             temporal::requireOrdered("master", p);
             return std::make_unique<Master>(p);

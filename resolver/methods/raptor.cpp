@@ -71,7 +71,7 @@ class Raptor : public Method {
         args.kMin = p.realf("kmin"), args.kMax = p.realf("kmax");
         args.in.debug = debug_.begin(*this, frame.width, frame.height);
         runKernel(raptorKernelsFor(exec.isa).resolve, exec, args, frame.height);
-        history_.end();
+        history_.end(temporal::historyStorage(p), exec);
         if (sharpen > 0) {
             blend_.fillBorder();
             sharpenLuma(blend_, sharpen, exec, out);
@@ -124,7 +124,7 @@ MethodDescriptor raptorDescriptor() {
                    flagParam("ycocg", false, "work in YCoCg", "seed 002"),
                    realParam("sharpen", "1", 0, 4, "luminance sharpening of the output, never fed back; 0 = none",
                              "seed 002: 1 is standard; the sample program has 0.1 (methods/11 nr 30)"),
-                   temporal::warmupParam()},
+                   temporal::warmupParam(), temporal::historyBitsParam(Space::linear), temporal::ditherParam()},
         .create =
             [](const Params& p, const ShotInfo&) {
                 temporal::requireOrdered("raptor", p);

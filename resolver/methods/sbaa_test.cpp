@@ -67,6 +67,20 @@ TEST(Sbaa, CoplanarPiecesMerge) {
     EXPECT_TRUE(resolved("sbaa:ids=off", far).samePixels(far.colorLinear));
     EXPECT_FALSE(resolved("sbaa", far).samePixels(far.colorLinear));
 }
+// Which member lies nearest to a cluster's centroid is often a tie; float and double must break it alike. Every way in
+// which eight sub-samples can fall on two objects, each sub-sample with a colour of its own.
+TEST(Sbaa, EveryPrecisionShadesTheSameMember) {
+    const TestScene one{{{{0, 0, 1}, -4, glm::vec3(1.0f), 1}}, [](double, double) { return 0; }};
+    Frame f = renderPlanes(one, 256, 1, d3dPattern(8));
+    for (int x = 0; x < 256; x++)
+        for (size_t k = 0; k < 8; k++) {
+            f.subSamples[k].objectId.at(x, 0) = x >> k & 1 ? 2 : 1;
+            f.subSamples[k].colorLinear.c[0].at(x, 0) = float(1 << k);
+        }
+    const Rgb fast = resolved("sbaa", f, {bestIsa(), Precision::fast}),
+              oracle = resolved("sbaa", f, {bestIsa(), Precision::oracle});
+    for (int x = 0; x < 256; x++) EXPECT_FLOAT_EQ(fast.c[0].at(x, 0), oracle.c[0].at(x, 0)) << x;
+}
 TEST(Sbaa, EmptyAndBrokenGeometry) {
     const TestScene empty{{}, [](double, double) { return -1; }, glm::vec3(0.3f)};
     const Frame sky = renderPlanes(empty, 9, 5, d3dPattern(8));

@@ -33,7 +33,7 @@ class T2msaa : public Method {
         args.bothSides = p.flag("bothSides");
         args.in.debug = debug_.begin(*this, frame.width, frame.height);
         runKernel(t2msaaKernelsFor(exec.isa).resolve, exec, args, frame.height);
-        history_.end();
+        history_.end({}, exec);
         std::swap(count_[0], count_[1]);
         count_[0].fillBorder();
     }

@@ -19,7 +19,7 @@ class TaaSimplest : public Method {
         args.in.clampOutside = params_.choice("outside") == "clamp";
         args.in.debug = debug_.begin(*this, frame.width, frame.height);
         runKernel(taaSimplestKernelsFor(exec.isa).resolve, exec, args, frame.height);
-        history_.end();
+        history_.end(temporal::historyStorage(params_), exec);
     }
     size_t stateBytes() const override { return history_.bytes(); }
     const PlaneF* rejection() const override { return debug_.rejection(); }
@@ -43,7 +43,7 @@ MethodDescriptor taaSimplestDescriptor() {
             .temporal = true,
             .params = {realParam("k", "0.9", 0, 1, "weight of history", "seed 002: \"normally around 0.9\""),
                        temporal::historyFilterParam("bilinear", "seed 002"), temporal::outsideParam(),
-                       temporal::warmupParam()},
+                       temporal::warmupParam(), temporal::historyBitsParam(Space::linear), temporal::ditherParam()},
             .create = [](const Params& p, const ShotInfo&) { return std::make_unique<TaaSimplest>(p); }};
 }
 }  // namespace aa

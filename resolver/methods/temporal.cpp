@@ -15,13 +15,20 @@ void ColourHistory::begin(const Frame& frame, std::string_view method, TemporalI
     if (!fits)
         for (auto& p : planes_) p = RgbaPlane(frame.width, frame.height);
     frames_ = fresh ? 0 : frames_ + 1;
+    frameNumber_ = uint32_t(frame.number);
     in.history = fresh ? nullptr : planes_[current_].row(0);
     in.next = planes_[1 - current_].row(0);
 }
 
-void ColourHistory::end() {
+void ColourHistory::end(const HistoryStorage& storage, const Exec& exec) {
     current_ = 1 - current_;
-    planes_[current_].fillBorder();
+    RgbaPlane& kept = planes_[current_];
+    if (storage.format != HistoryFormat::float32) {
+        const NarrowHistoryArgs args{kept.row(0),    kept.stride(),  kept.width(),
+                                     storage.format, storage.dither, frameNumber_};
+        runKernel(temporalKernelsFor(exec.isa).narrow, exec, args, kept.height());
+    }
+    kept.fillBorder();
 }
 
 namespace temporal {
@@ -47,6 +54,17 @@ ParamSpec warmupParam() {
     return choiceParam("warmup", "none", {"none", "ramp"},
                        "frames after a reset: none keeps the feedback, ramp averages the first frames evenly",
                        "methods/06 s.6.0; none is the protocol of seed 000");
+}
+ParamSpec historyBitsParam(Space space) {
+    const std::string_view help =
+        "how colours are kept between frames: float, or rounded to binary16 or to 8 bits as on a graphics processor";
+    if (space == Space::encoded)
+        return choiceParam("historyBits", "32f", {"32f", "16f", "8"}, help, "methods/08 s.8.0");
+    return choiceParam("historyBits", "32f", {"32f", "16f"}, help, "methods/08 s.8.0");
+}
+ParamSpec ditherParam() {
+    return flagParam("dither", false, "round up or down by chance, so that a slow history does not stall",
+                     "Pedersen 2016; methods/08 s.8.0", "historyBits=16f|8");
 }
 ParamSpec outsideParam() {
     return choiceParam("outside", "reject", {"reject", "clamp"},
@@ -74,6 +92,9 @@ Dilation dilation(const Params& p) { return Dilation(p.choiceIndex("dilation"));
 HistoryFilter historyFilter(const Params& p) { return HistoryFilter(p.choiceIndex("history")); }
 Neighbourhood neighbourhood(const Params& p) { return Neighbourhood(p.choiceIndex("neighbourhood")); }
 ClipTarget clipTarget(const Params& p) { return ClipTarget(p.choiceIndex("clipTarget")); }
+HistoryStorage historyStorage(const Params& p) {
+    return {HistoryFormat(p.choiceIndex("historyBits")), p.flag("dither")};
+}
 PassSet dilationPasses(const Params& p) {
     const Dilation d = dilation(p);
     return d == Dilation::closest3x3 || d == Dilation::closestX ? PassSet(Pass::depth) : PassSet{};

@@ -11,12 +11,18 @@
 
 namespace aa {
 
+// How the history is kept from one frame to the next: parameters historyBits and dither.
+struct HistoryStorage {
+    HistoryFormat format = HistoryFormat::float32;
+    bool dither = false;
+};
+
 class ColourHistory {
   public:
     // Fills the history members of `in` for this frame: in.history stays null when there is none.
     void begin(const Frame& frame, std::string_view method, TemporalIn& in);
     // The blend of this frame is complete: fills its border and makes it the history of the next one.
-    void end();
+    void end(const HistoryStorage& storage, const Exec& exec);
     size_t bytes() const { return planes_[0].bytes() + planes_[1].bytes(); }
     int framesSinceReset() const { return frames_; }  // 0 on the first frame
     const RgbaPlane& latest() const { return planes_[current_]; }
@@ -25,6 +31,7 @@ class ColourHistory {
     RgbaPlane planes_[2];
     size_t current_ = 0;
     int frames_ = -1;
+    uint32_t frameNumber_ = 0;
 };
 
 // Parameters that several methods share, each declared once.
@@ -34,6 +41,8 @@ ParamSpec historyFilterParam(std::string_view def, std::string_view source);
 ParamSpec neighbourhoodParam(std::string_view def, std::string_view source);
 ParamSpec clipTargetParam(std::string_view def, std::string_view source);
 ParamSpec warmupParam();
+ParamSpec historyBitsParam(Space space);  // eight bits hold display-encoded colours only
+ParamSpec ditherParam();
 ParamSpec outsideParam();
 ParamSpec sharpenParam(std::string_view def, std::string_view source);
 // The two ends of the luminance feedback B8.
@@ -45,6 +54,7 @@ Dilation dilation(const Params& p);
 HistoryFilter historyFilter(const Params& p);
 Neighbourhood neighbourhood(const Params& p);
 ClipTarget clipTarget(const Params& p);
+HistoryStorage historyStorage(const Params& p);
 // Depth is read only to dilate motion by it.
 PassSet dilationPasses(const Params& p);
 

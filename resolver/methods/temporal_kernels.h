@@ -53,8 +53,18 @@ struct SharpenHistoryArgs {
     int stride, width;
     float gain;  // weight of each of the four neighbours: 1 (Xu), 1/4 (normalised)
 };
+// The colours of a history as a narrower format would hold them (methods/08 s.8.0); its alpha stays float.
+enum class HistoryFormat { float32, half, byte };
+struct NarrowHistoryArgs {
+    float* rgba;
+    int stride, width;
+    HistoryFormat format;
+    bool dither;  // rounds up or down by chance, so that the mean is kept
+    uint32_t frame;
+};
 struct TemporalKernels {
     RowKernel<SharpenHistoryArgs> sharpen;
+    RowKernel<NarrowHistoryArgs> narrow;
 };
 }  // namespace aa
 AA_KERNEL_TABLE(aa::TemporalKernels, temporalKernels)

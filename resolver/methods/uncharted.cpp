@@ -21,7 +21,7 @@ class Uncharted : public Method {
         args.in.filter = temporal::historyFilter(params_);
         args.in.debug = debug_.begin(*this, frame.width, frame.height);
         runKernel(unchartedKernelsFor(exec.isa).resolve, exec, args, frame.height);
-        history_.end();
+        history_.end(temporal::historyStorage(params_), exec);
         if (sharpen_ != SharpenKernel::none) sharpenEncoded(history_.latest(), sharpen_, exec, out);
     }
     size_t stateBytes() const override { return history_.bytes(); }
@@ -52,7 +52,8 @@ MethodDescriptor descriptor(std::string_view id, std::string_view title, std::st
                        temporal::dilationParam("closest3x3", "seed 000 s.3.6.2"),
                        temporal::historyFilterParam("bilinear", "methods/06 B1"),
                        temporal::neighbourhoodParam("rounded", "seed 000 s.3.6.3"),
-                       temporal::clipTargetParam("aabbCentre", "methods/11 nr 6"), temporal::warmupParam()},
+                       temporal::clipTargetParam("aabbCentre", "methods/11 nr 6"), temporal::warmupParam(),
+                       temporal::historyBitsParam(Space::encoded), temporal::ditherParam()},
             .create =
                 [id](const Params& p, const ShotInfo&) {
                     temporal::requireOrdered(id, p);

@@ -1,0 +1,36 @@
+// White noise by place and time, the same on every machine. Include from *.kernel.cpp only.
+#pragma once
+#include "kernels/lanes.h"
+
+namespace AA_ARCH {
+
+template <int W>
+struct words_of {
+    typedef uint32_t type __attribute__((vector_size(W * 4)));
+};
+
+// A bijection of 32-bit words whose output bits each depend on every input bit (Wellons 2018, lowbias32).
+template <class U>
+AA_INLINE U mixed_bits(U h) {
+    h ^= h >> 16;
+    h *= 0x7feb352du;
+    h ^= h >> 15;
+    h *= 0x846ca68bu;
+    return h ^ (h >> 16);
+}
+AA_INLINE uint32_t noise_seed(uint32_t frame, uint32_t row) { return mixed_bits(frame * 0x9e3779b9u + row); }
+// In [0, 1), multiples of 2^-24, for counters first, first + 1, ... in the lanes.
+template <class R>
+AA_INLINE R noise(uint32_t seed, uint32_t first) {
+    using T = Elem<R>;
+    if constexpr (N<R> == 1)
+        return R(T(mixed_bits(seed + first) >> 8) * T(0x1p-24));
+    else {
+        typename words_of<N<R>>::type counter;
+        for (int i = 0; i < N<R>; i++) counter[i] = first + uint32_t(i);
+        const auto h = mixed_bits(counter + seed) >> 8;
+        return R(__builtin_convertvector(typename ints_of<N<R>>::type(h), typename R::V)) * R(T(0x1p-24));
+    }
+}
+
+}  // namespace AA_ARCH
