@@ -10,7 +10,10 @@ namespace {
 class Mlaa : public Method {
   public:
     explicit Mlaa(const Params& p)
-        : rule_(MlaaRule(p.choiceIndex("edges"))), areas_(9 * kMlaaTabled * kMlaaTabled * 2) {
+        : rule_(MlaaRule(p.choiceIndex("edges"))),
+          heights_(MlaaHeights(p.choiceIndex("heights"))),
+          simultaneous_(p.flag("simultaneous")),
+          areas_(9 * kMlaaTabled * kMlaaTabled * 2) {
         Exec exec;
         exec.parallel = false;
         runKernel(mlaaKernelsFor(exec.isa).areas, exec, MlaaAreaArgs{areas_.data()}, 9);
@@ -27,18 +30,21 @@ class Mlaa : public Method {
         const long scratchSize = 3 * (2 * width_ + 2);
         scratch_.resize(size_t(scratchSize) * blocks);
         columns_.resize(size_t(width_) * blocks);
-        const MlaaBlendArgs args{{top_.row(0), left_.row(0), top_.stride(), debug(topWeights_), debug(topShapes_)},
-                                 {leftByColumn_.row(0), topByColumn_.row(0), leftByColumn_.stride(),
-                                  debug(leftWeights_), debug(leftShapes_)},
-                                 areas_.data(),
-                                 view(frame.colorEncoded),
-                                 view(out),
-                                 scratch_.data(),
-                                 columns_.data(),
-                                 scratchSize,
-                                 out.stride(),
-                                 width_,
-                                 height_};
+        const MlaaBlendArgs args{
+            {top_.row(0), left_.row(0), top_.stride(), 1, out.stride(), debug(topWeights_), debug(topShapes_)},
+            {leftByColumn_.row(0), topByColumn_.row(0), leftByColumn_.stride(), out.stride(), 1, debug(leftWeights_),
+             debug(leftShapes_)},
+            areas_.data(),
+            view(frame.colorEncoded),
+            view(out),
+            scratch_.data(),
+            columns_.data(),
+            scratchSize,
+            out.stride(),
+            width_,
+            height_,
+            heights_,
+            simultaneous_};
         runKernel(mlaaKernelsFor(exec.isa).blend, exec, args, int(blocks), 1);
     }
     size_t stateBytes() const override {
@@ -83,6 +89,8 @@ class Mlaa : public Method {
         }
     }
     MlaaRule rule_;
+    MlaaHeights heights_;
+    bool simultaneous_;
     int width_ = 0, height_ = 0;
     BitPlane top_, left_, topByColumn_, leftByColumn_;
     std::vector<float> areas_, scratch_;
@@ -105,7 +113,14 @@ MethodDescriptor mlaaDescriptor() {
         .params = {choiceParam("edges", "maxdiff", {"maxdiff", "msb4", "luma"},
                                "difference that separates pixels: a channel by 1/16, the 4 highest bits of a channel, "
                                "or luma by 0.1",
-                               "methods/11 #42; msb4: Reshetov 2009")},
+                               "methods/11 #42; msb4: Reshetov 2009"),
+                   choiceParam("heights", "half", {"half", "colour"},
+                               "where the silhouette meets an edge that crosses a line's end: its middle, or where the "
+                               "blended colours of both sides agree",
+                               "Reshetov 2009; methods/03 s.3.1"),
+                   flagParam("simultaneous", false,
+                             "vertical lines blend the original colours too, not what horizontal lines left",
+                             "methods/03 s.3.1")},
         .create = [](const Params& p, const ShotInfo&) { return std::make_unique<Mlaa>(p); }};
 }
 

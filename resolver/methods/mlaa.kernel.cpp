@@ -54,7 +54,18 @@ AA_INLINE int first_of_run(const uint8_t* row, int p) {
         if (n < kWindow) return q - n + 1;
     }
 }
-AA_INLINE MlaaLine line_through(const MlaaAxis& axis, int p, int q) {
+// Where the silhouette meets the edge that crosses an end of a line, as a share of its length: where the line's last
+// pixel (`own`) and the one beyond the crossing edge, if that has a line of its own one row farther, get one luma.
+template <class T>
+AA_INLINE T meeting_height(const RgbIn& in, long own, long beyond, long across) {
+    const auto luma = [&](long o) __attribute__((always_inline)) { return luma601(colour_at<T>(in, o)); };
+    const T gained = luma(beyond + across) - luma(own), lost = luma(own - across) - luma(beyond);
+    const T sum = gained + lost;
+    if (!(abs(sum) >= T(1.0 / 255))) return T(0.5);  // any height serves
+    return saturate(gained / sum);
+}
+template <class T>
+AA_INLINE MlaaLine line_through(const MlaaBlendArgs& a, const MlaaAxis& axis, int p, int q) {
     const uint8_t *along = axis.along + long(q) * axis.stride, *cross = axis.cross + long(q) * axis.stride;
     const int first = first_of_run(along, p), last = last_of_run(along, p);
     auto height = [&](int at) __attribute__((always_inline)) {  // +1/2 up, -1/2 down, 2 both
@@ -64,6 +75,17 @@ AA_INLINE MlaaLine line_through(const MlaaAxis& axis, int p, int q) {
     float left = height(first), right = height(last + 1);
     if (left == 2) left = right == 2 ? 0 : -right;  // make a Z with the other end where there is one
     if (right == 2) right = -left;
+    if (a.heights == MlaaHeights::colour) {
+        const auto at = [&](float& height, int own, int beyond) __attribute__((always_inline)) {
+            if (height == 0 || !bit_at(height > 0 ? along - axis.stride : along + axis.stride, beyond)) return;
+            // Up: the row before the line, and what lies behind it is one row farther up.
+            const long row = (height > 0 ? long(q) - 1 : long(q)) * axis.acrossStep;
+            const T share = meeting_height<T>(a.in, own * axis.alongStep + row, beyond * axis.alongStep + row,
+                                              height > 0 ? -axis.acrossStep : axis.acrossStep);
+            height = float(height > 0 ? share : -share);
+        };
+        at(left, first, first - 1), at(right, last, last + 1);
+    }
     return {first, last, left, right};
 }
 template <class T>
@@ -95,7 +117,7 @@ template <class T>
 AA_INLINE void write_weights(const MlaaBlendArgs& a, const MlaaAxis& axis, const MlaaLine& line, int p, long pixel,
                              float* weights) {
     const int leftPx = p - line.first, rightPx = line.last - p;
-    if (std::is_same_v<T, float> && leftPx < kMlaaTabled && rightPx < kMlaaTabled) {
+    if (std::is_same_v<T, float> && a.heights == MlaaHeights::half && leftPx < kMlaaTabled && rightPx < kMlaaTabled) {
         auto side = [](float height) { return height > 0 ? 1 : height < 0 ? 2 : 0; };
         const float* const entry = a.areas + area_index(3 * side(line.left) + side(line.right), leftPx, rightPx);
         weights[0] = entry[0];
@@ -118,7 +140,7 @@ AA_INLINE void top_weights(const MlaaBlendArgs& a, int y, bool own, float* weigh
     for_each_bit(
         a.width, [&](int x) { return bits_from(top, x); },
         [&](int x) __attribute__((always_inline)) {
-            if (x > line.last) line = line_through(a.top, x, y);
+            if (x > line.last) line = line_through<T>(a, a.top, x, y);
             write_weights<T>(a, a.top, line, x, own ? long(y) * a.width + x : -1, weights + 2 * x);
         });
 }
@@ -128,7 +150,7 @@ AA_INLINE void left_weights(const MlaaBlendArgs& a, int y, MlaaLine* columns, fl
     for_each_bit(
         a.width, [&](int x) { return bits_from(left, x); },
         [&](int x) __attribute__((always_inline)) {
-            if (y > columns[x].last) columns[x] = line_through(a.left, y, x);
+            if (y > columns[x].last) columns[x] = line_through<T>(a, a.left, y, x);
             write_weights<T>(a, a.left, columns[x], y, long(y) * a.width + x, weights + 2 * x);
         });
 }
@@ -140,7 +162,8 @@ AA_INLINE void blend_pixel(const MlaaBlendArgs& a, long o, T toFirst, T toSecond
         a.out.c[c][o] = float(own + toFirst * (first[c] - own) + toSecond * (second[c] - own));
     }
 }
-// Horizontal lines blend the original rows; vertical lines blend the row that this gives.
+// Horizontal lines blend the original rows; vertical lines blend the row that this gives, or (simultaneous) the
+// original one too, and a pixel that both move goes halfway with each.
 template <class T>
 AA_INLINE void blend_row(const MlaaBlendArgs& a, int y, const float* top, const float* below, const float* left) {
     const uint8_t *tops = a.top.along + long(y) * a.top.stride, *belows = tops + a.top.stride,
@@ -162,6 +185,18 @@ AA_INLINE void blend_row(const MlaaBlendArgs& a, int y, const float* top, const 
         a.width, [&](int x) { return bits_from(lefts, x) | bits_from(lefts, x + 1); },
         [&](int x) __attribute__((always_inline)) {
             const long o = long(y) * a.stride + x;
+            const T toLeft = weight(lefts, x, left[2 * x]), toRight = weight(lefts, x + 1, left[2 * x + 3]);
+            if (a.simultaneous) {
+                const bool both =
+                    weight(tops, x, top[2 * x]) + weight(belows, x, below[2 * x + 1]) > T(0) && toLeft + toRight > T(0);
+                for (int c = 0; c < 3; c++) {
+                    const float* p = a.in.c[c] + o;
+                    const T own = p[0], moved = toLeft * (T(p[-1]) - own) + toRight * (T(p[1]) - own);
+                    const T sum = T(a.out.c[c][o]) - own + moved;
+                    a.out.c[c][o] = float(own + (both ? sum * T(0.5) : sum));
+                }
+                return;
+            }
             T before[3], after[3];
             for (int c = 0; c < 3; c++) {
                 before[c] = lastX == x - 1 ? beforeBlend[c] : T(a.out.c[c][o - 1]);
@@ -169,7 +204,7 @@ AA_INLINE void blend_row(const MlaaBlendArgs& a, int y, const float* top, const 
                 beforeBlend[c] = a.out.c[c][o];
             }
             lastX = x;
-            blend_pixel(a, o, weight(lefts, x, left[2 * x]), weight(lefts, x + 1, left[2 * x + 3]), before, after);
+            blend_pixel(a, o, toLeft, toRight, before, after);
         });
 }
 template <class R>

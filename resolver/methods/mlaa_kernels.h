@@ -3,6 +3,7 @@
 
 namespace aa {
 enum class MlaaRule { maxdiff, msb4, luma };
+enum class MlaaHeights { half, colour };
 struct MlaaEdgeArgs {
     RgbIn in;             // encoded
     uint8_t *top, *left;  // bits (methods/edge_bits.h)
@@ -16,10 +17,11 @@ inline constexpr int kMlaaTabled = 64;     // distances to the ends of a line wh
 struct MlaaAxis {
     const uint8_t *along, *cross;
     int stride;
-    float *weights, *shapes;  // debug: pairs (own, opposite); 1 L, 2 Z, 3 U, 0 none; null when not wanted
+    long alongStep, acrossStep;  // in the image: from a pixel to the next one along a line, and across it
+    float *weights, *shapes;     // debug: pairs (own, opposite); 1 L, 2 Z, 3 U, 0 none; null when not wanted
 };
-// A separation line: a maximal run of edges. Its silhouette leaves from half the height of the edges that cross its
-// ends; 0 where none does.
+// A separation line: a maximal run of edges. Its silhouette leaves from the edges that cross its ends, at this height
+// (up positive); 0 where none does.
 struct MlaaLine {
     int first, last;
     float left, right;
@@ -33,6 +35,8 @@ struct MlaaBlendArgs {
     MlaaLine* columns;  // per block: the vertical line that each column met last
     long scratchSize;   // per block
     int stride, width, height;
+    MlaaHeights heights;
+    bool simultaneous;
 };
 struct MlaaAreaArgs {
     float* areas;

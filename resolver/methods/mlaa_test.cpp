@@ -92,6 +92,31 @@ TEST(Mlaa, ConformsToTheDefinition) {
     }
 }
 
+// Two steps whose colours differ a little on either side: (1 - h) 1 + h 0 = h 0.015 + (1 - h) 0.955 at h = 0.75.
+TEST(Mlaa, HeightsByColourMakeBothSidesMeet) {
+    Rgb image(64, 8);
+    for (auto& p : image.c)
+        for (int y = 0; y < 8; y++)
+            for (int x = 0; x < 64; x++) p.at(x, y) = x < 32 ? (y < 3 ? 0.955f : 0.015f) : (y < 4 ? 1.0f : 0.0f);
+    const Rgb out = resolveOnce("mlaa:heights=colour", image), half = resolveOnce("mlaa", image);
+    EXPECT_NEAR(out.c[0].at(34, 3), 1 - 0.75 * 13.5 / 16, 1e-6);
+    EXPECT_NEAR(out.c[0].at(29, 3), 0.015 + 0.25 * 13.5 / 16 * 0.94, 1e-6);
+    EXPECT_NEAR(half.c[0].at(34, 3), 1 - 0.5 * 13.5 / 16, 1e-6);
+    // Of two colours any height serves, and the middle is taken: the area table and the formula are one.
+    const Rgb step = resolveOnce("mlaa:heights=colour", stepImage()), table = resolveOnce("mlaa", stepImage());
+    for (int y = 0; y < step.height(); y++)
+        for (int x = 0; x < step.width(); x++) EXPECT_NEAR(step.c[0].at(x, y), table.c[0].at(x, y), 1e-6);
+}
+TEST(Mlaa, SimultaneousAveragesTheTwoMoves) {
+    const Rgb out = resolveOnce("mlaa:simultaneous=on", stepImage()), ordered = resolveOnce("mlaa", stepImage());
+    const double move = (0.5 * 15.5 / 16 + 0.125) / 2;  // of the horizontal L and of the vertical Z of length 1
+    EXPECT_NEAR(out.c[0].at(31, 4), move, 1e-6);
+    EXPECT_NEAR(out.c[0].at(32, 4), 1 - move, 1e-6);
+    for (int x = 0; x < 64; x++)
+        if (x != 31 && x != 32) {
+            EXPECT_EQ(out.c[0].at(x, 4), ordered.c[0].at(x, 4)) << x;
+        }
+}
 TEST(Mlaa, DifferenceRules) {
     // Codes 15 and 16 differ in their four highest bits although they are 1/255 apart; 16 and 31 do not.
     auto stair = [](int low, int high) {

@@ -14,6 +14,7 @@ void ColourHistory::begin(const Frame& frame, std::string_view method, TemporalI
                          "; set `reset` on the frame where the size changes");
     if (!fits)
         for (auto& p : planes_) p = RgbaPlane(frame.width, frame.height);
+    if (!fresh && storage_.format != HistoryFormat::float32) narrow();
     frames_ = fresh ? 0 : frames_ + 1;
     frameNumber_ = uint32_t(frame.number);
     in.history = fresh ? nullptr : planes_[current_].row(0);
@@ -22,12 +23,15 @@ void ColourHistory::begin(const Frame& frame, std::string_view method, TemporalI
 
 void ColourHistory::end(const HistoryStorage& storage, const Exec& exec) {
     current_ = 1 - current_;
+    planes_[current_].fillBorder();
+    storage_ = storage, exec_ = exec;
+}
+
+void ColourHistory::narrow() {
     RgbaPlane& kept = planes_[current_];
-    if (storage.format != HistoryFormat::float32) {
-        const NarrowHistoryArgs args{kept.row(0),    kept.stride(),  kept.width(),
-                                     storage.format, storage.dither, frameNumber_};
-        runKernel(temporalKernelsFor(exec.isa).narrow, exec, args, kept.height());
-    }
+    const NarrowHistoryArgs args{kept.row(0),     kept.stride(),   kept.width(),
+                                 storage_.format, storage_.dither, frameNumber_};
+    runKernel(temporalKernelsFor(exec_.isa).narrow, exec_, args, kept.height());
     kept.fillBorder();
 }
 

@@ -21,17 +21,22 @@ class ColourHistory {
   public:
     // Fills the history members of `in` for this frame: in.history stays null when there is none.
     void begin(const Frame& frame, std::string_view method, TemporalIn& in);
-    // The blend of this frame is complete: fills its border and makes it the history of the next one.
+    // The blend of this frame is complete: fills its border and makes it the history of the next one, which finds it
+    // as `storage` keeps it. What this frame shows is not narrowed.
     void end(const HistoryStorage& storage, const Exec& exec);
     size_t bytes() const { return planes_[0].bytes() + planes_[1].bytes(); }
     int framesSinceReset() const { return frames_; }  // 0 on the first frame
     const RgbaPlane& latest() const { return planes_[current_]; }
 
   private:
+    void narrow();
+
     RgbaPlane planes_[2];
     size_t current_ = 0;
     int frames_ = -1;
     uint32_t frameNumber_ = 0;
+    HistoryStorage storage_;
+    Exec exec_;
 };
 
 // Parameters that several methods share, each declared once.
