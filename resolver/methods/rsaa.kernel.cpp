@@ -170,6 +170,51 @@ struct Rsaa {
         }
         return false;
     }
+    // The same for the lanes `asked` of the group of pixels at (x, y), all of whose neighbours lie in the picture.
+    AA_INLINE unsigned shownByNeighbours(int k, int x, int y, unsigned asked) const {
+        const SubSampleArgs& s = g.sample[k];
+        const long o = long(y) * a.stride + x;
+        const auto own = sample(k, o);
+        R limit{T(a.floor)};
+        if (a.tuneAdaptive) {
+            R apart = AA_ARCH::dissimilarity<measure>(centre(o), own, to_sample(g, columns<R>(x), y, k));
+            if (g.objectId) apart = select(ids_differ<R>(g.objectId + o, s.objectId + o), R(T(kFarthest)), apart);
+            limit = max(limit, apart * R(T(0.5)));
+        }
+        const RsaaNeighbours& n = a.neighbours[k];
+        unsigned missing = asked;
+        for (int i = 0; i < n.count && missing; i++) {
+            const int dx = n.at[i][0], dy = n.at[i][1];
+            const long q = o + long(dy) * a.stride + dx;
+            unsigned open = missing;
+            if (g.objectId) open &= ~mask_bits<R>(ids_differ<R>(g.objectId + q, s.objectId + o));
+            if (!open) continue;
+            const auto other = centre(q);
+            const auto way = separation(g, columns<R>(x + dx), y + dy, 0.0f, 0.0f, s.offsetPx[0] - float(dx),
+                                        s.offsetPx[1] - float(dy));
+            unsigned shown = open & ~mask_bits<R>(may_differ<measure>(other, own, way, limit));
+            if (open & ~shown) shown |= open & mask_bits<R>(AA_ARCH::dissimilarity<measure>(other, own, way) < limit);
+            missing &= ~shown;
+        }
+        return asked & ~missing;
+    }
+    static AA_INLINE unsigned lanes_without(const int* mask, int bit) {
+        if constexpr (N<R> == 1)
+            return (*mask & bit) == 0;
+        else {
+            using I = typename ints_of<N<R>>::unaligned;
+            return mask_bits<R>((Mask<R>)(typename ints_of<N<R>>::type(*(const I*)mask & bit) == 0));
+        }
+    }
+    // All lanes at once: worth it from two pixels on.
+    AA_INLINE void tuneGroup(unsigned marked, int* mask, int x, int y) const {
+        for (int k = 0; k < a.samples; k++) {
+            const unsigned asked = marked & lanes_without(mask, 1 << k);
+            if (!asked) continue;
+            unsigned alone = asked & ~shownByNeighbours(k, x, y, asked);
+            for (; alone; alone &= alone - 1u) mask[__builtin_ctz(alone)] |= 1 << k;
+        }
+    }
     AA_INLINE uint32_t tuned(uint32_t mask, int x, int y) const {
         for (int k = 0; k < a.samples; k++)
             if (!(mask >> k & 1u) && !shownByNeighbour(k, x, y)) mask |= 1u << k;
@@ -177,9 +222,9 @@ struct Rsaa {
     }
     static AA_INLINE int clampIndex(int i, int size) { return i < 0 ? 0 : i >= size ? size - 1 : i; }
 
-    AA_INLINE void edgePixel(uint32_t mask, int x, int y) const {
+    // `last` is the mask after tuning.
+    AA_INLINE void edgePixel(uint32_t mask, uint32_t last, int x, int y) const {
         const long o = long(y) * a.stride + x;
-        const uint32_t last = a.tuning ? tuned(mask, x, y) : mask;
         const T u = a.offsetsPx[2 * last], v = a.offsetsPx[2 * last + 1];
         if (last != full) {
             const vec3<T> c = AA_ARCH::resample<T>(a.color, a.stride, x, y, u, v);
@@ -221,8 +266,19 @@ struct Rsaa {
             for (int i = 0; i < N<R>; i++)
                 if (a.dissimilarityLayer && marked >> i & 1u) a.dissimilarityLayer[o + i] = farthest[i];
         }
+        unsigned edges = 0;
         for (int i = 0; i < N<R> && x + i < a.width; i++)
-            if (marked >> i & 1u && uint32_t(mask[i]) != full) edgePixel(uint32_t(mask[i]), x + i, y);
+            if (marked >> i & 1u && uint32_t(mask[i]) != full) edges |= 1u << i;
+        const bool inner = x > 0 && x + N<R> < a.width && y > 0 && y + 1 < a.height;
+        const bool together = N<R> > 1 && a.tuning && inner && (edges & (edges - 1u));
+        int last[16];
+        for (int i = 0; i < N<R>; i++) last[i] = mask[i];
+        if (together) tuneGroup(edges, last, x, y);
+        for (; edges; edges &= edges - 1u) {
+            const int i = __builtin_ctz(edges);
+            const uint32_t own = uint32_t(mask[i]);
+            edgePixel(own, together ? uint32_t(last[i]) : a.tuning ? tuned(own, x + i, y) : own, x + i, y);
+        }
     }
     AA_INLINE void rows(int y0, int y1) const {
         for (int y = y0; y < y1; y++)
