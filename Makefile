@@ -48,6 +48,7 @@ sanitize: deps
 bench: build
 	@build/tests/benchmarks --benchmark_min_time=0.2
 	@$(BLENDER) -b --factory-startup --python-exit-code 9 -P tests/bench/exporter_bench.py
+	@$(BLENDER) -b --factory-startup --python-exit-code 9 -P tests/bench/exporter_bench.py -- --animated
 
 addon:
 	@mkdir -p build

@@ -2,10 +2,11 @@
 """CPU seconds of a frame's main pass, of K sub-samples by multi-view, of K separate renders, and of whole frames.
 
     blender -b --factory-startup --python-exit-code 9 -P tests/bench/exporter_bench.py -- [--pattern d3d8]
-        [--resolution 480 270] [--triangles 200000] [--rounds 7]
+        [--resolution 480 270] [--triangles 200000] [--rounds 7] [--animated]
 
 User + system time of the Blender process. A round runs each of them twice in a row and times the second: as in a long
-export, what stays between frames stays. The seconds are the least of the rounds, the ratios the median of the rounds'
+export, what stays between frames stays. That is all geometry where the camera alone moves; with --animated every ball
+moves from one frame to the next, and Cycles takes the scene in anew for each of them. The seconds are the least of the rounds, the ratios the median of the rounds'
 own ratios, so that a busy machine slows both sides alike.
 
 Renders include reading them back and bringing them to the arrays that the exporter writes. What sub-samples cost is a
@@ -33,6 +34,9 @@ from aa_resolve.export import Exporter  # noqa: E402
 from aa_resolve.report import Reporter  # noqa: E402
 
 
+_LAST = 4  # frame; the bench stays between its neighbours
+
+
 def sphere(rings: int, sides: int) -> bpy.types.Mesh:
     """A ball of about 2 * rings * sides triangles, smooth."""
     angle = np.arange(sides) * math.tau / sides
@@ -58,8 +62,8 @@ def sphere(rings: int, sides: int) -> bpy.types.Mesh:
     return mesh
 
 
-def make_scene(triangles: int) -> int:
-    """25 balls on a floor in the sun, no cut-outs; returns the number of triangles."""
+def make_scene(triangles: int, animated: bool) -> int:
+    """25 balls on a floor in the sun, no cut-outs, rising and falling if `animated`; returns the number of triangles."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     side = max(4, int(math.sqrt(triangles / 25 / 2)))
@@ -75,6 +79,10 @@ def make_scene(triangles: int) -> int:
         mesh.materials.append(material)
         item = bpy.data.objects.new(f"Ball {index}", mesh)
         item.location = (index % 5 * 2.2 - 4.4, index // 5 * 2.2 - 4.4, 1.0)
+        if animated:
+            for frame in range(1, _LAST + 1):
+                item.location.z = 1.0 + 0.2 * (frame % 2)
+                item.keyframe_insert("location", frame=frame)
         scene.collection.objects.link(item)
     floor = bpy.data.meshes.new("Floor")
     floor.from_pydata([(-30, -30, 0), (30, -30, 0), (30, 30, 0), (-30, 30, 0)], [], [(0, 1, 2, 3)])
@@ -106,11 +114,12 @@ def main() -> None:
     parser.add_argument("--resolution", nargs=2, default=["480", "270"])
     parser.add_argument("--triangles", type=int, default=200_000)
     parser.add_argument("--rounds", type=int, default=7)
+    parser.add_argument("--animated", action="store_true", help="all geometry moves in every frame")
     options = parser.parse_args(sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else [])
-    triangles = make_scene(options.triangles)
+    triangles = make_scene(options.triangles, options.animated)
     arguments = headless.build_parser().parse_args(
         [
-            "--out", "unused", "--frames", "2-3", "--passes", "albedo,depth,normal,object,motion,subsamples",
+            "--out", "unused", "--frames", f"2-{_LAST - 1}", "--passes", "albedo,depth,normal,object,motion,subsamples",
             "--subsamples", options.pattern, "--resolution", *options.resolution, "--truth-frames", "none",
         ]
     )  # fmt: skip
@@ -121,12 +130,13 @@ def main() -> None:
     plan = exporter.plan
     pictures = picture.Pictures(plan)
     every = {"albedo", "depth", "normal", "object", "motion"}
-    pictures._go_to(2)
+    number = 2
+    pictures._go_to(number)
     rendering.sample_points(scene, 1)
     file = os.path.join(bpy.app.tempdir, "frame.exr")
 
     def main_pass(passes: set[str], offset: tuple[float, float] = (0.0, 0.0)) -> None:
-        pictures._aim(2, offset)
+        pictures._aim(number, offset)
         renders = pictures._render_lights(plan.cycles_passes(passes))
         lighting.compose(plan.light, renders)
         if "albedo" in passes:
@@ -136,7 +146,7 @@ def main() -> None:
         renders[0].get("Depth"), renders[0].get("Normal"), plan.ids.resolve(renders[0])
 
     def multi_view() -> None:
-        views = pictures._views(2)
+        views = pictures._views(number)
         layers = sample_part.render(plan, views, {"subsamples"}, (0.0, 0.0))[0]
         for name in views.names:
             layers.get("Depth", name), layers.get("Normal", name), plan.ids.resolve(layers, name)
@@ -147,7 +157,7 @@ def main() -> None:
 
     def frame(passes: set[str]) -> None:
         plan.passes_of["frames"] = passes
-        pictures.frame("frames", 2, file)
+        pictures.frame("frames", number, file)
 
     count = len(plan.positions)
     works = {
@@ -165,6 +175,9 @@ def main() -> None:
     for _ in range(options.rounds):
         for name, work in works.items():
             work()  # brings Cycles to where the frame before would have left it
+            if options.animated:
+                number = 5 - number
+                pictures._go_to(number)
             seconds[name].append(cpu_seconds(work))
     added = {
         name: [both - one for both, one in zip(seconds[f"{name}+"], seconds[name])]
@@ -177,7 +190,8 @@ def main() -> None:
 
     width, height = options.resolution
     for text in (
-        f"{triangles} triangles, {width} x {height}, {options.rounds} rounds: least seconds, median ratios",
+        f"{triangles} triangles, {width} x {height}, {'all' if options.animated else 'the camera alone'} in motion, "
+        f"{options.rounds} rounds: least seconds, median ratios",
         line("main pass", seconds["main"], "main", "colour, albedo, depth, normal, object ids, motion"),
         line("plain main pass", seconds["plain"], "main", "the same without albedo"),
         line("lean main pass", seconds["lean"], "main", "colour, depth, normal, object ids"),
