@@ -18,7 +18,10 @@ AA_INLINE U mixed_bits(U h) {
     h *= 0x846ca68bu;
     return h ^ (h >> 16);
 }
-AA_INLINE uint32_t noise_seed(uint32_t frame, uint32_t row) { return mixed_bits(frame * 0x9e3779b9u + row); }
+enum class NoiseStream : uint32_t { historyDither, motionBlur };  // drawn independently
+AA_INLINE uint32_t noise_seed(NoiseStream stream, uint32_t frame, uint32_t row) {
+    return mixed_bits(mixed_bits(frame * 2u + uint32_t(stream)) + row);
+}
 // In [0, 1), multiples of 2^-24, for counters first, first + 1, ... in the lanes.
 template <class R>
 AA_INLINE R noise(uint32_t seed, uint32_t first) {

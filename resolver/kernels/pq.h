@@ -46,10 +46,11 @@ AA_INLINE R pq_decode(R encoded) {
     return pow_positive(lm, R(T(1.0 / 0.1593017578125))) * R(T(1e4));
 }
 
-// ---- the same by table: what float uses
-// ------------------------------------------------------------------------------ Five times faster, and within the
-// rounding of float of the exact curve (1e-8 of an encoded value, relative of a linear one): the fit is made in double
-// once. Fits a cubic in x - start through four Chebyshev nodes of [start, start + width].
+// ---- the same by table ----------------------------------------------------------------------------------------------
+// What float uses: five times faster, and within the rounding of float of the exact curve (1e-8 of an encoded value,
+// relative of a linear one). The fit is made in double, once.
+
+// A cubic in x - start through four Chebyshev nodes of [start, start + width].
 template <class Fn>
 AA_INLINE void fit_cubic(const Fn& f, double start, double width, float* coefficients) {
     double x[4], d[4];
@@ -127,7 +128,8 @@ AA_INLINE R pq_decode(const aa::PqTables& t, R encoded) {
         return pq_decode(encoded);
     else {
         const R inside = min(max(R(4.76837158203125e-7f), encoded), R(1.0f));  // 2^-21
-        return select(encoded > R(t.black), from_table<P::kDecodeFirst, P::kDecodeParts>(t.decode, inside), R(0.0f));
+        return select(encoded > R(t.black),
+                      max(R(0.0f), from_table<P::kDecodeFirst, P::kDecodeParts>(t.decode, inside)), R(0.0f));
     }
 }
 

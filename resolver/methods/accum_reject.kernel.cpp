@@ -96,4 +96,5 @@ __attribute__((flatten)) void dilateMaxRows(const DilateMaxArgs& a, int y0, int 
 
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::AccumRejectKernels, accumRejectKernels) = {AA_WIDE_ROWS(accumRejectRows), AA_WIDE_ROWS(dilateMaxRows)};
+AA_DEFINE_TABLE(aa::AccumRejectKernels, accumRejectKernels) = {AA_WIDE_ROWS(accumRejectRows),
+                                                               AA_WIDE_ROWS(dilateMaxRows)};

@@ -5,7 +5,9 @@
 //     distance grows where nothing moves   4. YCoCg: chroma range from the luma range (not used in the shipped game)
 //  5. history clipped to the box   6. feedback 0.88 .. 0.97 by luminance difference   7. blend -> history
 // Input and output: display-encoded [0,1]; depth planar; motion in px. Outside the image the current colour is taken;
-// the original clamps (`outside=clamp`). Motion blur is a stage of its own (off for metrics).
+// the original clamps (`outside=clamp`).
+//  8. motionBlur=SCALE (off: the truth is an instant): the screen, not the history, shows seven taps along the motion
+//     where that exceeds 2 px; not in the first frame after a reset, whose motion leads to another picture
 #pragma once
 #include "methods/method.h"
 

@@ -37,19 +37,21 @@ AA_INLINE vec3<R> color_at(TemporalIn in, R dx, R dy, int x, int y) {
 template <class R>
 AA_INLINE vec3<R> blurred_by_motion(const InsideArgs& a, Motion<R> motion, vec3<R> result, int x, int y) {
     using T = Elem<R>;
-    const R zero(T(0)), one(T(1));
+    const R zero(T(0));
     const R speed = sqrt(motion.x * motion.x + motion.y * motion.y);
     const R share = clamp(speed - R(T(2)), zero, R(T(13))) * R(T(1) / T(13));
     const R step = R(T(a.motionBlur) * T(0.5) / T(3));
-    const R chance = noise<R>(noise_seed(a.frame, uint32_t(y)), uint32_t(x)) - R(T(0.5));
+    const R chance = noise<R>(noise_seed(NoiseStream::motionBlur, a.frame, uint32_t(y)), uint32_t(x)) - R(T(0.5));
     const R ownX(a.unjitterColor ? -T(a.in.jitterXPx) : T(0)), ownY(a.unjitterColor ? -T(a.in.jitterYPx) : T(0));
     vec3<R> sum(zero);
     for (int tap = -3; tap <= 3; tap++) {
         const R at = (R(T(tap)) + chance) * step;
-        sum = sum + color_at(a.in, ownX + motion.x * at, ownY + motion.y * at, x, y);
+        sum = sum + (color_at(a.in, ownX + motion.x * at, ownY + motion.y * at, x, y) - result);
     }
-    const vec3<R> smeared = sum * R(T(1) / T(7));
-    return select(both(share > zero, finite(smeared)), mix(result, smeared, min(share, one)), result);
+    const vec3<R> blurred = result + sum * (share * R(T(1) / T(7)));
+    // A motion of more than two pictures is no motion (methods/08 s.8.1).
+    const auto known = both(abs(motion.x) <= R(T(2 * a.in.width)), abs(motion.y) <= R(T(2 * a.in.height)));
+    return select(both(known, both(share > zero, finite(blurred))), blurred, result);
 }
 
 template <class R>

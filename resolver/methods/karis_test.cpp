@@ -35,6 +35,8 @@ TEST(Pq, TablesAgreeWithTheCurve) {
     }
     EXPECT_LT(encoded, 1.2e-7);
     EXPECT_LT(decoded, 2e-7);
+    for (float e = 0; e < 1e-6f; e = std::nextafter(e, 1.0f), e += e < 6e-7f ? 1e-9f : 0.0f)
+        EXPECT_GE(block_test::pq_decode(tables, e), 0.0f) << e;
     for (const float dark : {0.0f, -1.0f, 1e-30f, NAN, -INFINITY})
         EXPECT_EQ(block_test::pq_decode(tables, block_test::pq_encode(tables, dark)), 0.0f) << dark;
     for (const float bright : {1e4f, 1e6f, INFINITY})

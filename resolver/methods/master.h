@@ -7,7 +7,7 @@
 //  T. that value goes through a small TAA of its own: reprojected, clamped, luminance feedback
 //  main: modelAverage from object ids (eq 4.1), pseudo-variances from depth now and before (eqs 4.4-4.6), A, box,
 //     clip, feedback 0.88..0.97, blend -> history; output sharpened with eq 4.17
-// Input and output: display-encoded [0,1]; albedo is encoded here; depth planar, background taken as the far plane.
+// Input and output: display-encoded [0,1]; albedo likewise; depth planar, background taken as the far plane.
 // Every term can be switched off for ablation. Deviations: eq 3.4 prints a factor 4, matrices 3.5/3.6 hold (methods/11
 // nr 1); the ratio of eq 4.6 is capped at 1e3 against overflow (methods/08).
 // Depth deviations are taken from the centre pixel, never as differences of large sums.

@@ -7,7 +7,7 @@ namespace AA_ARCH {
 
 template <class T>
 struct MasterTile {
-    static constexpr int kWidth = 512, kHeight = kMasterBlockRows, kMarginX = 16, kMarginY = 3,
+    static constexpr int kWidth = 256, kHeight = kMasterBlockRows, kMarginX = 16, kMarginY = 3,
                          kStride = kWidth + 2 * kMarginX, kSize = (kHeight + 2 * kMarginY) * kStride;
     alignas(64) T luminanceAlbedo[kSize], luminanceLit[kSize], sobel[kSize], filtered[kSize];
     alignas(64) T past[3][kSize], pastDepth[kSize];  // colour, and depth: NaN where history is outside

@@ -61,8 +61,8 @@ AA_INLINE T meeting_height(const RgbIn& in, long own, long beyond, long across) 
     const auto luma = [&](long o) __attribute__((always_inline)) { return luma601(colour_at<T>(in, o)); };
     const T gained = luma(beyond + across) - luma(own), lost = luma(own - across) - luma(beyond);
     const T sum = gained + lost;
-    if (!(abs(sum) >= T(1.0 / 255))) return T(0.5);  // any height serves
-    return saturate(gained / sum);
+    if (!(abs(sum) >= T(2.5 / 255))) return T(0.5);  // within two codes: rounding to 8 bits would decide
+    return clamp(gained / sum, T(1e-3), T(1));       // not 0: the crossing edges alone make the shape
 }
 template <class T>
 AA_INLINE MlaaLine line_through(const MlaaBlendArgs& a, const MlaaAxis& axis, int p, int q) {
@@ -76,15 +76,15 @@ AA_INLINE MlaaLine line_through(const MlaaBlendArgs& a, const MlaaAxis& axis, in
     if (left == 2) left = right == 2 ? 0 : -right;  // make a Z with the other end where there is one
     if (right == 2) right = -left;
     if (a.heights == MlaaHeights::colour) {
-        const auto at = [&](float& height, int own, int beyond) __attribute__((always_inline)) {
-            if (height == 0 || !bit_at(height > 0 ? along - axis.stride : along + axis.stride, beyond)) return;
+        const auto choose = [&](float& end, int own, int beyond) __attribute__((always_inline)) {
+            if (end == 0 || !bit_at(end > 0 ? along - axis.stride : along + axis.stride, beyond)) return;
             // Up: the row before the line, and what lies behind it is one row farther up.
-            const long row = (height > 0 ? long(q) - 1 : long(q)) * axis.acrossStep;
+            const long row = (end > 0 ? long(q) - 1 : long(q)) * axis.acrossStep;
             const T share = meeting_height<T>(a.in, own * axis.alongStep + row, beyond * axis.alongStep + row,
-                                              height > 0 ? -axis.acrossStep : axis.acrossStep);
-            height = float(height > 0 ? share : -share);
+                                              end > 0 ? -axis.acrossStep : axis.acrossStep);
+            end = float(end > 0 ? share : -share);
         };
-        at(left, first, first - 1), at(right, last, last + 1);
+        choose(left, first, first - 1), choose(right, last, last + 1);
     }
     return {first, last, left, right};
 }
@@ -155,8 +155,15 @@ AA_INLINE void left_weights(const MlaaBlendArgs& a, int y, MlaaLine* columns, fl
         });
 }
 
+// Heights by colour can take more than all of a pixel between two lines.
+template <class T>
+AA_INLINE void share_out(T& toFirst, T& toSecond) {
+    const T sum = toFirst + toSecond;
+    if (sum > T(1)) toFirst = toFirst / sum, toSecond = toSecond / sum;
+}
 template <class T>
 AA_INLINE void blend_pixel(const MlaaBlendArgs& a, long o, T toFirst, T toSecond, const T first[3], const T second[3]) {
+    share_out(toFirst, toSecond);
     for (int c = 0; c < 3; c++) {
         const T own = a.out.c[c][o];
         a.out.c[c][o] = float(own + toFirst * (first[c] - own) + toSecond * (second[c] - own));
@@ -185,8 +192,9 @@ AA_INLINE void blend_row(const MlaaBlendArgs& a, int y, const float* top, const 
         a.width, [&](int x) { return bits_from(lefts, x) | bits_from(lefts, x + 1); },
         [&](int x) __attribute__((always_inline)) {
             const long o = long(y) * a.stride + x;
-            const T toLeft = weight(lefts, x, left[2 * x]), toRight = weight(lefts, x + 1, left[2 * x + 3]);
+            T toLeft = weight(lefts, x, left[2 * x]), toRight = weight(lefts, x + 1, left[2 * x + 3]);
             if (a.simultaneous) {
+                share_out(toLeft, toRight);
                 const bool both =
                     weight(tops, x, top[2 * x]) + weight(belows, x, below[2 * x + 1]) > T(0) && toLeft + toRight > T(0);
                 for (int c = 0; c < 3; c++) {

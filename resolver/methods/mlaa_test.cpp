@@ -107,6 +107,24 @@ TEST(Mlaa, HeightsByColourMakeBothSidesMeet) {
     for (int y = 0; y < step.height(); y++)
         for (int x = 0; x < step.width(); x++) EXPECT_NEAR(step.c[0].at(x, y), table.c[0].at(x, y), 1e-6);
 }
+// A row of two pixels between two lines: together they may not take more than all of a pixel.
+TEST(Mlaa, HeightsByColourStayWithinTheirInput) {
+    Rgb image(64, 9);
+    for (auto& p : image.c)
+        for (int y = 0; y < 9; y++)
+            for (int x = 0; x < 64; x++) {
+                const int middle = x < 31 ? 100 : x < 33 ? 250 : 150;
+                p.at(x, y) = float(y < 4 ? 100 : y > 4 ? 150 : middle) / 255;
+            }
+    for (const char* text : {"mlaa:heights=colour", "mlaa:heights=colour,simultaneous=on"}) {
+        const Rgb out = resolveOnce(text, image);
+        for (int y = 0; y < 9; y++)
+            for (int x = 0; x < 64; x++) {
+                EXPECT_GE(out.c[0].at(x, y), 100 / 255.0f - 1e-6f) << text << ' ' << x << ' ' << y;
+                EXPECT_LE(out.c[0].at(x, y), 250 / 255.0f + 1e-6f) << text << ' ' << x << ' ' << y;
+            }
+    }
+}
 TEST(Mlaa, SimultaneousAveragesTheTwoMoves) {
     const Rgb out = resolveOnce("mlaa:simultaneous=on", stepImage()), ordered = resolveOnce("mlaa", stepImage());
     const double move = (0.5 * 15.5 / 16 + 0.125) / 2;  // of the horizontal L and of the vertical Z of length 1

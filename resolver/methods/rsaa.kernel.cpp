@@ -199,12 +199,8 @@ struct Rsaa {
         return asked & ~missing;
     }
     static AA_INLINE unsigned lanes_without(const int* mask, int bit) {
-        if constexpr (N<R> == 1)
-            return (*mask & bit) == 0;
-        else {
-            using I = typename ints_of<N<R>>::unaligned;
-            return mask_bits<R>((Mask<R>)(typename ints_of<N<R>>::type(*(const I*)mask & bit) == 0));
-        }
+        using I = typename ints_of<N<R>>::unaligned;
+        return mask_bits<R>((Mask<R>)(typename ints_of<N<R>>::type(*(const I*)mask & bit) == 0));
     }
     // All lanes at once: worth it from two pixels on.
     AA_INLINE void tuneGroup(unsigned marked, int* mask, int x, int y) const {
@@ -273,7 +269,8 @@ struct Rsaa {
         const bool together = N<R> > 1 && a.tuning && inner && (edges & (edges - 1u));
         int last[16];
         for (int i = 0; i < N<R>; i++) last[i] = mask[i];
-        if (together) tuneGroup(edges, last, x, y);
+        if constexpr (N < R >> 1)
+            if (together) tuneGroup(edges, last, x, y);
         for (; edges; edges &= edges - 1u) {
             const int i = __builtin_ctz(edges);
             const uint32_t own = uint32_t(mask[i]);

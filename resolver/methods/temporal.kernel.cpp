@@ -49,13 +49,13 @@ AA_INLINE float as_half(float x, bool dither, float chance) {
 }
 // Codes of 1/255; the dither is INSIDE's: +- half a code before the store.
 AA_INLINE float as_byte(float x, bool dither, float chance) {
-    return floor(saturate(x) * 255.0f + (dither ? chance : 0.5f)) * (1.0f / 255.0f);
+    return min(floor(saturate(x) * 255.0f + (dither ? chance : 0.5f)), 255.0f) / 255.0f;
 }
 // An emulation of narrower storage, so float in every precision.
 template <class R>
 __attribute__((flatten)) void narrowHistoryRows(const NarrowHistoryArgs& a, int y0, int y1) {
     for (int y = y0; y < y1; y++) {
-        const uint32_t seed = noise_seed(a.frame, uint32_t(y));
+        const uint32_t seed = noise_seed(NoiseStream::historyDither, a.frame, uint32_t(y));
         float* p = a.rgba + 4l * y * a.stride;
         for (int i = 0; i < 4 * a.width; i++) {
             if (i % 4 == 3) continue;
@@ -67,5 +67,4 @@ __attribute__((flatten)) void narrowHistoryRows(const NarrowHistoryArgs& a, int 
 
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::TemporalKernels, temporalKernels) = {AA_WIDE_ROWS(sharpenHistoryRows),
-                                                         AA_WIDE_ROWS(narrowHistoryRows)};
+AA_DEFINE_TABLE(aa::TemporalKernels, temporalKernels) = {AA_WIDE_ROWS(sharpenHistoryRows), AA_ROWS(narrowHistoryRows)};

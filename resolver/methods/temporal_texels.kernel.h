@@ -1,4 +1,5 @@
-// Small helpers of the temporal kernels: planes in and out of lanes, ranges, colour axes. Include from *.kernel.cpp only.
+// Small helpers of the temporal kernels: planes in and out of lanes, ranges, colour axes. Include from *.kernel.cpp
+// only.
 #pragma once
 #include "kernels/texels.h"
 #include "methods/temporal_kernels.h"

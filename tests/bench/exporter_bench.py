@@ -5,9 +5,9 @@
         [--resolution 480 270] [--triangles 200000] [--rounds 7] [--animated]
 
 User + system time of the Blender process. A round runs each of them twice in a row and times the second: as in a long
-export, what stays between frames stays. That is all geometry where the camera alone moves; with --animated every ball
-moves from one frame to the next, and Cycles takes the scene in anew for each of them. The seconds are the least of the rounds, the ratios the median of the rounds'
-own ratios, so that a busy machine slows both sides alike.
+export, what stays between frames stays: all geometry where the camera alone moves. With --animated every ball moves
+from one frame to the next, and Cycles takes the scene in anew. The seconds are the least of the rounds, the ratios the
+median of the rounds' own ratios, so that a busy machine slows both sides alike.
 
 Renders include reading them back and bringing them to the arrays that the exporter writes. What sub-samples cost is a
 main pass with them less one without: Cycles transfers the geometry again when the override material comes and when it
@@ -63,7 +63,7 @@ def sphere(rings: int, sides: int) -> bpy.types.Mesh:
 
 
 def make_scene(triangles: int, animated: bool) -> int:
-    """25 balls on a floor in the sun, no cut-outs, rising and falling if `animated`; returns the number of triangles."""
+    """25 balls on a floor in the sun, no cut-outs; they rise and fall if `animated`. Returns the number of triangles."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     side = max(4, int(math.sqrt(triangles / 25 / 2)))
@@ -114,7 +114,7 @@ def main() -> None:
     parser.add_argument("--resolution", nargs=2, default=["480", "270"])
     parser.add_argument("--triangles", type=int, default=200_000)
     parser.add_argument("--rounds", type=int, default=7)
-    parser.add_argument("--animated", action="store_true", help="all geometry moves in every frame")
+    parser.add_argument("--animated", action="store_true", help="all balls move in every frame")
     options = parser.parse_args(sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else [])
     triangles = make_scene(options.triangles, options.animated)
     arguments = headless.build_parser().parse_args(
@@ -176,7 +176,7 @@ def main() -> None:
         for name, work in works.items():
             work()  # brings Cycles to where the frame before would have left it
             if options.animated:
-                number = 5 - number
+                number = _LAST + 1 - number
                 pictures._go_to(number)
             seconds[name].append(cpu_seconds(work))
     added = {
@@ -189,8 +189,9 @@ def main() -> None:
         return f"{text:26s} {min(values):7.3f} CPU s {ratio:6.2f} x {base:6s} {what}"
 
     width, height = options.resolution
+    moving = "all balls move" if options.animated else "the camera alone moves"
     for text in (
-        f"{triangles} triangles, {width} x {height}, {'all' if options.animated else 'the camera alone'} in motion, "
+        f"{triangles} triangles, {width} x {height}, {moving}, "
         f"{options.rounds} rounds: least seconds, median ratios",
         line("main pass", seconds["main"], "main", "colour, albedo, depth, normal, object ids, motion"),
         line("plain main pass", seconds["plain"], "main", "the same without albedo"),

@@ -76,7 +76,7 @@ Frame syntheticFrame(int number, PassSet passes, const std::vector<glm::dvec2>& 
     for (PlaneF* p : {&f.depthView, &f.motionXPx, &f.motionYPx}) p->fillBorder();
     f.objectId.fillBorder();
     for (auto& s : f.subSamples) s.colorLinear.fillBorder(), s.depthView.fillBorder(), s.objectId.fillBorder();
-    encode(f.colorLinear, {}, {}, f.colorEncoded);
+    encodeFrame(f, {}, {});
     return f;
 }
 

@@ -1,5 +1,6 @@
 // Small frames with every pass, for tests that run over all registered methods.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -139,7 +140,26 @@ inline glm::dvec2 halton(int n) {
     return {inverse(n, 2) - 0.5, inverse(n, 3) - 0.5};
 }
 
-// Every method at its defaults, and once with every value of every choice and flag that acts at the defaults.
+// "name=value," that makes a parameter act; empty where the defaults do.
+inline std::string condition(const MethodDescriptor& method, const ParamSpec& param) {
+    const size_t eq = param.onlyWhen.find('=');
+    if (eq == std::string_view::npos) return "";
+    const std::string_view name = param.onlyWhen.substr(0, eq);
+    for (const ParamSpec& other : method.params) {
+        if (other.name != name) continue;
+        std::string_view values = param.onlyWhen.substr(eq + 1), first;
+        while (!values.empty()) {
+            const size_t bar = std::min(values.find('|'), values.size());
+            const std::string_view value = values.substr(0, bar);
+            if (value == other.defaultValue) return "";
+            if (first.empty() && std::count(other.choices.begin(), other.choices.end(), value)) first = value;
+            values.remove_prefix(std::min(bar + 1, values.size()));
+        }
+        return std::string(name) + "=" + std::string(first) + ",";
+    }
+    return "";
+}
+// Every method at its defaults, and once with every value of every choice and flag.
 inline std::vector<std::string> allSpecs() {
     std::vector<std::string> specs;
     for (const auto& m : registry()) {
@@ -147,7 +167,8 @@ inline std::vector<std::string> allSpecs() {
         for (const auto& p : m.params)
             for (const auto& value : p.choices) {
                 if (value == p.defaultValue) continue;
-                const std::string text = std::string(m.id) + ":" + std::string(p.name) + "=" + std::string(value);
+                const std::string text =
+                    std::string(m.id) + ":" + condition(m, p) + std::string(p.name) + "=" + std::string(value);
                 try {
                     parseMethod(text);
                     specs.push_back(text);
@@ -155,6 +176,7 @@ inline std::vector<std::string> allSpecs() {
                 }
             }
     }
+    specs.emplace_back("inside:motionBlur=1");  // off by default
     return specs;
 }
 
