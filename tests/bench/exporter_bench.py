@@ -63,7 +63,7 @@ def sphere(rings: int, sides: int) -> bpy.types.Mesh:
 
 
 def make_scene(triangles: int, animated: bool) -> int:
-    """25 balls on a floor in the sun, no cut-outs; they rise and fall if `animated`. Returns the number of triangles."""
+    """25 balls on a floor in the sun, no cut-outs, rising and falling if `animated`: the number of triangles."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     side = max(4, int(math.sqrt(triangles / 25 / 2)))

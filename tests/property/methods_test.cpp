@@ -18,6 +18,9 @@ bool allFinite(const Rgb& image) {
 const MethodDescriptor& method(const std::string& text) { return *parseMethod(text).method; }
 
 TEST_P(EveryMethod, ConstantStaysConstant) {
+    // Chance leaves neighbours of a history apart by what a clip to a flat box tolerates, and sharpening multiplies
+    // that.
+    const float tolerance = GetParam().find("dither=on") != std::string::npos ? 1e-5f : 2e-6f;
     for (const float v : {0.0f, 0.25f, 1.0f}) {
         Subject s = makeSubject(GetParam(), 40, 24);
         for (int n = 1; n <= 4; n++) {
@@ -32,7 +35,7 @@ TEST_P(EveryMethod, ConstantStaysConstant) {
             for (size_t c = 0; c < 3; c++)
                 for (int y = 0; y < 24; y++)
                     for (int x = 0; x < 40; x++)
-                        ASSERT_NEAR(out.c[c].at(x, y), expected.c[c].at(x, y), 2e-6) << n << " " << x << "," << y;
+                        ASSERT_NEAR(out.c[c].at(x, y), expected.c[c].at(x, y), tolerance) << n << " " << x << "," << y;
         }
     }
 }
