@@ -90,7 +90,7 @@ void Canvas::text(int x, int y, const std::string& text, int sizePx, Colour colo
 }
 int Canvas::textWidth(const std::string& text, int sizePx, Font font) const {
     const OIIO::ROI drawn = OIIO::ImageBufAlgo::text_size(text, sizePx, cachedFontFile(font));
-    return drawn.defined() ? drawn.width() : 0;  // undefined for a text without marks
+    return drawn.xend > drawn.xbegin ? drawn.width() : 0;  // inside out for a text without marks
 }
 std::string Canvas::fitted(const std::string& text, int maxWidth, int sizePx, Font font) const {
     if (textWidth(text, sizePx, font) <= maxWidth) return text;
