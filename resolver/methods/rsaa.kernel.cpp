@@ -106,16 +106,18 @@ struct Rsaa {
                 if (!(similar >> k & 1u)) prefetch_sample(g, k, o);
         }
     }
+    // Of sub-sample k from the centre sample of its pixel.
+    AA_INLINE R fromCentre(int k, int x, int y, long o) const {
+        const R d = dissimilarity<measure>(centre(o), sample(k, o), to_sample(g, columns<R>(x), y, k));
+        return g.objectId ? select(ids_differ<R>(g.objectId + o, g.sample[k].objectId + o), R(T(kFarthest)), d) : d;
+    }
     // Bit k of mask[lane] is 1 where sub-sample k is similar to the centre; farthest[lane] is the largest
     // dissimilarity.
     AA_INLINE void cluster(int x, int y, long o, int* mask, float* farthestOut) const {
         const R zero(T(0)), one(T(1)), limit{T(a.floor)};
-        const auto own = centre(o);
         R d[16], farthest = zero;
         for (int k = 0; k < a.samples; k++) {
-            d[k] = dissimilarity<measure>(own, sample(k, o), to_sample(g, columns<R>(x), y, k));
-            if (g.objectId)
-                d[k] = select(ids_differ<R>(g.objectId + o, g.sample[k].objectId + o), R(T(kFarthest)), d[k]);
+            d[k] = fromCentre(k, x, y, o);
             farthest = max(farthest, d[k]);
         }
         R bits = zero, bit = one;
@@ -176,11 +178,7 @@ struct Rsaa {
         const long o = long(y) * a.stride + x;
         const auto own = sample(k, o);
         R limit{T(a.floor)};
-        if (a.tuneAdaptive) {
-            R apart = AA_ARCH::dissimilarity<measure>(centre(o), own, to_sample(g, columns<R>(x), y, k));
-            if (g.objectId) apart = select(ids_differ<R>(g.objectId + o, s.objectId + o), R(T(kFarthest)), apart);
-            limit = max(limit, apart * R(T(0.5)));
-        }
+        if (a.tuneAdaptive) limit = max(limit, fromCentre(k, x, y, o) * R(T(0.5)));
         const RsaaNeighbours& n = a.neighbours[k];
         unsigned missing = asked;
         for (int i = 0; i < n.count && missing; i++) {
@@ -269,7 +267,7 @@ struct Rsaa {
         const bool together = N<R> > 1 && a.tuning && inner && (edges & (edges - 1u));
         int last[16];
         for (int i = 0; i < N<R>; i++) last[i] = mask[i];
-        if constexpr (N < R >> 1)
+        if constexpr (N<R> != 1)
             if (together) tuneGroup(edges, last, x, y);
         for (; edges; edges &= edges - 1u) {
             const int i = __builtin_ctz(edges);
