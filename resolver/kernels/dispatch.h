@@ -4,9 +4,11 @@
 // of RowKernels (kernels/table.h). All three instruction sets and both float precisions give the same bits.
 #pragma once
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <string_view>
+#include <vector>
 
 #include "kernels/table.h"
 
@@ -34,6 +36,7 @@ void forRows(const Exec& exec, int height, const Fn& rows, int grain = 8) {
         tbb::blocked_range<int>(0, height, size_t(grain)), [&](const auto& r) { rows(r.begin(), r.end()); },
         tbb::simple_partitioner{});
 }
+// The form of a kernel that serves the precision asked for: fn(args, y0, y1).
 template <class Args>
 auto rowsOf(const RowKernel<Args>& kernel, Precision precision) {
     return precision == Precision::fast ? kernel.fast : precision == Precision::scalar ? kernel.scalar : kernel.oracle;
@@ -45,5 +48,15 @@ void runKernel(const RowKernel<Args>& kernel, const Exec& exec, const Args& args
     forRows(
         exec, height, [&](int y0, int y1) { fn(args, y0, y1); }, grain);
 }
+
+// Working memory of a kernel's calls, one per thread: `rows` rows of a plane's stride in any precision.
+class Scratch {
+  public:
+    Scratch(int rows, int stride) : memory_(size_t(kRingMargin) + size_t(rows) * size_t(stride)) {}
+    void* local() { return memory_.local().data(); }
+
+  private:
+    tbb::enumerable_thread_specific<std::vector<double>> memory_;
+};
 
 }  // namespace aa

@@ -4,11 +4,6 @@
 
 namespace AA_ARCH {
 
-template <int W>
-struct words_of {
-    typedef uint32_t type __attribute__((vector_size(W * 4)));
-};
-
 // A bijection of 32-bit words whose output bits each depend on every input bit (Wellons 2018, lowbias32).
 template <class U>
 AA_INLINE U mixed_bits(U h) {

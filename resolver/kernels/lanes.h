@@ -36,14 +36,15 @@ struct ints_of {
     typedef int32_t type __attribute__((vector_size(W * 4)));
     typedef int32_t unaligned __attribute__((vector_size(W * 4), aligned(4), may_alias));
 };
+template <int W>
+struct words_of {
+    typedef uint32_t type __attribute__((vector_size(W * 4)));
+};
 
 // GCC 12 keeps to 256 bits where it vectorises by itself, so 16 lanes name their instructions.
 #ifdef __AVX512F__
 template <class T, int W>
 inline constexpr bool kZmm = std::is_same_v<T, float> && W == 16;
-#else
-template <class T, int W>
-inline constexpr bool kZmm = false;
 #endif
 
 // a < b ? a : b and a > b ? a : b: one instruction, which GCC 12 misses where an operand is constant.

@@ -24,6 +24,10 @@ struct RowKernel {
     void (*oracle)(const Args&, int, int);
 };
 
+// A kernel may keep rows of intermediate values in scratch memory (kernels/ring.h): `rows` of them, as wide as a plane's
+// stride, after a margin.
+inline constexpr int kRingMargin = 16;
+
 }  // namespace aa
 
 // In a method's header: AA_KERNEL_TABLE(FxaaKernels, fxaaKernels) declares v2::, v3:: and v4::fxaaKernels and

@@ -1,6 +1,5 @@
 #include "methods/karis.h"
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -10,7 +9,7 @@
 namespace aa {
 namespace {
 
-constexpr int kStripRows = 8;  // a tile of the kernel
+constexpr int kRowsPerCall = 32;  // each converts two rows of its neighbours again
 
 class Karis : public Method {
   public:
@@ -18,10 +17,9 @@ class Karis : public Method {
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         const Params& p = params_;
-        const KarisKernels& kernels = karisKernelsFor(exec.isa);
-        const Rgb& color = pq_ ? encoded(frame, exec) : frame.colorLinear;
         KarisArgs args{};
-        args.in = temporal::frameView(frame, color);
+        args.in = temporal::frameView(frame, frame.colorLinear);
+        args.pq = pq_ ? &pqTables() : nullptr;
         args.in.out = view(out);
         history_.begin(frame, id_, args.in);
         args.in.feedbackCeiling = temporal::feedbackCeiling(p, history_.framesSinceReset());
@@ -44,19 +42,19 @@ class Karis : public Method {
                 args.filter[(j + 1) * 3 + i + 1] = float(std::exp(-2.29 * (dx * dx + dy * dy)));  // Karis 2014
             }
         args.in.debug = debug_.begin(*this, frame.width, frame.height);
-        const auto resolve = rowsOf(kernels.resolve, exec.precision);
-        const auto decode = rowsOf(kernels.pqDecode, exec.precision);
-        const PqArgs decoded{view(std::as_const(out)), view(out), out.stride(), frame.width, &pqTables()};
-        forRows(exec, frame.height, [&](int y0, int y1) {
-            for (int y = y0; y < y1; y += kStripRows) {
-                const int end = std::min(y + kStripRows, y1);
-                resolve(args, y, end);
-                if (pq_) decode(decoded, y, end);  // while the strip is in the cache
-            }
-        });
+        Scratch scratch(kKarisScratchRows, args.in.stride);
+        const auto resolve = rowsOf(karisKernelsFor(exec.isa).resolve, exec.precision);
+        forRows(
+            exec, frame.height,
+            [&](int y0, int y1) {
+                KarisArgs a = args;
+                a.scratch = scratch.local();
+                resolve(a, y0, y1);
+            },
+            kRowsPerCall);
         history_.end(temporal::historyStorage(p), exec);
     }
-    size_t stateBytes() const override { return history_.bytes() + encoded_.bytes(); }
+    size_t stateBytes() const override { return history_.bytes(); }
     const PlaneF* rejection() const override { return debug_.rejection(); }
     std::vector<DebugLayer> debugLayers() const override { return debug_.layers(); }
 
@@ -69,20 +67,11 @@ class Karis : public Method {
         }();
         return *tables;
     }
-    const Rgb& encoded(const Frame& frame, const Exec& exec) {
-        if (encoded_.width() != frame.width || encoded_.height() != frame.height)
-            encoded_ = Rgb(frame.width, frame.height);
-        const PqArgs args{view(frame.colorLinear), view(encoded_), encoded_.stride(), frame.width, &pqTables()};
-        runKernel(karisKernelsFor(exec.isa).pqEncode, exec, args, frame.height);
-        encoded_.fillBorder();
-        return encoded_;
-    }
 
     std::string_view id_;
     Params params_;
     bool pq_;
     ColourHistory history_;
-    Rgb encoded_;
     TemporalDebugLayers debug_;
 };
 

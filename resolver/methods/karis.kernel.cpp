@@ -1,4 +1,5 @@
 #include "kernels/pq.h"
+#include "kernels/ring.h"
 #include "methods/karis_kernels.h"
 #include "methods/temporal_blocks.kernel.h"
 
@@ -27,55 +28,55 @@ AA_INLINE R falcorWeight(R alpha, R low, R high, R lumaHistory) {
     return select(flat, alpha, saturate(alpha * toClamp / select(flat, R(T(1)), sum)));
 }
 
-// The colours of a block of rows and columns with one pixel around it, in the box's space, and their weights in the
-// filter: what all nine neighbours of a pixel would compute again is computed once, into a buffer of the cache's size.
+// In the box's space, and weights in the filter: what all nine neighbours of a pixel would compute again is computed
+// once.
 template <class T>
-struct KarisTile {
-    static constexpr int kWidth = 128, kHeight = 8, kMargin = 16, kStride = kWidth + 2 * kMargin;
-    alignas(64) T c[3][(kHeight + 2) * kStride], weight[(kHeight + 2) * kStride];
-    int x0, y0;
-    AA_INLINE int offset(int x, int y) const { return (y - y0 + 1) * kStride + x - x0 + kMargin; }
+struct KarisRings {
+    Ring<T, 4> c[3], weight;
+};
+template <class T>
+struct KarisWindow {  // rows y - 1, y, y + 1
+    const T *c[3][3], *weight[3];
 };
 template <class R>
-AA_INLINE void fillTile(const KarisArgs& a, bool ycocg, bool filtered, KarisTile<Elem<R>>& tile, int x0, int x1, int y0,
-                        int y1) {
-    tile.x0 = x0, tile.y0 = y0;
-    for (int y = y0 - 1; y <= y1; y++)
-        for (int x = x0 - N<R>; x < x1 + N<R>; x += N<R>) {
-            const vec3<R> rgb = load3<R>(a.in.color.c, long(y) * a.in.stride + x), c = ycocg ? to_ycocg(rgb) : rgb;
-            const int t = tile.offset(x, y);
-            store(c.x, tile.c[0] + t), store(c.y, tile.c[1] + t), store(c.z, tile.c[2] + t);
-            const R one(Elem<R>(1));
-            if (filtered) store(a.toneWeighted ? toneWeight(ycocg ? c.x : luma709(c), a.hdr4) : one, tile.weight + t);
-        }
+AA_INLINE vec3<R> karisColor(const KarisArgs& a, bool pq, long o) {
+    const vec3<R> c = load3<R>(a.in.color.c, o);
+    return pq ? vec3<R>{pq_encode(*a.pq, c.x), pq_encode(*a.pq, c.y), pq_encode(*a.pq, c.z)} : c;
 }
 template <class R>
-AA_INLINE R load_own(const Elem<R>* p) {  // storage and arithmetic of one type
-    if constexpr (N<R> == 1)
-        return *p;
-    else
-        return load<R>(p);
+AA_INLINE void convertRow(const KarisArgs& a, bool ycocg, bool pq, const KarisRings<Elem<R>>& rings, int y) {
+    Elem<R>*const c0 = rings.c[0](y), *const c1 = rings.c[1](y), *const c2 = rings.c[2](y),
+                  *const weight = rings.weight(y);
+    for (int x = 0; x < a.in.width; x += N<R>) {
+        const vec3<R> rgb = karisColor<R>(a, pq, long(y) * a.in.stride + x), c = ycocg ? to_ycocg(rgb) : rgb;
+        store(c.x, c0 + x), store(c.y, c1 + x), store(c.z, c2 + x);
+        const R one(Elem<R>(1));
+        if (a.filtered) store(a.toneWeighted ? toneWeight(ycocg ? c.x : luma709(c), a.hdr4) : one, weight + x);
+    }
+    for (const auto& channel : rings.c) channel.continueBeyond(y);
+    if (a.filtered) rings.weight.continueBeyond(y);
+}
+template <class R>
+AA_INLINE void storeResult(const KarisArgs& a, bool pq, long o, vec3<R> result) {
+    store_rgba(result, R(Elem<R>(1)), a.in.next + 4 * o);
+    if (pq) result = {pq_decode(*a.pq, result.x), pq_decode(*a.pq, result.y), pq_decode(*a.pq, result.z)};
+    store3(result, a.in.out.c, o);
 }
 
-template <class R, class YCoCg>
-AA_INLINE void karisPixel(const KarisArgs& a, YCoCg ycocg, const KarisTile<Elem<R>>& tile, int x, int y) {
+template <class R, class YCoCg, class Pq>
+AA_INLINE void karisPixel(const KarisArgs& a, YCoCg ycocg, Pq pq, const KarisWindow<Elem<R>>& window, int x, int y) {
     const bool filtered = a.filtered, spread = a.box != BoxKind::minmax;
     using T = Elem<R>;
-    using Tile = KarisTile<T>;
     const TemporalIn& in = a.in;
     const R zero(T(0)), one(T(1));
     const long o = long(y) * in.stride + x;
-    const int t0 = tile.offset(x, y);
-    const auto at = [&](int i, int j) __attribute__((always_inline)) {
-        const int t = t0 + j * Tile::kStride + i;
-        return vec3<R>{load_own<R>(tile.c[0] + t), load_own<R>(tile.c[1] + t), load_own<R>(tile.c[2] + t)};
-    };
+    const auto at = [&](int i, int j) __attribute__((always_inline)) { return load_own<R>(window.c[j + 1], x + i); };
     const auto luma = [&](vec3<R> c) __attribute__((always_inline)) { return ycocg ? c.x : luma709(c); };
     const vec3<R> centre = at(0, 0);
 
     // 1. filtered current colour and moments, as deviations from the centre: a constant stays exactly itself
     const auto filterWeight = [&](int i, int j) __attribute__((always_inline)) {
-        return R(T(a.filter[(j + 1) * 3 + i + 1])) * load_own<R>(tile.weight + t0 + j * Tile::kStride + i);
+        return R(T(a.filter[(j + 1) * 3 + i + 1])) * load_own<R>(window.weight[j + 1] + x + i);
     };
     vec3<R> sum(zero);
     R weights(zero);
@@ -125,58 +126,49 @@ AA_INLINE void karisPixel(const KarisArgs& a, YCoCg ycocg, const KarisTile<Elem<
     const auto toRgb = [&](vec3<R> c) __attribute__((always_inline)) {
         return max(ycocg ? from_ycocg(c) : c, vec3<R>(zero));
     };
-    const vec3<R> raw = load3<R>(in.color.c, o);
-    const vec3<R> result = select(q.inside, toRgb(mixed), filtered ? toRgb(current) : raw);
-    store_blend(in, x, y, sanitised(result, raw, past), one);
+    vec3<R> result = toRgb(mixed);
+    if (mask_bits<R>(negate(both(q.inside, finite(result))))) {
+        const vec3<R> raw = karisColor<R>(a, pq, o);
+        result = sanitised(select(q.inside, result, filtered ? toRgb(current) : raw), raw, past);
+    }
+    storeResult(a, pq, o, result);
     store_debug(in.debug, o, motion, q.inside, box, held - history, k);
 }
 template <class R>
 __attribute__((flatten)) void karisRows(const KarisArgs& a, int y0, int y1) {
-    if (!a.in.history) {
-        for (int y = y0; y < y1; y++)
-            for (int x = 0; x < a.in.width; x += N<R>) store_first<R>(a.in, x, y);
-        return;
-    }
-    using Tile = KarisTile<Elem<R>>;
-    Tile tile;
-    const auto tiles = [&](auto ycocg) __attribute__((always_inline)) {
-        for (int top = y0; top < y1; top += Tile::kHeight) {
-            const int bottom = top + Tile::kHeight < y1 ? top + Tile::kHeight : y1;
-            for (int left = 0; left < a.in.width; left += Tile::kWidth) {
-                const int right = left + Tile::kWidth < a.in.width ? left + Tile::kWidth : a.in.width;
-                fillTile<R>(a, ycocg, a.filtered, tile, left, right, top, bottom);
-                for (int y = top; y < bottom; y++)
-                    for (int x = left; x < right; x += N<R>) karisPixel<R>(a, ycocg, tile, x, y);
+    const TemporalIn& in = a.in;
+    KarisRings<Elem<R>> rings;
+    RingMaker<Elem<R>> maker(a.scratch, in.stride, in.width, in.height);
+    for (auto& channel : rings.c) maker.make(channel);
+    maker.make(rings.weight);
+    const auto rows = [&](auto ycocg, auto pq) __attribute__((always_inline)) {
+        if (!in.history) {
+            for (int y = y0; y < y1; y++)
+                for (int x = 0; x < in.width; x += N<R>) {
+                    const long o = long(y) * in.stride + x;
+                    const vec3<R> current = karisColor<R>(a, pq, o);
+                    storeResult(a, pq, o, sanitised(current, current, vec3<R>(R(Elem<R>(0)))));
+                    store_first_debug(in, o, current);
+                }
+            return;
+        }
+        for (int y = y0 - 2; y < y1; y++) {
+            const int next = y + 1;
+            if (next >= 0 && next < in.height) convertRow<R>(a, ycocg, pq, rings, next);
+            if (y < y0) continue;
+            KarisWindow<Elem<R>> window;
+            for (int j = -1; j <= 1; j++) {
+                for (int i = 0; i < 3; i++) window.c[j + 1][i] = rings.c[i](y + j);
+                window.weight[j + 1] = rings.weight(y + j);
             }
+            for (int x = 0; x < in.width; x += N<R>) karisPixel<R>(a, ycocg, pq, window, x, y);
         }
     };
-    with_options<R>(tiles, a.ycocg);
-}
-
-template <class R>
-__attribute__((flatten)) void pqEncodeRows(const PqArgs& a, int y0, int y1) {
-    const PqTables& t = *a.tables;
-    for (int y = y0; y < y1; y++)
-        for (int x = 0; x < a.width; x += N<R>) {
-            const long o = long(y) * a.stride + x;
-            const vec3<R> c = load3<R>(a.in.c, o);
-            store3(vec3<R>{pq_encode(t, c.x), pq_encode(t, c.y), pq_encode(t, c.z)}, a.out.c, o);
-        }
-}
-template <class R>
-__attribute__((flatten)) void pqDecodeRows(const PqArgs& a, int y0, int y1) {
-    const PqTables& t = *a.tables;
-    for (int y = y0; y < y1; y++)
-        for (int x = 0; x < a.width; x += N<R>) {
-            const long o = long(y) * a.stride + x;
-            const vec3<R> c = load3<R>(a.in.c, o);
-            store3(vec3<R>{pq_decode(t, c.x), pq_decode(t, c.y), pq_decode(t, c.z)}, a.out.c, o);
-        }
+    with_options<R>(rows, a.ycocg, a.pq != nullptr);
 }
 
 void fillPqTables(PqTables& t) { fill_tables(t); }
 
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::KarisKernels, karisKernels) = {AA_WIDE_ROWS(karisRows), AA_WIDE_ROWS(pqEncodeRows),
-                                                   AA_WIDE_ROWS(pqDecodeRows), fillPqTables};
+AA_DEFINE_TABLE(aa::KarisKernels, karisKernels) = {AA_WIDE_ROWS(karisRows), fillPqTables};

@@ -9,6 +9,8 @@
 namespace aa {
 namespace {
 
+constexpr int kRowsPerCall = 64;  // each computes seven rows of its neighbours again, partly
+
 class Master : public Method {
   public:
     explicit Master(const Params& params) : params_(params), sharpen_(SharpenKernel(params.choiceIndex("sharpen"))) {}
@@ -53,11 +55,15 @@ class Master : public Method {
             m.debugAliased = terms_[0].row(0), m.debugSobel = terms_[1].row(0), m.debugModel = terms_[2].row(0);
             m.debugDepth = terms_[3].row(0), m.debugDepthTemporal = terms_[4].row(0);
         }
-        const int blocks = (frame.height + kMasterBlockRows - 1) / kMasterBlockRows;
-        runKernel(masterKernelsFor(exec.isa).resolve, exec, m, blocks, 1);
+        if (sharpen_ != SharpenKernel::none) {
+            m.sharpened = view(out);
+            m.sharpenGain = sharpenGain(sharpen_);
+        }
+        const std::vector<int> seams = run(m, exec);
         history_.end(temporal::historyStorage(p), exec);
         depth_[0].fillBorder();
-        if (sharpen_ != SharpenKernel::none) sharpenEncoded(history_.latest(), sharpen_, exec, out);
+        if (sharpen_ != SharpenKernel::none)
+            for (int y : seams) sharpenEncodedRow(history_.latest(), sharpen_, exec, y, out);
     }
     size_t stateBytes() const override { return history_.bytes() + depth_[0].bytes() + depth_[1].bytes(); }
     const PlaneF* rejection() const override { return debug_.rejection(); }
@@ -70,6 +76,27 @@ class Master : public Method {
     }
 
   private:
+    // Returns the rows beside which another call ended, which are not yet sharpened.
+    std::vector<int> run(const MasterArgs& all, const Exec& exec) {
+        const auto fn = rowsOf(masterKernelsFor(exec.isa).resolve, exec.precision);
+        const int height = all.in.height;
+        std::vector<uint8_t> seam(size_t(height), 0);
+        Scratch scratch(kMasterScratchRows, all.in.stride);
+        forRows(
+            exec, height,
+            [&](int y0, int y1) {
+                MasterArgs m = all;
+                m.scratch = scratch.local();
+                fn(m, y0, y1);
+                if (y0 > 0) seam[size_t(y0)] = 1;
+                if (y1 < height) seam[size_t(y1 - 1)] = 1;
+            },
+            kRowsPerCall);
+        std::vector<int> rows;
+        for (int y = 0; y < height; y++)
+            if (seam[size_t(y)]) rows.push_back(y);
+        return rows;
+    }
     void fit(int width, int height) {
         if (depth_[0].width() == width && depth_[0].height() == height) return;
         for (PlaneF& p : depth_) p = PlaneF(width, height);

@@ -1,132 +1,109 @@
+#include "kernels/ring.h"
 #include "methods/master_kernels.h"
 #include "methods/master_terms.kernel.h"
+#include "methods/temporal_sharpen.kernel.h"
 
-// All steps on one tile after the other, so that what lies between them stays in the second-level cache. Every step
-// needs a margin of the one before: three pixels of luminance for two of Sobel for one of its past.
+// All steps row by row, each as far ahead of the next one as that one's window reaches; what lies between them is a few
+// rows long and stays in the second-level cache.
 namespace AA_ARCH {
 
 template <class T>
-struct MasterTile {
-    static constexpr int kWidth = 256, kHeight = kMasterBlockRows, kMarginX = 16, kMarginY = 3,
-                         kStride = kWidth + 2 * kMarginX, kSize = (kHeight + 2 * kMarginY) * kStride;
-    alignas(64) T luminanceAlbedo[kSize], luminanceLit[kSize], sobel[kSize], filtered[kSize];
-    alignas(64) T past[3][kSize], pastDepth[kSize];  // colour, and depth: NaN where history is outside
-    int x0, x1, y0, y1, width, height;
-
-    AA_INLINE int offset(int x, int y) const { return (y - y0 + kMarginY) * kStride + x - x0 + kMarginX; }
-    template <class R>
-    static AA_INLINE R get(const T* p) {
-        if constexpr (N<R> == 1)
-            return *p;
-        else
-            return load<R>(p);
-    }
-    // Calls pixels(x, y) for the tile and `margin` pixels around it, as far as they lie in the picture.
-    template <class R, class Pixels>
-    AA_INLINE void cover(int margin, const Pixels& pixels) {
-        const int columns = (margin + N<R> - 1) / N<R> * N<R>;  // whole lanes
-        const int left = x0 - columns > 0 ? x0 - columns : 0, right = x1 + margin < width ? x1 + margin : width;
-        const int top = y0 - margin > 0 ? y0 - margin : 0, bottom = y1 + margin < height ? y1 + margin : height;
-        for (int y = top; y < bottom; y++)
-            for (int x = left; x < right; x += N<R>) pixels(x, y);
-    }
-    // Continues a plane `margin` pixels beyond the picture with its last value.
-    AA_INLINE void continueBeyond(T* plane, int margin) {
-        const int top = y0 - margin > 0 ? y0 - margin : 0, bottom = y1 + margin < height ? y1 + margin : height;
-        for (int y = top; y < bottom; y++) {
-            T* const row = plane + offset(0, y);
-            for (int x = x0 - margin; x < 0; x++) row[x] = row[0];
-            for (int x = width; x < x1 + margin; x++) row[x] = row[width - 1];
-        }
-        const auto copyRow = [&](int from, int to) __attribute__((always_inline)) {
-            __builtin_memcpy(plane + offset(x0 - margin, to), plane + offset(x0 - margin, from),
-                             size_t(x1 - x0 + 2 * margin) * sizeof(T));
-        };
-        for (int y = y0 - margin; y < 0; y++) copyRow(0, y);
-        for (int y = height; y < y1 + margin; y++) copyRow(height - 1, y);
-    }
+struct MasterRings {
+    Ring<T, 4> luminanceAlbedo, luminanceLit, sobel, filtered;
+    Ring<T, 2> past[3], pastDepth;  // colour, and depth: NaN where history is outside
 };
 
+template <class R>
+AA_INLINE void luminance_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
+    Elem<R>*const albedo = rings.luminanceAlbedo(y), *const lit = rings.luminanceLit(y);
+    for (int x = 0; x < a.in.width; x += N<R>) {
+        const long o = long(y) * a.in.stride + x;
+        store(luminance(load3<R>(a.albedoEncoded.c, o), a.bt601), albedo + x);
+        store(luminance(load3<R>(a.in.color.c, o), a.bt601), lit + x);
+    }
+    rings.luminanceAlbedo.continueBeyond(y);
+    rings.luminanceLit.continueBeyond(y);
+}
 // S: one Sobel value per pixel.
 template <class R>
-AA_INLINE void fill_luminance(const MasterArgs& a, MasterTile<Elem<R>>& tile, int x, int y) {
-    const long o = long(y) * a.in.stride + x;
-    const int t = tile.offset(x, y);
-    store(luminance(load3<R>(a.albedoEncoded.c, o), a.bt601), tile.luminanceAlbedo + t);
-    store(luminance(load3<R>(a.in.color.c, o), a.bt601), tile.luminanceLit + t);
-}
-template <class R>
-AA_INLINE void fill_sobel(const MasterArgs& a, MasterTile<Elem<R>>& tile, int x, int y) {
+AA_INLINE void sobel_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
     using T = Elem<R>;
-    using Tile = MasterTile<T>;
     const R farDepth = R(T(a.farDepth));
-    const long o = long(y) * a.in.stride + x;
-    const int t = tile.offset(x, y);
-    const auto window = [&](const T* plane) __attribute__((always_inline)) {
-        return sobel_magnitude<R>([&](int i, int j) __attribute__((always_inline)) {
-            return Tile::template get<R>(plane + t + j * Tile::kStride + i);
+    T* const sobel = rings.sobel(y);
+    const T *const albedo[3] = {rings.luminanceAlbedo(y - 1), rings.luminanceAlbedo(y), rings.luminanceAlbedo(y + 1)},
+                   *const lit[3] = {rings.luminanceLit(y - 1), rings.luminanceLit(y), rings.luminanceLit(y + 1)};
+    for (int x = 0; x < a.in.width; x += N<R>) {
+        if (!a.useSobel) {
+            store(R(T(0)), sobel + x);
+            continue;
+        }
+        const long o = long(y) * a.in.stride + x;
+        const auto magnitude = [&](const T* const(&rows)[3]) __attribute__((always_inline)) {
+            return sobel_magnitude<R>([&](int i, int j)
+                                          __attribute__((always_inline)) { return load_own<R>(rows[j + 1] + x + i); });
+        };
+        const R depth = sobel_magnitude<R>([&](int i, int j) __attribute__((always_inline)) {
+            return min(farDepth, load<R>(a.in.depthView + o + long(j) * a.in.stride + i));
         });
-    };
-    const R depth = sobel_magnitude<R>([&](int i, int j) __attribute__((always_inline)) {
-        return min(farDepth, load<R>(a.in.depthView + o + long(j) * a.in.stride + i));
-    });
-    const R sum = window(tile.luminanceAlbedo) * R(T(a.weightAlbedo)) + window(tile.luminanceLit) * R(T(a.weightLit)) +
-                  depth * R(T(a.depthScale));
-    store(sobel_curve(sum), tile.sobel + t);
+        const R sum =
+            magnitude(albedo) * R(T(a.weightAlbedo)) + magnitude(lit) * R(T(a.weightLit)) + depth * R(T(a.depthScale));
+        store(sobel_curve(sum), sobel + x);
+    }
+    rings.sobel.continueBeyond(y);
 }
 
 // T: the Sobel value over time, and the past of colour and depth.
 template <class R>
-AA_INLINE void fill_past(const MasterArgs& a, MasterTile<Elem<R>>& tile, int x, int y) {
+AA_INLINE void past_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
     using T = Elem<R>;
-    using Tile = MasterTile<T>;
     const TemporalIn& in = a.in;
-    const long o = long(y) * in.stride + x;
-    const int t = tile.offset(x, y);
-    const Motion<R> motion = dilated_motion<R>(in, o);
-    const Reprojection<R> q = reproject(in, motion, x, y);
-    const Texel<R> past = fetch_bilinear<R>(in.history + 4 * o, in.stride, q);
+    T* const filteredRow = rings.filtered(y);
+    const T* const sobel[3] = {rings.sobel(y - 1), rings.sobel(y), rings.sobel(y + 1)};
+    T *const pastX = rings.past[0](y), *const pastY = rings.past[1](y), *const pastZ = rings.past[2](y),
+             *const pastDepth = rings.pastDepth(y);
+    for (int x = 0; x < in.width; x += N<R>) {
+        const long o = long(y) * in.stride + x;
+        const Motion<R> motion = dilated_motion<R>(in, o);
+        const Reprojection<R> q = reproject(in, motion, x, y);
+        const Texel<R> past = fetch_bilinear<R>(in.history + 4 * o, in.stride, q);
 
-    const auto sobelAt = [&](int i, int j) __attribute__((always_inline)) {
-        return Tile::template get<R>(tile.sobel + t + j * Tile::kStride + i);
-    };
-    const R now = sobelAt(0, 0);
-    R filtered = now;
-    if (a.temporalSobel) {
-        const R plusLow = min(min(min(now, sobelAt(-1, 0)), min(sobelAt(1, 0), sobelAt(0, -1))), sobelAt(0, 1));
-        const R plusHigh = max(max(max(now, sobelAt(-1, 0)), max(sobelAt(1, 0), sobelAt(0, -1))), sobelAt(0, 1));
-        const R low = min(plusLow, min(min(sobelAt(-1, -1), sobelAt(1, -1)), min(sobelAt(-1, 1), sobelAt(1, 1))));
-        const R high = max(plusHigh, max(max(sobelAt(-1, -1), sobelAt(1, -1)), max(sobelAt(-1, 1), sobelAt(1, 1))));
-        const R half(T(0.5)), held = clamp(past.a, (low + plusLow) * half, (high + plusHigh) * half);
-        const R k = min(luminance_feedback(now, held, a.kMin, a.kMax), R(T(in.feedbackCeiling)));
-        filtered = select(q.inside, held + (now - held) * (R(T(1)) - k), now);
+        const auto at = [&](int i, int j) __attribute__((always_inline)) { return load_own<R>(sobel[j + 1] + x + i); };
+        const R now = at(0, 0);
+        R filtered = now;
+        if (a.temporalSobel) {
+            const R plusLow = min(min(min(now, at(-1, 0)), min(at(1, 0), at(0, -1))), at(0, 1));
+            const R plusHigh = max(max(max(now, at(-1, 0)), max(at(1, 0), at(0, -1))), at(0, 1));
+            const R low = min(plusLow, min(min(at(-1, -1), at(1, -1)), min(at(-1, 1), at(1, 1))));
+            const R high = max(plusHigh, max(max(at(-1, -1), at(1, -1)), max(at(-1, 1), at(1, 1))));
+            const R half(T(0.5)), held = clamp(past.a, (low + plusLow) * half, (high + plusHigh) * half);
+            const R k = min(luminance_feedback(now, held, a.kMin, a.kMax), R(T(in.feedbackCeiling)));
+            filtered = select(q.inside, held + (now - held) * (R(T(1)) - k), now);
+        }
+        store(filtered, filteredRow + x);
+
+        alignas(64) int k[N<R>];
+        nearest_offsets(q, in.stride, k);
+        const R depth = a.samePixelDepth ? load<R>(a.previousDepth + o) : gather<R>(a.previousDepth + o, k);
+        store(select(q.inside, depth, R(T(__builtin_nanf("")))), pastDepth + x);
+        const vec3<R> color = in.filter == HistoryFilter::bilinear ? past.rgb : fetch_history(in, x, y, q);
+        store(color.x, pastX + x), store(color.y, pastY + x), store(color.z, pastZ + x);
     }
-    store(filtered, tile.filtered + t);
-
-    alignas(64) int k[N<R>];
-    nearest_offsets(q, in.stride, k);
-    const R depth = a.samePixelDepth ? load<R>(a.previousDepth + o) : gather<R>(a.previousDepth + o, k);
-    store(select(q.inside, depth, R(T(__builtin_nanf("")))), tile.pastDepth + t);
-    const vec3<R> color = in.filter == HistoryFilter::bilinear ? past.rgb : fetch_history(in, x, y, q);
-    store(color.x, tile.past[0] + t);
-    store(color.y, tile.past[1] + t);
-    store(color.z, tile.past[2] + t);
+    rings.filtered.continueBeyond(y);
 }
 
 template <class R>
-AA_INLINE void masterPixel(const MasterArgs& a, const MasterTile<Elem<R>>& tile, int x, int y) {
+AA_INLINE void masterPixel(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int x, int y) {
     using T = Elem<R>;
-    using Tile = MasterTile<T>;
     const TemporalIn& in = a.in;
     const R zero(T(0)), one(T(1)), farDepth = R(T(a.farDepth));
     const long o = long(y) * in.stride + x;
-    const int t = tile.offset(x, y);
     const auto at = [&](int i, int j) __attribute__((always_inline)) { return o + long(j) * in.stride + i; };
     const vec3<R> current = load3<R>(in.color.c, o);
-    const vec3<R> history{Tile::template get<R>(tile.past[0] + t), Tile::template get<R>(tile.past[1] + t),
-                          Tile::template get<R>(tile.past[2] + t)};
-    const R pastDepth = Tile::template get<R>(tile.pastDepth + t);
+    const vec3<R> history{load_own<R>(rings.past[0](y) + x), load_own<R>(rings.past[1](y) + x),
+                          load_own<R>(rings.past[2](y) + x)};
+    const R pastDepth = load_own<R>(rings.pastDepth(y) + x);
     const auto inside = pastDepth == pastDepth;
+    const T* const filtered[3] = {rings.filtered(y - 1), rings.filtered(y), rings.filtered(y + 1)};
 
     // How aliased is this pixel?
     R model(zero), sobel(zero);
@@ -153,7 +130,7 @@ AA_INLINE void masterPixel(const MasterArgs& a, const MasterTile<Elem<R>>& tile,
     }
     if (a.useSobel) {
         const auto s = [&](int i, int j) __attribute__((always_inline)) {
-            return Tile::template get<R>(tile.filtered + t + j * Tile::kStride + i);
+            return load_own<R>(filtered[j + 1] + x + i);
         };
         const R plus = s(0, 0) + ((s(-1, 0) + s(1, 0)) + (s(0, -1) + s(0, 1)));
         const R square = plus + ((s(-1, -1) + s(1, -1)) + (s(-1, 1) + s(1, 1)));
@@ -173,7 +150,7 @@ AA_INLINE void masterPixel(const MasterArgs& a, const MasterTile<Elem<R>>& tile,
     const R k = min(luminance_feedback(luma709(current), luma709(clipped), a.kMin, a.kMax), R(T(in.feedbackCeiling)));
     const vec3<R> mixed = select(inside, blend(current, clipped, k), current);
 
-    store_blend(in, x, y, sanitised(mixed, current, history), Tile::template get<R>(tile.filtered + t));
+    store_blend(in, x, y, sanitised(mixed, current, history), load_own<R>(filtered[1] + x));
     if (!in.debug.feedback) {
         store_debug(in.debug, o, Motion<R>{k, k}, inside, box, history, k);
     } else {
@@ -182,54 +159,82 @@ AA_INLINE void masterPixel(const MasterArgs& a, const MasterTile<Elem<R>>& tile,
         store(variance.depth, a.debugDepth + o), store(variance.depthTemporal, a.debugDepthTemporal + o);
     }
 }
+// Brings in what the next row of each step will be the first to read or write, while this one computes.
 template <class R>
-AA_INLINE void masterTile(const MasterArgs& a, MasterTile<Elem<R>>& tile) {
-    using T = Elem<R>;
-    const int margin = a.in.history ? 2 : 0;
-    if (a.useSobel) {
-        tile.template cover<R>(
-            margin + 1, [&](int x, int y) __attribute__((always_inline)) { fill_luminance<R>(a, tile, x, y); });
-        tile.continueBeyond(tile.luminanceAlbedo, margin + 1);
-        tile.continueBeyond(tile.luminanceLit, margin + 1);
-        tile.template cover<R>(
-            margin, [&](int x, int y) __attribute__((always_inline)) { fill_sobel<R>(a, tile, x, y); });
-        tile.continueBeyond(tile.sobel, margin);
-    } else {
-        tile.template cover<R>(
-            margin, [&](int x, int y)
-                        __attribute__((always_inline)) { store(R(T(0)), tile.sobel + tile.offset(x, y)); });
-        tile.continueBeyond(tile.sobel, margin);
+AA_INLINE void prefetch_next_rows(const MasterArgs& a, int x, int y) {
+    if constexpr (N<R> == 1) return;
+    const TemporalIn& in = a.in;
+    const auto at = [&](int row) __attribute__((always_inline)) {
+        return long(row < in.height ? row : in.height - 1) * in.stride + x;
+    };
+    const long first = at(y + 4), sobel = at(y + 3), past = at(y + 2), own = at(y + 1);
+    for (int c = 0; c < 3; c++) {
+        __builtin_prefetch(a.albedoEncoded.c[c] + first, 0, 2);
+        __builtin_prefetch(in.color.c[c] + first, 0, 2);
+        if (a.sharpened.c[c]) __builtin_prefetch(a.sharpened.c[c] + own, 0, 2);
     }
-    if (a.in.history) {
-        tile.template cover<R>(
-            1, [&](int x, int y) __attribute__((always_inline)) { fill_past<R>(a, tile, x, y); });
-        tile.continueBeyond(tile.filtered, 1);
+    __builtin_prefetch(in.depthView + sobel, 0, 2);
+    __builtin_prefetch(in.motionXPx + past + in.stride, 0, 2);
+    __builtin_prefetch(in.motionYPx + past + in.stride, 0, 2);
+    __builtin_prefetch(a.previousDepth + past + in.stride, 0, 2);
+    __builtin_prefetch(a.objectId + past, 0, 2);
+    for (int i = 0; i < 4; i++) {
+        __builtin_prefetch(in.history + 4 * (past + in.stride) + i * N<R>, 0, 2);
+        __builtin_prefetch(in.next + 4 * own + i * N<R>, 0, 2);
     }
-    tile.template cover<R>(
-        0, [&](int x, int y) __attribute__((always_inline)) {
-            if (a.in.history)
-                masterPixel<R>(a, tile, x, y);
-            else
-                store_first<R>(a.in, x, y, MasterTile<T>::template get<R>(tile.sobel + tile.offset(x, y)));
-            const long o = long(y) * a.in.stride + x;
-            store(load<R>(a.in.depthView + o), a.keptDepth + o);
-        });
+    __builtin_prefetch(a.keptDepth + own, 0, 2);
 }
 template <class R>
-__attribute__((flatten)) void masterBlocks(const MasterArgs& a, int b0, int b1) {
-    using Tile = MasterTile<Elem<R>>;
-    Tile tile;
-    tile.width = a.in.width, tile.height = a.in.height;
-    for (int b = b0; b < b1; b++) {
-        tile.y0 = b * Tile::kHeight;
-        tile.y1 = tile.y0 + Tile::kHeight < tile.height ? tile.y0 + Tile::kHeight : tile.height;
-        for (tile.x0 = 0; tile.x0 < tile.width; tile.x0 += Tile::kWidth) {
-            tile.x1 = tile.x0 + Tile::kWidth < tile.width ? tile.x0 + Tile::kWidth : tile.width;
-            masterTile<R>(a, tile);
-        }
+AA_INLINE void resolve_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
+    const TemporalIn& in = a.in;
+    const long o = long(y) * in.stride;
+    for (int x = 0; x < in.width; x += N<R>) {
+        prefetch_next_rows<R>(a, x, y);
+        if (in.history)
+            masterPixel<R>(a, rings, x, y);
+        else
+            store_first<R>(in, x, y, load_own<R>(rings.sobel(y) + x));
+        store(load<R>(in.depthView + o + x), a.keptDepth + o + x);
+    }
+    float* const row = in.next + 4 * o;
+    for (int c = 0; c < 4; c++) row[c - 4] = row[c], row[4 * in.width + c] = row[4 * in.width - 4 + c];
+}
+template <class R>
+AA_INLINE void sharpen_resolved_row(const MasterArgs& a, int y) {
+    const TemporalIn& in = a.in;
+    const auto row = [&](int r) __attribute__((always_inline)) {
+        return in.next + 4l * in.stride * (r < 0 ? 0 : r >= in.height ? in.height - 1 : r);
+    };
+    sharpen_row<R>(row(y - 1), row(y), row(y + 1), a.sharpenGain, a.sharpened, long(y) * in.stride, in.width);
+}
+template <class R>
+__attribute__((flatten)) void masterRows(const MasterArgs& a, int y0, int y1) {
+    using T = Elem<R>;
+    const TemporalIn& in = a.in;
+    const int width = in.width, height = in.height;
+    MasterRings<T> rings;
+    RingMaker<T> maker(a.scratch, in.stride, width, height);
+    maker.make(rings.luminanceAlbedo), maker.make(rings.luminanceLit);
+    maker.make(rings.sobel), maker.make(rings.filtered);
+    for (auto& channel : rings.past) maker.make(channel);
+    maker.make(rings.pastDepth);
+
+    // A step runs ahead of the last one by the margin that the windows between them add up to.
+    const int past = in.history ? 1 : 0, sobel = 2 * past, luminance = sobel + 1;
+    const auto within = [&](int y, int margin) __attribute__((always_inline)) {
+        return y >= 0 && y < height && y >= y0 - margin && y < y1 + margin;
+    };
+    for (int y = y0 - 2 * luminance; y <= y1; y++) {
+        if (a.useSobel && within(y + luminance, luminance)) luminance_row<R>(a, rings, y + luminance);
+        if (within(y + sobel, sobel)) sobel_row<R>(a, rings, y + sobel);
+        if (in.history && within(y + past, past)) past_row<R>(a, rings, y + past);
+        if (within(y, 0)) resolve_row<R>(a, rings, y);
+        const int r = y - 1;
+        if (a.sharpened.c[0] && r >= y0 && (r > y0 || r == 0) && (r + 1 < y1 || r + 1 == height))
+            sharpen_resolved_row<R>(a, r);
     }
 }
 
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::MasterKernels, masterKernels) = {AA_WIDE_ROWS(masterBlocks)};
+AA_DEFINE_TABLE(aa::MasterKernels, masterKernels) = {AA_WIDE_ROWS(masterRows)};

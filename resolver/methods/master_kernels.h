@@ -3,7 +3,7 @@
 
 namespace aa {
 
-inline constexpr int kMasterBlockRows = 32;
+inline constexpr int kMasterScratchRows = 24;
 struct MasterArgs {
     TemporalIn in;  // encoded colour; alpha of the history: the Sobel value, filtered over time
     RgbIn albedoEncoded;
@@ -15,12 +15,16 @@ struct MasterArgs {
     float kMin, kMax, depthThreshold, minAlias;
     ClipTarget clipTarget;
     bool bt601, temporalSobel, samePixelDepth, relativeThreshold, compensate;
+    RgbOut
+        sharpened;  // the sharpened blend, or null; but not the call's first and last row, whose neighbours are others'
+    float sharpenGain;  // as of SharpenHistoryArgs
+    void* scratch;      // kMasterScratchRows rows
     bool useModel, useDepth, useDepthTemporal, useSobel;
     // Debug, or null: aliasedValue and its four terms.
     float *debugAliased, *debugSobel, *debugModel, *debugDepth, *debugDepthTemporal;
 };
 struct MasterKernels {
-    RowKernel<MasterArgs> resolve;  // over blocks of kMasterBlockRows rows
+    RowKernel<MasterArgs> resolve;  // the fewer calls, the less is computed twice: seven rows of margin each
 };
 }  // namespace aa
 AA_KERNEL_TABLE(aa::MasterKernels, masterKernels)

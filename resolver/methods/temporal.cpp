@@ -161,10 +161,14 @@ ExpectedDepth expectedDepth(const Frame& frame) {
     return expectedDepth(frame, *frame.previousCamera);
 }
 
+float sharpenGain(SharpenKernel kernel) { return kernel == SharpenKernel::xu ? 1.0f : 0.25f; }
 void sharpenEncoded(const RgbaPlane& blend, SharpenKernel kernel, const Exec& exec, Rgb& out) {
-    const SharpenHistoryArgs args{blend.row(0), view(out), blend.stride(), blend.width(),
-                                  kernel == SharpenKernel::xu ? 1.0f : 0.25f};
+    const SharpenHistoryArgs args{blend.row(0), view(out), blend.stride(), blend.width(), sharpenGain(kernel)};
     runKernel(temporalKernelsFor(exec.isa).sharpen, exec, args, blend.height());
+}
+void sharpenEncodedRow(const RgbaPlane& blend, SharpenKernel kernel, const Exec& exec, int y, Rgb& out) {
+    const SharpenHistoryArgs args{blend.row(0), view(out), blend.stride(), blend.width(), sharpenGain(kernel)};
+    rowsOf(temporalKernelsFor(exec.isa).sharpen, exec.precision)(args, y, y + 1);
 }
 
 TemporalDebug TemporalDebugLayers::begin(const Method& method, int width, int height) {

@@ -83,6 +83,8 @@ std::optional<ViewRays> viewRays(const Frame& frame);  // nothing without a pers
 
 // Sharpened copy of a display-encoded blend (methods/06 s.6.10); never fed back. `kernel` is not none.
 void sharpenEncoded(const RgbaPlane& blend, SharpenKernel kernel, const Exec& exec, Rgb& out);
+void sharpenEncodedRow(const RgbaPlane& blend, SharpenKernel kernel, const Exec& exec, int y, Rgb& out);
+float sharpenGain(SharpenKernel kernel);  // as of SharpenHistoryArgs
 
 // Planes behind TemporalDebug and their names.
 class TemporalDebugLayers {

@@ -214,8 +214,10 @@ AA_INLINE vec3<R> inverse_luminance_blend(vec3<R> current, R luminanceCurrent, v
 // bad value must not live in the history for ever (methods/08 s.8.3, taaSimplest).
 template <class R>
 AA_INLINE vec3<R> sanitised(vec3<R> blended, vec3<R> current, vec3<R> history) {
+    const Mask<R> good = finite(blended);
+    if (!mask_bits<R>(negate(good))) return blended;
     const vec3<R> fallback = select(finite(current), current, select(finite(history), history, vec3<R>(R(Elem<R>(0)))));
-    return select(finite(blended), blended, fallback);
+    return select(good, blended, fallback);
 }
 template <class R>
 AA_INLINE void store_blend(const TemporalIn& in, int x, int y, vec3<R> result, R alpha) {
@@ -225,19 +227,23 @@ AA_INLINE void store_blend(const TemporalIn& in, int x, int y, vec3<R> result, R
 }
 // The first frame after a reset: the current colour.
 template <class R>
-AA_INLINE void store_first(const TemporalIn& in, int x, int y, R alpha = R(Elem<R>(1))) {
-    const long o = long(y) * in.stride + x;
-    const R zero(Elem<R>(0));
-    const vec3<R> current = load3<R>(in.color.c, o);
-    store_blend(in, x, y, sanitised(current, current, vec3<R>(zero)), alpha);
+AA_INLINE void store_first_debug(const TemporalIn& in, long o, vec3<R> current) {
     const TemporalDebug& d = in.debug;
     if (!d.rejection) return;
+    const R zero(Elem<R>(0));
     store(R(Elem<R>(int(Rejection::firstFrame))), d.rejection + o);
     if (!d.feedback) return;
     const Motion<R> motion = load_motion<R>(in, o);
     store(motion.x, d.motionXPx + o), store(motion.y, d.motionYPx + o);
     store3(current, d.boxLow, o), store3(current, d.boxHigh, o);
     store(zero, d.clipAmount + o), store(zero, d.feedback + o);
+}
+template <class R>
+AA_INLINE void store_first(const TemporalIn& in, int x, int y, R alpha = R(Elem<R>(1))) {
+    const long o = long(y) * in.stride + x;
+    const vec3<R> current = load3<R>(in.color.c, o);
+    store_blend(in, x, y, sanitised(current, current, vec3<R>(R(Elem<R>(0)))), alpha);
+    store_first_debug(in, o, current);
 }
 template <class R>
 AA_INLINE void store_debug(const TemporalDebug& d, long o, Motion<R> motion, Mask<R> inside, const Box<R>& box,

@@ -185,8 +185,7 @@ AA_INLINE void nearest_offsets(const Reprojection<R>& q, int stride, int* k) {
 }
 template <class R>
 AA_INLINE R gather(const float* p, const int* k) {
-    if constexpr (N<R> == 1)
-        return R(p[k[0]]);
+    if constexpr (N<R> == 1) return R(p[k[0]]);
 #ifdef __AVX512F__
     else if constexpr (std::is_same_v<R, Lanes<float, 16>>)
         return (typename R::V)_mm512_i32gather_ps(_mm512_loadu_si512(k), p, 4);
