@@ -75,6 +75,40 @@ AA_INLINE Texel<R> load_rgba(const float* p) {
     for (int i = 0; i < N<R>; i++) k[i] = i;
     return fetch_rgba<R>(p, k);
 }
+// Where W pixels are read, as offsets in pixels. `together`: side by side, as where everything moves alike.
+template <class R>
+struct Offsets {
+    alignas(64) int k[N<R>];
+    bool together;
+    // `offsets` are integers in lanes; for one lane use the members.
+    template <class I>
+    AA_INLINE void set(I offsets) {
+        const I lane = __builtin_convertvector(iota<R>().v, I), first = offsets - lane;
+        together = !mask_bits<R>((Mask<R>)(first != I{} + first[0]));
+        *(I*)k = offsets;
+        __asm__("" : "+m"(k));  // read them back one by one: GCC would take the vector apart, at twice the cost
+    }
+};
+template <class R>
+AA_INLINE Texel<R> fetch_rgba(const float* p, const Offsets<R>& at) {
+    return at.together ? load_rgba<R>(p + 4l * at.k[0]) : fetch_rgba<R>(p, at.k);
+}
+// One value of a plane for each pixel.
+template <class R>
+AA_INLINE R gather(const float* p, const Offsets<R>& at) {
+    if (at.together) return load<R>(p + at.k[0]);
+#ifdef __AVX512F__
+    if constexpr (std::is_same_v<R, Lanes<float, 16>>)
+        return (typename R::V)_mm512_i32gather_ps(_mm512_loadu_si512(at.k), p, 4);
+#endif
+    if constexpr (N<R> == 1)
+        return R(p[at.k[0]]);
+    else {
+        R r;
+        for (int i = 0; i < N<R>; i++) r.v[i] = p[at.k[i]];
+        return r;
+    }
+}
 template <class R>
 AA_INLINE void store_rgba(vec3<R> c, R a, float* p) {
     if constexpr (N<R> == 1) {

@@ -24,8 +24,7 @@ AA_INLINE void accumRejectPixel(const AccumRejectArgs& a, int x, int y) {
     // reproject
     const Motion<R> motion = dilated_motion<R>(in, o);
     const Reprojection<R> q = reproject(in, motion, x, y);
-    alignas(64) int nearest[N<R>];
-    nearest_offsets(q, in.stride, nearest);
+    const Offsets<R> nearest = nearest_offsets(q, in.stride);
     const vec3<R> history = fetch_history(in, x, y, q);
     vec3<R> residual = fetch_bilinear<R>(a.residual + 4 * o, in.stride, q).rgb;
 

@@ -32,8 +32,7 @@ AA_INLINE void add_tent(const float* p, int stride, R dx, R dy, R rx, R ry, Mask
     const R zero(T(0)), one(T(1));
     Reprojection<R> q;
     q.wholeX = floor(dx), q.wholeY = floor(dy), q.fracX = dx - q.wholeX, q.fracY = dy - q.wholeY, q.inside = valid;
-    alignas(64) int k[N<R>];
-    texel_offsets(q, stride, k);
+    const Offsets<R> k = texel_offsets(q, stride);
     const R ix = one / rx, iy = one / ry;
     const R wx[2] = {saturate(one - q.fracX * ix), saturate(one - (one - q.fracX) * ix)};
     const R wy[2] = {saturate(one - q.fracY * iy), saturate(one - (one - q.fracY) * iy)};
@@ -96,8 +95,7 @@ AA_INLINE void asaaPixel(const AsaaArgs& a, int x, int y) {
 
     // 5: weight of the current sample
     const Reprojection<R> q = reproject(in, motion, x, y);
-    alignas(64) int nearest[N<R>];
-    nearest_offsets(q, in.stride, nearest);
+    const Offsets<R> nearest = nearest_offsets(q, in.stride);
     R count = select(hit, gather<R>(a.previousCount + o, nearest), zero);
     const auto still = both(motion.x == zero, motion.y == zero);
     R alpha;

@@ -29,9 +29,8 @@ __attribute__((flatten)) void fsr2nScatterRows(const Fsr2nScatterArgs& a, int y0
             const Surface<R> s = closest_surface<R>(in, long(y) * in.stride + x, false);
             const Reprojection<R> q = reproject(in, s.motion, x, y);
             alignas(64) float z[N<R>];
-            alignas(64) int k[N<R>];
             store(s.depthView, z);
-            texel_offsets(q, in.stride, k);
+            const Offsets<R> texel = texel_offsets(q, in.stride);
             const R zero(T(0)), one(T(1)), left = R(T(x)) + iota<R>() + q.wholeX, top = R(T(y)) + q.wholeY;
             const auto known = both(both(q.inside, s.depthView > zero), iota<R>() < R(T(in.width - x)));
             for (int tap = 0; tap < 4; tap++) {
@@ -43,7 +42,7 @@ __attribute__((flatten)) void fsr2nScatterRows(const Fsr2nScatterArgs& a, int y0
                 float* at = a.nearest + long(y + dy) * in.stride + x + dx;
                 for (; lanes; lanes &= lanes - 1) {
                     const int i = __builtin_ctz(lanes);
-                    take_least(at + k[i], z[i], a.shared);
+                    take_least(at + texel.k[i], z[i], a.shared);
                 }
             }
         }
@@ -54,8 +53,7 @@ template <class R>
 AA_INLINE R depth_clip(const Fsr2nArgs& a, const Reprojection<R>& q, R depth, long o) {
     using T = Elem<R>;
     const R zero(T(0)), one(T(1));
-    alignas(64) int k[N<R>];
-    texel_offsets(q, a.in.stride, k);
+    const Offsets<R> k = texel_offsets(q, a.in.stride);
     const R wx[2] = {one - q.fracX, q.fracX}, wy[2] = {one - q.fracY, q.fracY};
     R visible(zero), weights(zero);
     for (int tap = 0; tap < 4; tap++) {
@@ -147,8 +145,7 @@ AA_INLINE void fsr2nPixel(const Fsr2nArgs& a, int x, int y) {
     const Box<R> box{max(bounds.lo, mean - reach), min(bounds.hi, mean + reach)};
 
     // 2
-    alignas(64) int nearest[N<R>];
-    nearest_offsets(q, in.stride, nearest);
+    const Offsets<R> nearest = nearest_offsets(q, in.stride);
     R lock = fetch_rgba<R>(in.history + 4 * o, nearest).a;
     const R luma = centre.x + around * R(T(1) / T(9)), usual = gather<R>(a.previousLuma + o, nearest);
     const R brighter = max(luma, usual), darker = min(luma, usual);

@@ -22,8 +22,7 @@ template <class R>
 AA_INLINE vec3<R> color_at(TemporalIn in, R dx, R dy, int x, int y) {
     in.clampOutside = true;
     const Reprojection<R> q = reproject(in, Motion<R>{-dx, -dy}, x, y);
-    alignas(64) int k[N<R>];
-    texel_offsets(q, in.stride, k);
+    const Offsets<R> k = texel_offsets(q, in.stride);
     const auto channel = [&](const float* p) __attribute__((always_inline)) {
         const R top = mix(gather<R>(p, k), gather<R>(p + 1, k), q.fracX),
                 bottom = mix(gather<R>(p + in.stride, k), gather<R>(p + in.stride + 1, k), q.fracX);

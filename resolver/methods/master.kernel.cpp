@@ -81,8 +81,7 @@ AA_INLINE void past_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, 
         }
         store(filtered, filteredRow + x);
 
-        alignas(64) int k[N<R>];
-        nearest_offsets(q, in.stride, k);
+        const Offsets<R> k = nearest_offsets(q, in.stride);
         const R depth = a.samePixelDepth ? load<R>(a.previousDepth + o) : gather<R>(a.previousDepth + o, k);
         store(select(q.inside, depth, R(T(__builtin_nanf("")))), pastDepth + x);
         const vec3<R> color = in.filter == HistoryFilter::bilinear ? past.rgb : fetch_history(in, x, y, q);

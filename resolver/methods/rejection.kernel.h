@@ -11,8 +11,7 @@ constexpr float kDisocclusion = 0.08f;  // seed 001 s.4.4.1, share of the expect
 template <class R>
 AA_INLINE R fetch_depth(const float* p, int stride, const Reprojection<R>& q) {
     using T = Elem<R>;
-    alignas(64) int k[N<R>];
-    texel_offsets(q, stride, k);
+    const Offsets<R> k = texel_offsets(q, stride);
     const R zero(T(0));
     const auto wholeX = q.fracX == zero, wholeY = q.fracY == zero;
     const R a = fetch_rgba<R>(p, k).a;
@@ -45,9 +44,13 @@ AA_INLINE Mask<R> magnified(const TemporalIn& in, long o, const Reprojection<R>&
 // Lane mask of pixels whose id is nowhere in the previous 3x3 around q. The window is searched only where q's own pixel
 // shows another object.
 template <class R>
-AA_INLINE Mask<R> id_lost(const uint32_t* ids, const uint32_t* previous, int stride, const int* nearest) {
+AA_INLINE Mask<R> id_lost(const uint32_t* ids, const uint32_t* previous, int stride, const Offsets<R>& nearest) {
+    if (nearest.together) {
+        const Mask<R> elsewhere = ids_differ<R>(ids, previous + nearest.k[0]);
+        if (!mask_bits<R>(elsewhere)) return elsewhere;
+    }
     const auto lostAt = [&](int lane) {
-        const uint32_t* p = previous + nearest[lane];
+        const uint32_t* p = previous + nearest.k[lane];
         const uint32_t id = ids[lane];
         if (*p == id) return false;
         for (int j = -1; j <= 1; j++)

@@ -51,8 +51,7 @@ AA_INLINE void t2msaaPixel(const T2msaaArgs& a, int x, int y) {
     reject(magnified(in, o, q, 1.0f), Rejection::magnified);
     const auto hit = reason == zero;
 
-    alignas(64) int nearest[N<R>];
-    nearest_offsets(q, in.stride, nearest);
+    const Offsets<R> nearest = nearest_offsets(q, in.stride);
     const R count = gather<R>(a.previousCount + o, nearest);
     const R mean = one / (count + one);
     // Listing 4.19: velocity in UV; eq 3.31 means the fraction of a pixel.

@@ -41,18 +41,19 @@ AA_INLINE Reprojection<R> reproject(const TemporalIn& in, Motion<R> motion, int 
     q.fracX = sx - q.wholeX, q.fracY = sy - q.wholeY;
     return q;
 }
-// Integer pixel offsets from (x, y); products stay in integers: float would lose them above 2^24 pixels.
+// Pixel offsets from (x, y); products stay in integers: float would lose them above 2^24 pixels.
 template <class R>
-AA_INLINE void texel_offsets(const Reprojection<R>& q, int stride, int* k) {
+AA_INLINE Offsets<R> texel_offsets(const Reprojection<R>& q, int stride) {
+    Offsets<R> at;
     if constexpr (N<R> == 1) {
-        k[0] = int(q.wholeY) * stride + int(q.wholeX);
-    } else if constexpr (std::is_same_v<Elem<R>, float>) {
+        at.k[0] = int(q.wholeY) * stride + int(q.wholeX);
+        at.together = true;
+    } else {
         using I = typename ints_of<N<R>>::type;
         const I ix = __builtin_convertvector(q.wholeX.v, I), iy = __builtin_convertvector(q.wholeY.v, I);
-        const I lane = __builtin_convertvector(iota<R>().v, I);
-        *(typename ints_of<N<R>>::unaligned*)k = iy * stride + ix + lane;
-    } else
-        for (int i = 0; i < N<R>; i++) k[i] = int(q.wholeY.v[i]) * stride + int(q.wholeX.v[i]) + i;
+        at.set(iy * stride + ix + __builtin_convertvector(iota<R>().v, I));
+    }
+    return at;
 }
 // No lane lies between texels: at rest, or moving by whole pixels. Both fetches below then give the texel itself.
 template <class R>
@@ -67,8 +68,7 @@ AA_INLINE vec3<R> lerp_exact(vec3<R> a, vec3<R> b, R f, Mask<R> whole) {  // f =
 // Bilinear with exact identity at fraction 0; texels of weight 0 cannot spread NaN. `p` is the texel of (x, y).
 template <class R>
 AA_INLINE Texel<R> fetch_bilinear(const float* p, int stride, const Reprojection<R>& q) {
-    alignas(64) int k[N<R>];
-    texel_offsets(q, stride, k);
+    const Offsets<R> k = texel_offsets(q, stride);
     if (all_whole(q)) return fetch_rgba<R>(p, k);
     const Mask<R> wholeX = q.fracX == R(Elem<R>(0)), wholeY = q.fracY == R(Elem<R>(0));
     auto row = [&](const float* r) __attribute__((always_inline)) {
@@ -109,8 +109,7 @@ AA_INLINE void lanczos_weights(R f, R* w) {
 template <bool corners, bool normalise, class R>
 AA_INLINE vec3<R> fetch_4x4(const float* p, int stride, const Reprojection<R>& q, const R (&wx)[4], const R (&wy)[4]) {
     using T = Elem<R>;
-    alignas(64) int k[N<R>];
-    texel_offsets(q, stride, k);
+    const Offsets<R> k = texel_offsets(q, stride);
     if (all_whole(q)) return fetch_rgba<R>(p, k).rgb;
     const R zero(T(0)), inner = wx[1] + wx[2], all4 = corners ? inner + (wx[0] + wx[3]) : R(T(1));
     vec3<R> sum(zero), lo(zero), hi(zero), own(zero);
@@ -177,24 +176,11 @@ struct UniformFetch {
 
 // The pixel that contains q, as offset from (x, y): for values that must not be interpolated (depth, ids, counts).
 template <class R>
-AA_INLINE void nearest_offsets(const Reprojection<R>& q, int stride, int* k) {
+AA_INLINE Offsets<R> nearest_offsets(const Reprojection<R>& q, int stride) {
     const R half(Elem<R>(0.5)), zero(Elem<R>(0)), one(Elem<R>(1));
     const Reprojection<R> n{q.wholeX + select(q.fracX >= half, one, zero),
                             q.wholeY + select(q.fracY >= half, one, zero), zero, zero, q.inside};
-    texel_offsets(n, stride, k);
-}
-template <class R>
-AA_INLINE R gather(const float* p, const int* k) {
-    if constexpr (N<R> == 1) return R(p[k[0]]);
-#ifdef __AVX512F__
-    else if constexpr (std::is_same_v<R, Lanes<float, 16>>)
-        return (typename R::V)_mm512_i32gather_ps(_mm512_loadu_si512(k), p, 4);
-#endif
-    else {
-        R r;
-        for (int i = 0; i < N<R>; i++) r.v[i] = p[k[i]];
-        return r;
-    }
+    return texel_offsets(n, stride);
 }
 // Depth that the surface at (x, y) had in the previous camera, if it did not move by itself
 // (TemporalIn::expectedDepth).
