@@ -85,7 +85,7 @@ struct Offsets {
     AA_INLINE void set(I offsets) {
         const I lane = __builtin_convertvector(iota<R>().v, I), first = offsets - lane;
         together = !mask_bits<R>((Mask<R>)(first != I{} + first[0]));
-        *(I*)k = offsets;
+        *(typename ints_of<N<R>>::unaligned*)k = offsets;
         __asm__("" : "+m"(k));  // read them back one by one: GCC would take the vector apart, at twice the cost
     }
 };

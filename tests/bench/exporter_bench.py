@@ -11,7 +11,8 @@ median of the rounds' own ratios, so that a busy machine slows both sides alike.
 
 Renders include reading them back and bringing them to the arrays that the exporter writes. What sub-samples cost is a
 main pass with them less one without: Cycles transfers the geometry again when the override material comes and when it
-goes, and the latter shows in the main pass. A frame is all that the exporter does for it, to the file on disk.
+goes, and the latter shows in the main pass. The fresh main pass takes the scene in anew, as Blender does unless it is
+told to keep it (use_persistent_data), which the exporter does tell it. A frame is all that the exporter does for it, to the file on disk.
 """
 
 from __future__ import annotations
@@ -159,6 +160,11 @@ def main() -> None:
         plan.passes_of["frames"] = passes
         pictures.frame("frames", number, file)
 
+    def fresh() -> None:
+        scene.render.use_persistent_data = False
+        main_pass(every)
+        scene.render.use_persistent_data = True
+
     count = len(plan.positions)
     works = {
         "main": lambda: main_pass(every),
@@ -168,6 +174,7 @@ def main() -> None:
         "plain+": lambda: (main_pass(every - {"albedo"}), multi_view()),
         "lean+": lambda: (main_pass({"depth", "normal", "object"}), multi_view()),
         "separate": separately,
+        "fresh": fresh,
         "frame": lambda: frame(every),
         "frame+": lambda: frame(every | {"subsamples"}),
     }
@@ -201,6 +208,9 @@ def main() -> None:
         line("", added["lean"], "lean", "the same beside the lean main pass"),
         line(f"{count} separate renders", seconds["separate"], "main", "of the lean main pass"),
         line("", seconds["separate"], "plain", "the same beside the plain main pass"),
+        line("fresh main pass", seconds["fresh"], "main", "nothing kept between frames, as Blender does by default"),
+        line(f"{count} sub-samples", added["main"], "fresh", "beside the fresh main pass"),
+        line(f"{count} separate renders", seconds["separate"], "fresh", "the same beside the fresh main pass"),
         line("frame", seconds["frame"], "frame", "main pass, packed and written"),
         line(f"{count} sub-samples in a frame", added["frame"], "frame", "added to it: mask, packing and writing too"),
     ):  # fmt: skip
