@@ -90,19 +90,26 @@ AA_INLINE void past_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, 
     rings.filtered.continueBeyond(y);
 }
 
+// Rows y - 1, y, y + 1 of the filtered Sobel value, row y of the past.
+template <class T>
+struct MasterWindow {
+    const T *filtered[3], *past[3], *pastDepth;
+    AA_INLINE MasterWindow(const MasterRings<T>& rings, int y)
+        : filtered{rings.filtered(y - 1), rings.filtered(y), rings.filtered(y + 1)},
+          past{rings.past[0](y), rings.past[1](y), rings.past[2](y)},
+          pastDepth(rings.pastDepth(y)) {}
+};
 template <class R>
-AA_INLINE void masterPixel(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int x, int y) {
+AA_INLINE void masterPixel(const MasterArgs& a, const MasterWindow<Elem<R>>& rows, int x, int y) {
     using T = Elem<R>;
     const TemporalIn& in = a.in;
     const R zero(T(0)), one(T(1)), farDepth = R(T(a.farDepth));
     const long o = long(y) * in.stride + x;
     const auto at = [&](int i, int j) __attribute__((always_inline)) { return o + long(j) * in.stride + i; };
     const vec3<R> current = load3<R>(in.color.c, o);
-    const vec3<R> history{load_own<R>(rings.past[0](y) + x), load_own<R>(rings.past[1](y) + x),
-                          load_own<R>(rings.past[2](y) + x)};
-    const R pastDepth = load_own<R>(rings.pastDepth(y) + x);
+    const vec3<R> history = load_own<R>(rows.past, x);
+    const R pastDepth = load_own<R>(rows.pastDepth + x);
     const auto inside = pastDepth == pastDepth;
-    const T* const filtered[3] = {rings.filtered(y - 1), rings.filtered(y), rings.filtered(y + 1)};
 
     // How aliased is this pixel?
     R model(zero), sobel(zero);
@@ -129,7 +136,7 @@ AA_INLINE void masterPixel(const MasterArgs& a, const MasterRings<Elem<R>>& ring
     }
     if (a.useSobel) {
         const auto s = [&](int i, int j) __attribute__((always_inline)) {
-            return load_own<R>(filtered[j + 1] + x + i);
+            return load_own<R>(rows.filtered[j + 1] + x + i);
         };
         const R plus = s(0, 0) + ((s(-1, 0) + s(1, 0)) + (s(0, -1) + s(0, 1)));
         const R square = plus + ((s(-1, -1) + s(1, -1)) + (s(-1, 1) + s(1, 1)));
@@ -149,7 +156,7 @@ AA_INLINE void masterPixel(const MasterArgs& a, const MasterRings<Elem<R>>& ring
     const R k = min(luminance_feedback(luma709(current), luma709(clipped), a.kMin, a.kMax), R(T(in.feedbackCeiling)));
     const vec3<R> mixed = select(inside, blend(current, clipped, k), current);
 
-    store_blend(in, x, y, sanitised(mixed, current, history), load_own<R>(filtered[1] + x));
+    store_blend(in, x, y, sanitised(mixed, current, history), load_own<R>(rows.filtered[1] + x));
     if (!in.debug.feedback) {
         store_debug(in.debug, o, Motion<R>{k, k}, inside, box, history, k);
     } else {
@@ -187,12 +194,14 @@ template <class R>
 AA_INLINE void resolve_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
     const TemporalIn& in = a.in;
     const long o = long(y) * in.stride;
+    const MasterWindow<Elem<R>> rows(rings, y);
+    const Elem<R>* const sobel = rings.sobel(y);
     for (int x = 0; x < in.width; x += N<R>) {
-        prefetch_next_rows<R>(a, x, y);
-        if (in.history)
-            masterPixel<R>(a, rings, x, y);
-        else
-            store_first<R>(in, x, y, load_own<R>(rings.sobel(y) + x));
+        if (in.history) {
+            prefetch_next_rows<R>(a, x, y);
+            masterPixel<R>(a, rows, x, y);
+        } else
+            store_first<R>(in, x, y, load_own<R>(sobel + x));
         store(load<R>(in.depthView + o + x), a.keptDepth + o + x);
     }
     float* const row = in.next + 4 * o;

@@ -176,11 +176,23 @@ struct UniformFetch {
 
 // The pixel that contains q, as offset from (x, y): for values that must not be interpolated (depth, ids, counts).
 template <class R>
-AA_INLINE Offsets<R> nearest_offsets(const Reprojection<R>& q, int stride) {
+AA_INLINE Reprojection<R> nearest_pixel(const Reprojection<R>& q) {
     const R half(Elem<R>(0.5)), zero(Elem<R>(0)), one(Elem<R>(1));
-    const Reprojection<R> n{q.wholeX + select(q.fracX >= half, one, zero),
-                            q.wholeY + select(q.fracY >= half, one, zero), zero, zero, q.inside};
-    return texel_offsets(n, stride);
+    return {q.wholeX + select(q.fracX >= half, one, zero), q.wholeY + select(q.fracY >= half, one, zero), zero, zero,
+            q.inside};
+}
+template <class R>
+AA_INLINE Offsets<R> nearest_offsets(const Reprojection<R>& q, int stride) {
+    return texel_offsets(nearest_pixel(q), stride);
+}
+// The same for planes without a border: on the picture's right and lower edge its last pixel.
+template <class R>
+AA_INLINE Offsets<R> nearest_offsets_within(const TemporalIn& in, const Reprojection<R>& q, int x, int y) {
+    using T = Elem<R>;
+    Reprojection<R> pixel = nearest_pixel(q);
+    pixel.wholeX = min(pixel.wholeX, R(T(in.width - 1 - x)) - iota<R>());
+    pixel.wholeY = min(pixel.wholeY, R(T(in.height - 1 - y)));
+    return texel_offsets(pixel, in.stride);
 }
 // Depth that the surface at (x, y) had in the previous camera, if it did not move by itself
 // (TemporalIn::expectedDepth).

@@ -12,7 +12,8 @@ median of the rounds' own ratios, so that a busy machine slows both sides alike.
 Renders include reading them back and bringing them to the arrays that the exporter writes. What sub-samples cost is a
 main pass with them less one without: Cycles transfers the geometry again when the override material comes and when it
 goes, and the latter shows in the main pass. The fresh main pass takes the scene in anew, as Blender does unless it is
-told to keep it (use_persistent_data), which the exporter does tell it. A frame is all that the exporter does for it, to the file on disk.
+told to keep it (use_persistent_data), which the exporter does tell it. A frame is all that the exporter does for it, to
+the file on disk.
 """
 
 from __future__ import annotations
