@@ -124,6 +124,28 @@ TEST(SmaaT2x, TakesNothingFromOutsideThePreviousFrame) {
     EXPECT_EQ(out.c[0].at(20, 5), 0.5f);  // current - previous: came from x = 12
 }
 
+// The root of a difference of nearly equal speeds would show what float loses in it. Without edges, so that the
+// velocities themselves are the same in both precisions.
+TEST(SmaaT2x, NearlyEqualSpeedsLoseNothing) {
+    const auto frame = [](int number, float grey, float spread) {
+        Frame f = jitteredFrame(Rgb(kW, kH, grey), number, {0, 0}, {3, -2});
+        for (int y = 0; y < kH; y++)
+            for (int x = 0; x < kW; x++) f.motionXPx.at(x, y) += spread * float((x * 7 + y * 13) % 11);
+        return f;
+    };
+    Rgb results[2] = {Rgb(kW, kH), Rgb(kW, kH)};
+    for (size_t i = 0; i < 2; i++) {
+        Exec exec;
+        exec.precision = i == 0 ? Precision::fast : Precision::oracle;
+        const auto method = parseMethod("smaaT2x").create({.width = kW, .height = kH});
+        method->resolve(frame(0, 1, 0), exec, results[i]);
+        method->resolve(frame(1, 0, 1e-6f), exec, results[i]);
+    }
+    for (int y = 0; y < kH; y++)
+        for (int x = 0; x < kW; x++)
+            EXPECT_NEAR(results[0].c[0].at(x, y), results[1].c[0].at(x, y), 5e-7) << x << " " << y;
+}
+
 Frame withSubSamples(double y0, double slope, const std::vector<glm::dvec2>& positionsPx, int number) {
     Frame f = jitteredFrame(shallowEdge(y0, slope, false, {0, 0}), number, {0, 0});
     f.subSamplePositionsPx = positionsPx;
