@@ -6,6 +6,11 @@ bool isaSupported(Isa isa) {
 #ifdef AA_SANITIZED
     if (isa != Isa::v2) return false;  // the only one that is instrumented (CMakeLists.txt)
 #endif
+#ifdef AA_ONE_ISA  // what else was built (CMakeLists.txt, AA_ISAS)
+#define AA_TEXT_OF(x) #x
+#define AA_TEXT(x) AA_TEXT_OF(x)
+    if (!name(isa).ends_with(AA_TEXT(AA_ONE_ISA))) return false;
+#endif
     switch (isa) {
         case Isa::v4:
             return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&

@@ -32,6 +32,16 @@ inline constexpr int kRingMargin = 16;
 
 // In a method's header: AA_KERNEL_TABLE(FxaaKernels, fxaaKernels) declares v2::, v3:: and v4::fxaaKernels and
 // aa::fxaaKernelsFor(isa). In its .kernel.cpp: AA_DEFINE_TABLE(FxaaKernels, fxaaKernels) = {AA_ROWS(fxaaRows), ...};
+// Where the build holds one instruction set alone (AA_ONE_ISA), every isa means that one.
+#ifdef AA_ONE_ISA
+#define AA_KERNEL_TABLE(Type, table)                                    \
+    namespace AA_ONE_ISA {                                              \
+    extern const Type table;                                            \
+    }                                                                   \
+    namespace aa {                                                      \
+    inline const Type& table##For(Isa) { return ::AA_ONE_ISA::table; } \
+    }
+#else
 #define AA_KERNEL_TABLE(Type, table)                                                      \
     namespace v2 {                                                                        \
     extern const Type table;                                                              \
@@ -47,6 +57,7 @@ inline constexpr int kRingMargin = 16;
         return isa == Isa::v4 ? ::v4::table : isa == Isa::v3 ? ::v3::table : ::v2::table; \
     }                                                                                     \
     }
+#endif
 #define AA_DEFINE_TABLE(Type, table) \
     namespace AA_ARCH {              \
     extern const Type table;         \
