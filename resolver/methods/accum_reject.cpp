@@ -15,6 +15,7 @@ class AccumReject : public Method {
         const AccumRejectKernels& kernels = accumRejectKernelsFor(exec.isa);
         AccumRejectArgs args{};
         args.in = temporal::frameView(frame, frame.colorLinear);
+        if (p.flag("unjitter")) temporal::unjitter(frame, args.in);
         args.in.out = view(out);
         history_.begin(frame, "accumReject", args.in);
         args.in.dilation = temporal::dilation(p);
@@ -37,19 +38,24 @@ class AccumReject : public Method {
             args.previousId = previousId_.row(0);
         }
         args.expected = expectedDepth(frame);
+        if (p.flag("unjitter")) {
+            const glm::ivec2 texel = temporal::unjitteredTexel(frame);
+            args.expected = temporal::moved(args.expected, texel);
+            if (args.objectId) args.objectId += ptrdiff_t(texel.y) * args.in.stride + texel.x;
+        }
         args.depthTest = test_;
         args.bothSides = p.flag("bothSides");
         args.magnification = p.flag("magnification");
         args.nMaxStatic = p.realf("nMaxStatic");
         args.nMaxMoving = p.realf("nMaxMoving");
-        runKernel(kernels.resolve, exec, args, frame.height);
+        temporal::runTemporal(kernels.resolve, exec, args);
 
         history_.end({}, exec);
         std::swap(residual_[0], residual_[1]);
         residual_[0].fillBorder();
         if (p.flag("objectIds")) previousId_ = frame.objectId;
         if (test_ == DepthTest::window) {
-            const DilateMaxArgs d{frame.depthView.row(0), farthest_.row(0), farthest_.stride(), frame.width};
+            const DilateMaxArgs d{args.in.depthView, farthest_.row(0), farthest_.stride(), frame.width};
             runKernel(kernels.farthest, exec, d, frame.height);
             farthest_.fillBorder();
         }
@@ -99,6 +105,7 @@ MethodDescriptor accumRejectDescriptor() {
                              "methods/06 s.6.12"),
                    realParam("nMaxMoving", "16", 1, 16777215, "most frames in the mean of a moving pixel",
                              "methods/06 s.6.12"),
+                   temporal::unjitterParam(false, "methods/06 B0"),
                    temporal::dilationParam("closest3x3", "methods/06 B2"),
                    temporal::historyFilterParam("bilinear", "methods/06 s.6.12")},
         .create = [](const Params& p, const ShotInfo&) { return std::make_unique<AccumReject>(p); },

@@ -76,7 +76,7 @@ __attribute__((flatten)) void accumRejectRows(const AccumRejectArgs& a, int y0, 
                 continue;
             }
             const long o = long(y) * a.in.stride + x;
-            store_first<R>(a.in, x, y, load<R>(a.in.depthView + o));
+            store_first<R>(a.in, x, y, load3<R>(a.in.color.c, o), load<R>(a.in.depthView + o));
             store_rgba(vec3<R>(R(T(0))), R(T(1)), a.nextResidual + 4 * o);
             if (a.debugCount) store(R(T(1)), a.debugCount + o);
         }

@@ -39,6 +39,8 @@ class Fsr2n : public Method {
         const Fsr2nKernels& kernels = fsr2nKernelsFor(exec.isa);
         Fsr2nArgs args{};
         args.in = temporal::frameView(frame, frame.colorLinear);
+        if (p.flag("unjitter")) temporal::unjitter(frame, args.in);
+        const glm::dvec2 jitterPx{args.in.jitterXPx, args.in.jitterYPx};
         args.in.out = view(out);
         history_.begin(frame, "fsr2n", args.in);
         args.in.feedbackCeiling = temporal::feedbackCeiling(p, history_.framesSinceReset());
@@ -54,9 +56,9 @@ class Fsr2n : public Method {
         args.nearest = nearest_.row(0);
         args.previousLuma = luma_[0].row(0);
         args.nextLuma = luma_[1].row(0);
-        fillWeights(args.lanczos, frame.jitterPx, lanczos2);
-        fillWeights(args.still, frame.jitterPx, [](double d) { return std::exp(-2 * d * d); });
-        fillWeights(args.moving, frame.jitterPx, [](double d) { return std::exp(-3 * d * d); });
+        fillWeights(args.lanczos, jitterPx, lanczos2);
+        fillWeights(args.still, jitterPx, [](double d) { return std::exp(-2 * d * d); });
+        fillWeights(args.moving, jitterPx, [](double d) { return std::exp(-3 * d * d); });
         args.weight = p.realf("weight");
         args.boxScale = p.realf("boxScale");
         args.lockDecay = lockDecay_;
@@ -71,7 +73,7 @@ class Fsr2n : public Method {
                     *plane = PlaneF(frame.width, frame.height);
             args.debugDepthClip = depthClip_.row(0), args.debugLock = lock_.row(0);
         }
-        runKernel(kernels.resolve, exec, args, frame.height);
+        temporal::runTemporal(kernels.resolve, exec, args);
         history_.end({}, exec);
         std::swap(luma_[0], luma_[1]);
         luma_[0].fillBorder();
@@ -108,7 +110,8 @@ MethodDescriptor fsr2nDescriptor() {
         .source = "AMD FSR 2 (public source), not identical to it; methods/06 s.6.14",
         .passes = Pass::color | Pass::depth | Pass::motion,
         .temporal = true,
-        .params = {realParam("weight", "0.1", 0.001, 1, "weight of the current colour against 1 of the history",
+        .params = {temporal::unjitterParam(false, "methods/06 B0; the filter of the current frame knows its jitter"),
+                   realParam("weight", "0.1", 0.001, 1, "weight of the current colour against 1 of the history",
                              "methods/06 s.6.14; 0.1 is where FSR 2's limit of 10 times the weight is neutral"),
                    realParam("boxScale", "1", 1, 20,
                              "half width of the colour box at rest, in standard deviations; 1 in motion",

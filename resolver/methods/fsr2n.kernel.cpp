@@ -186,7 +186,7 @@ __attribute__((flatten)) void fsr2nRows(const Fsr2nArgs& a, int y0, int y1) {
             }
             const long o = long(y) * a.in.stride + x;
             const R zero(Elem<R>(0)), luma = to_ycocg(load3<R>(a.in.color.c, o)).x;
-            store_first<R>(a.in, x, y, zero);
+            store_first<R>(a.in, x, y, load3<R>(a.in.color.c, long(y) * a.in.stride + x), zero);
             store(select(finite(luma), luma, zero), a.nextLuma + o);
             if (a.debugLock) store(zero, a.debugDepthClip + o), store(zero, a.debugLock + o);
         }

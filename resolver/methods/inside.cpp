@@ -21,6 +21,7 @@ class Inside : public Method {
                         p.flag("unjitterNeighbourhood"),
                         temporal::dilation(p) == Dilation::none && p.flag("unjitterReprojection"),
                         p.flag("ycocg"),
+                        temporal::luminance(p),
                         p.realf("motionBlur"),
                         uint32_t(frame.number)};
         args.in.out = view(out);
@@ -64,6 +65,7 @@ MethodDescriptor insideDescriptor() {
                    flagParam("unjitterReprojection", false, "fetch the motion there too", "Pedersen 2016",
                              "dilation=none"),
                    flagParam("ycocg", false, "work in YCoCg", "Pedersen 2016: not in the shipped game"),
+                   temporal::luminanceParam("bt709", "methods/06 s.6.3; inside: as in Pedersen's source", "ycocg=off"),
                    temporal::clipTargetParam("aabbCentre", "Pedersen 2016"),
                    temporal::dilationParam("closest3x3", "Pedersen 2016"),
                    temporal::historyFilterParam("bilinear", "Pedersen 2016"), temporal::outsideParam(),

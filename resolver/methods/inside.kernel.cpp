@@ -67,7 +67,7 @@ AA_INLINE void insidePixel(const InsideArgs& a, bool ycocg, bool unjitterWindow,
                        unjittered(in.color.c[2] + n, in.stride)};
     };
     const auto space = [&](vec3<R> c) __attribute__((always_inline)) { return ycocg ? to_ycocg(c) : c; };
-    const auto luma = [&](vec3<R> c) __attribute__((always_inline)) { return ycocg ? c.x : luma709(c); };
+    const auto luma = [&](vec3<R> c) __attribute__((always_inline)) { return ycocg ? c.x : luminance(c, a.luminance); };
     const vec3<R> currentRgb = fetch(a.unjitterColor, 0, 0), current = space(currentRgb);
 
     const Motion<R> motion = a.unjitterReprojection ? Motion<R>{unjittered(in.motionXPx + o, in.stride),

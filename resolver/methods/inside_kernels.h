@@ -9,8 +9,9 @@ struct InsideArgs {
     InsideNeighbourhood neighbourhood;
     ClipTarget clipTarget;
     bool unjitterColor, unjitterNeighbourhood, unjitterReprojection, ycocg;
-    float motionBlur;  // share of the motion along which the screen is blurred; 0: not at all
-    uint32_t frame;    // seeds the noise of the blur
+    Luminance luminance;  // of the feedback, unless ycocg
+    float motionBlur;     // share of the motion along which the screen is blurred; 0: not at all
+    uint32_t frame;       // seeds the noise of the blur
 };
 struct InsideKernels {
     RowKernel<InsideArgs> resolve;

@@ -19,6 +19,7 @@ class Karis : public Method {
         const Params& p = params_;
         KarisArgs args{};
         args.in = temporal::frameView(frame, frame.colorLinear);
+        if (p.flag("unjitter")) temporal::unjitter(frame, args.in);
         args.pq = pq_ ? &pqTables() : nullptr;
         args.in.out = view(out);
         history_.begin(frame, id_, args.in);
@@ -38,20 +39,11 @@ class Karis : public Method {
         args.antiFlicker = AntiFlicker(p.choiceIndex("antiFlicker"));
         for (int j = -1; j <= 1; j++)
             for (int i = -1; i <= 1; i++) {
-                const double dx = i + frame.jitterPx.x, dy = j + frame.jitterPx.y;
+                const double dx = i + double(args.in.jitterXPx), dy = j + double(args.in.jitterYPx);
                 args.filter[(j + 1) * 3 + i + 1] = float(std::exp(-2.29 * (dx * dx + dy * dy)));  // Karis 2014
             }
         args.in.debug = debug_.begin(*this, frame.width, frame.height);
-        Scratch scratch(kKarisScratchRows, args.in.stride);
-        const auto resolve = rowsOf(karisKernelsFor(exec.isa).resolve, exec.precision);
-        forRows(
-            exec, frame.height,
-            [&](int y0, int y1) {
-                KarisArgs a = args;
-                a.scratch = scratch.local();
-                resolve(a, y0, y1);
-            },
-            kRowsPerCall);
+        temporal::runTemporal(karisKernelsFor(exec.isa).resolve, exec, args, kRowsPerCall, kKarisScratchRows);
         history_.end(temporal::historyStorage(p), exec);
     }
     size_t stateBytes() const override { return history_.bytes(); }
@@ -110,6 +102,7 @@ MethodDescriptor descriptor(const Preset& d) {
                        choiceParam("antiFlicker", d.antiFlicker, {"none", "karis", "falcor"}, "rule that adapts alpha",
                                    "public UE4.x; Falcor"),
                        flag("inverseLuminance", d.inverseLuminance, "blend with weights 1/(1+Y)", d.source),
+                       temporal::unjitterParam(false, "methods/06 B0; not in the source"),
                        temporal::dilationParam(d.dilation, d.source), temporal::historyFilterParam(d.history, d.source),
                        temporal::warmupParam(), temporal::historyBitsParam(Space::linear), temporal::ditherParam()},
             .create = [id = d.id, pq = d.id == "donut"](const Params& p,

@@ -9,7 +9,7 @@
 namespace aa {
 namespace {
 
-constexpr int kRowsPerCall = 64;  // each computes seven rows of its neighbours again, partly
+constexpr int kRowsPerCall = 64;  // each computes nine rows of its neighbours again, partly
 
 class Master : public Method {
   public:
@@ -18,6 +18,17 @@ class Master : public Method {
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         const Params& p = params_;
         TemporalIn in = temporal::frameView(frame, frame.colorEncoded);
+        MasterArgs m{};
+        m.depthOfTexel = in.depthView;
+        m.objectId = frame.objectId.row(0);
+        m.expected = expectedDepth(frame);
+        if (p.flag("unjitter")) {
+            const glm::ivec2 texel = temporal::unjitteredTexel(frame);
+            m.texelX = texel.x, m.texelY = texel.y;
+            m.objectId += ptrdiff_t(texel.y) * in.stride + texel.x;
+            m.expected = temporal::moved(m.expected, texel);
+            temporal::unjitter(frame, in);
+        }
         if (sharpen_ == SharpenKernel::none) in.out = view(out);
         history_.begin(frame, "master", in);
         in.feedbackCeiling = temporal::feedbackCeiling(p, history_.framesSinceReset());
@@ -25,21 +36,17 @@ class Master : public Method {
         in.filter = temporal::historyFilter(p);
         in.debug = debug_.begin(*this, frame.width, frame.height);
         fit(frame.width, frame.height);
-        const float farDepth = farDepthOf(frame);
-        MasterArgs m{};
         m.in = in;
         m.albedoEncoded = view(frame.albedoEncoded);
-        m.objectId = frame.objectId.row(0);
         std::swap(depth_[0], depth_[1]);
         m.keptDepth = depth_[0].row(0), m.previousDepth = depth_[1].row(0);
-        m.expected = expectedDepth(frame);
         m.weightAlbedo = p.realf("wU"), m.weightLit = p.realf("wL");
-        m.depthScale = p.choice("sobelDepth") == "zfar" ? 1.0f / farDepth : 1.0f;
-        m.bt601 = p.choice("luminance") == "bt601";
+        m.depthUnit = DepthUnit(p.choiceIndex("depthUnit"));
+        m.luminance = temporal::luminance(p);
         m.temporalSobel = p.flag("sobelTemporal");
         m.samePixelDepth = p.choice("pastDepth") == "samePixel";
         m.kMin = p.realf("kmin"), m.kMax = p.realf("kmax");
-        m.farDepth = farDepth;
+        m.farDepth = farDepthOf(frame);
         m.depthThreshold = p.realf("depthThreshold");
         m.minAlias = p.realf("minAlias");
         m.clipTarget = temporal::clipTarget(p);
@@ -141,8 +148,10 @@ MethodDescriptor masterDescriptor() {
         .input = Space::encoded,
         .output = Space::encoded,
         .temporal = true,
-        .params = {temporal::kMinParam("0.88", "methods/11 nr 5"),
-                   temporal::kMaxParam("0.97", "methods/11 nr 5"),
+        .params = {temporal::unjitterParam(true, "seed 000 App. B; methods/06 B0"),
+                   temporal::kMinParam("0.925", "the author's public program; methods/11 nr 5"),
+                   temporal::kMaxParam("0.979", "the author's public program; methods/11 nr 5"),
+                   temporal::luminanceParam("quarter", "the author's public program; methods/11 nr 9"),
                    temporal::sharpenParam("norm", "seed 000 eq 4.17"),
                    flagParam("model", true, "use the share of neighbours with another object id", "seed 000 eq 4.1"),
                    flagParam("depth", true, "use the depth pseudo-variance", "seed 000 eq 4.5"),
@@ -153,17 +162,16 @@ MethodDescriptor masterDescriptor() {
                              "sobel=on"),
                    realParam("wL", "0.7", 0, 10, "weight of the lit colour's Sobel magnitude", "seed 000 eq 4.9",
                              "sobel=on"),
-                   choiceParam("sobelDepth", "zfar", {"zfar", "world"},
-                               "unit of the depth under Sobel: share of the far plane, or scene units",
-                               "methods/11 nr 9", "sobel=on"),
-                   choiceParam("luminance", "bt709", {"bt709", "bt601"}, "luminance under Sobel, of encoded colour",
-                               "methods/11 nr 9", "sobel=on"),
-                   realParam("depthThreshold", "0.002", 0, 1e6, "least depth difference that is an edge, scene units",
+                   choiceParam("depthUnit", "normalised", {"normalised", "zfar", "world"},
+                               "unit of all depths here: 2z/(z+far) in 0..1, z/far in 0..1, scene units",
+                               "the author's public program; methods/11 nr 8, 9"),
+                   realParam("depthThreshold", "0.002", 0, 1e6, "least depth difference that is an edge, in depthUnit",
                              "seed 000 s.4.3.2"),
                    flagParam("relativeThreshold", false, "depthThreshold times the mean depth, if that exceeds 1",
-                             "methods/06 s.6.5 (ours)"),
-                   choiceParam("pastDepth", "reprojected", {"reprojected", "samePixel"},
-                               "where the depth of the last frame is read", "methods/11 nr 8", "depthTemporal=on"),
+                             "methods/06 s.6.5 (ours)", "depthUnit=world"),
+                   choiceParam("pastDepth", "samePixel", {"samePixel", "reprojected"},
+                               "where the depth of the last frame is read",
+                               "the author's public program; methods/11 nr 8", "depthTemporal=on"),
                    flagParam("compensate", false, "subtract the depth change that the camera alone makes",
                              "methods/11 nr 8 (recommended; off as printed)", "depthTemporal=on"),
                    realParam("minAlias", "0", 0, 1, "floor of aliasedValue; 0 lets flat interiors keep the jitter",

@@ -10,16 +10,65 @@ namespace AA_ARCH {
 template <class T>
 struct MasterRings {
     Ring<T, 4> luminanceAlbedo, luminanceLit, sobel, filtered;
-    Ring<T, 2> past[3], pastDepth;  // colour, and depth: NaN where history is outside
+    Ring<T, 8> depth;                // in its unit, at the texels of the jittered frame
+    Ring<T, 4> current[3], sobelAt;  // read at p - jitter; of a picture that has a row and a column more on each side
+    Ring<T, 2> past[3], pastDepth;   // colour, and depth: NaN where history is outside
 };
+
+template <class R>
+AA_INLINE R in_depth_unit(const MasterArgs& a, R depthView) {
+    using T = Elem<R>;
+    const R far(T(a.farDepth)), z = min(far, depthView);
+    if (a.depthUnit == DepthUnit::world) return z;
+    return a.depthUnit == DepthUnit::zfar ? z * R(T(1) / T(a.farDepth)) : (z + z) / (z + far);
+}
+template <class R>
+AA_INLINE void depth_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
+    Elem<R>* const row = rings.depth(y);
+    for (int x = 0; x < a.in.width; x += N<R>)
+        store(in_depth_unit(a, load<R>(a.depthOfTexel + long(y) * a.in.stride + x)), row + x);
+    rings.depth.continueBeyond(y);
+}
+// Calls one(x) for one value at x = -1 and x = width, and lanes(x) for all between.
+template <class R, class Lanes, class One>
+AA_INLINE void with_both_ends(int width, const Lanes& lanes, const One& one) {
+    for (int x = 0; x < width; x += N<R>) lanes(x);
+    one(-1), one(width);
+}
+// B0 of the colours, row y of -1 .. height.
+template <class R>
+AA_INLINE void current_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
+    using T = Elem<R>;
+    const UniformFetch<R> fetch(a.in.readXPx, a.in.readYPx);
+    const UniformFetch<T> fetchOne(a.in.readXPx, a.in.readYPx);
+    for (int c = 0; c < 3; c++) {
+        T* const row = rings.current[c](y + 1);
+        const float* const from = a.in.color.c[c] + long(y) * a.in.stride;
+        with_both_ends<R>(
+            a.in.width, [&](int x) __attribute__((always_inline)) { store(fetch(from + x, a.in.stride), row + x); },
+            [&](int x) __attribute__((always_inline)) { row[x] = fetchOne(from + x, a.in.stride); });
+    }
+}
+// And of the Sobel values.
+template <class R>
+AA_INLINE void sobel_at_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
+    using T = Elem<R>;
+    const UniformFetch<R> fetch(a.in.readXPx, a.in.readYPx);
+    const UniformFetch<T> fetchOne(a.in.readXPx, a.in.readYPx);
+    T* const row = rings.sobelAt(y + 1);
+    const T *const upper = rings.sobel(y + fetch.dy), *const lower = rings.sobel(y + fetch.dy + 1);
+    with_both_ends<R>(
+        a.in.width, [&](int x) __attribute__((always_inline)) { store(fetch(upper + x, lower + x), row + x); },
+        [&](int x) __attribute__((always_inline)) { row[x] = fetchOne(upper + x, lower + x); });
+}
 
 template <class R>
 AA_INLINE void luminance_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
     Elem<R>*const albedo = rings.luminanceAlbedo(y), *const lit = rings.luminanceLit(y);
     for (int x = 0; x < a.in.width; x += N<R>) {
         const long o = long(y) * a.in.stride + x;
-        store(luminance(load3<R>(a.albedoEncoded.c, o), a.bt601), albedo + x);
-        store(luminance(load3<R>(a.in.color.c, o), a.bt601), lit + x);
+        store(luminance(load3<R>(a.albedoEncoded.c, o), a.luminance), albedo + x);
+        store(luminance(load3<R>(a.in.color.c, o), a.luminance), lit + x);
     }
     rings.luminanceAlbedo.continueBeyond(y);
     rings.luminanceLit.continueBeyond(y);
@@ -28,25 +77,20 @@ AA_INLINE void luminance_row(const MasterArgs& a, const MasterRings<Elem<R>>& ri
 template <class R>
 AA_INLINE void sobel_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
     using T = Elem<R>;
-    const R farDepth = R(T(a.farDepth));
     T* const sobel = rings.sobel(y);
     const T *const albedo[3] = {rings.luminanceAlbedo(y - 1), rings.luminanceAlbedo(y), rings.luminanceAlbedo(y + 1)},
-                   *const lit[3] = {rings.luminanceLit(y - 1), rings.luminanceLit(y), rings.luminanceLit(y + 1)};
+                   *const lit[3] = {rings.luminanceLit(y - 1), rings.luminanceLit(y), rings.luminanceLit(y + 1)},
+                   *const depth[3] = {rings.depth(y - 1), rings.depth(y), rings.depth(y + 1)};
     for (int x = 0; x < a.in.width; x += N<R>) {
         if (!a.useSobel) {
             store(R(T(0)), sobel + x);
             continue;
         }
-        const long o = long(y) * a.in.stride + x;
         const auto magnitude = [&](const T* const(&rows)[3]) __attribute__((always_inline)) {
             return sobel_magnitude<R>([&](int i, int j)
                                           __attribute__((always_inline)) { return load_own<R>(rows[j + 1] + x + i); });
         };
-        const R depth = sobel_magnitude<R>([&](int i, int j) __attribute__((always_inline)) {
-            return min(farDepth, load<R>(a.in.depthView + o + long(j) * a.in.stride + i));
-        });
-        const R sum =
-            magnitude(albedo) * R(T(a.weightAlbedo)) + magnitude(lit) * R(T(a.weightLit)) + depth * R(T(a.depthScale));
+        const R sum = magnitude(albedo) * R(T(a.weightAlbedo)) + magnitude(lit) * R(T(a.weightLit)) + magnitude(depth);
         store(sobel_curve(sum), sobel + x);
     }
     rings.sobel.continueBeyond(y);
@@ -58,7 +102,7 @@ AA_INLINE void past_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, 
     using T = Elem<R>;
     const TemporalIn& in = a.in;
     T* const filteredRow = rings.filtered(y);
-    const T* const sobel[3] = {rings.sobel(y - 1), rings.sobel(y), rings.sobel(y + 1)};
+    const T* const sobel[3] = {rings.sobelAt(y), rings.sobelAt(y + 1), rings.sobelAt(y + 2)};
     T *const pastX = rings.past[0](y), *const pastY = rings.past[1](y), *const pastZ = rings.past[2](y),
              *const pastDepth = rings.pastDepth(y);
     for (int x = 0; x < in.width; x += N<R>) {
@@ -90,23 +134,31 @@ AA_INLINE void past_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, 
     rings.filtered.continueBeyond(y);
 }
 
-// Rows y - 1, y, y + 1 of the filtered Sobel value, row y of the past.
+// Rows y - 1, y, y + 1 of the current colours, of the depth nearest to them and of the filtered Sobel value, row y of
+// the past.
 template <class T>
 struct MasterWindow {
-    const T *filtered[3], *past[3], *pastDepth;
-    AA_INLINE MasterWindow(const MasterRings<T>& rings, int y)
+    const T *current[3][3], *depth[3], *filtered[3], *past[3], *pastDepth;
+    AA_INLINE MasterWindow(const MasterArgs& a, const MasterRings<T>& rings, int y)
         : filtered{rings.filtered(y - 1), rings.filtered(y), rings.filtered(y + 1)},
           past{rings.past[0](y), rings.past[1](y), rings.past[2](y)},
-          pastDepth(rings.pastDepth(y)) {}
+          pastDepth(rings.pastDepth(y)) {
+        for (int j = 0; j < 3; j++) {
+            for (int c = 0; c < 3; c++) current[j][c] = rings.current[c](y + j);
+            depth[j] = rings.depth(y + a.texelY + j - 1) + a.texelX;
+        }
+    }
 };
 template <class R>
 AA_INLINE void masterPixel(const MasterArgs& a, const MasterWindow<Elem<R>>& rows, int x, int y) {
     using T = Elem<R>;
     const TemporalIn& in = a.in;
-    const R zero(T(0)), one(T(1)), farDepth = R(T(a.farDepth));
+    const R zero(T(0)), one(T(1));
     const long o = long(y) * in.stride + x;
-    const auto at = [&](int i, int j) __attribute__((always_inline)) { return o + long(j) * in.stride + i; };
-    const vec3<R> current = load3<R>(in.color.c, o);
+    const auto colour = [&](int i, int j) __attribute__((always_inline)) {
+        return load_own<R>(rows.current[j + 1], x + i);
+    };
+    const vec3<R> current = colour(0, 0);
     const vec3<R> history = load_own<R>(rows.past, x);
     const R pastDepth = load_own<R>(rows.pastDepth + x);
     const auto inside = pastDepth == pastDepth;
@@ -116,18 +168,16 @@ AA_INLINE void masterPixel(const MasterArgs& a, const MasterWindow<Elem<R>>& row
     PseudoVariances<R> variance{zero, zero};
     if (a.useModel)
         model = model_average<R>([&](int i, int j) __attribute__((always_inline)) {
-            return ids_differ<R>(a.objectId + at(i, j), a.objectId + o);
+            return ids_differ<R>(a.objectId + o + long(j) * in.stride + i, a.objectId + o);
         });
     if (a.useDepth || a.useDepthTemporal) {
-        const R depth = min(farDepth, load<R>(in.depthView + o));
+        const R depth = load_own<R>(rows.depth[1] + x);
         const DepthWindow<R> window = depth_window<R>([&](int i, int j) __attribute__((always_inline)) {
-            return min(farDepth, load<R>(in.depthView + at(i, j)));
+            return load_own<R>(rows.depth[j + 1] + x + i);
         });
-        R past = min(farDepth, pastDepth) - depth;
-        if (a.compensate) {
-            const R expected = min(farDepth, expected_previous_depth(a.expected, load<R>(in.depthView + o), x, y));
-            past = min(farDepth, pastDepth) - expected;
-        }
+        R past = pastDepth - depth;
+        if (a.compensate)
+            past = pastDepth - in_depth_unit(a, expected_previous_depth(a.expected, load<R>(in.depthView + o), x, y));
         R threshold(T(a.depthThreshold));
         if (a.relativeThreshold) threshold = threshold * max(depth + window.mean, one);
         variance = pseudo_variances(window, past, threshold);
@@ -145,15 +195,16 @@ AA_INLINE void masterPixel(const MasterArgs& a, const MasterWindow<Elem<R>>& row
     const R aliased = max(saturate(sobel + variance.depth + variance.depthTemporal + model), R(T(a.minAlias)));
 
     // The box: loose where aliased, the current colour alone where not (eqs 4.15, 4.16).
-    const Neighbours<R> window =
-        neighbours<R>([&](int i, int j) __attribute__((always_inline)) { return load3<R>(in.color.c, at(i, j)); });
+    const Neighbours<R> window = neighbours<R>(colour);
     const vec3<R> low = mix(window.plus.lo, window.square.lo, aliased),
                   high = mix(window.plus.hi, window.square.hi, aliased),
                   mean = mix(window.meanPlus, window.meanSquare, aliased);
     const Box<R> box{mix(current, low, aliased), mix(current, high, aliased)};
     const vec3<R> clipped = constrain(box, a.clipTarget, mean, current, history);
 
-    const R k = min(luminance_feedback(luma709(current), luma709(clipped), a.kMin, a.kMax), R(T(in.feedbackCeiling)));
+    const R k =
+        min(luminance_feedback(luminance(current, a.luminance), luminance(clipped, a.luminance), a.kMin, a.kMax),
+            R(T(in.feedbackCeiling)));
     const vec3<R> mixed = select(inside, blend(current, clipped, k), current);
 
     store_blend(in, x, y, sanitised(mixed, current, history), load_own<R>(rows.filtered[1] + x));
@@ -179,6 +230,7 @@ AA_INLINE void prefetch_next_rows(const MasterArgs& a, int x, int y) {
         __builtin_prefetch(in.color.c[c] + first, 0, 2);
         if (a.sharpened.c[c]) __builtin_prefetch(a.sharpened.c[c] + own, 0, 2);
     }
+    __builtin_prefetch(a.depthOfTexel + first, 0, 2);
     __builtin_prefetch(in.depthView + sobel, 0, 2);
     __builtin_prefetch(in.motionXPx + past + in.stride, 0, 2);
     __builtin_prefetch(in.motionYPx + past + in.stride, 0, 2);
@@ -194,15 +246,15 @@ template <class R>
 AA_INLINE void resolve_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
     const TemporalIn& in = a.in;
     const long o = long(y) * in.stride;
-    const MasterWindow<Elem<R>> rows(rings, y);
-    const Elem<R>* const sobel = rings.sobel(y);
+    const MasterWindow<Elem<R>> rows(a, rings, y);
+    const Elem<R>* const sobel = rings.sobelAt(y + 1);
     for (int x = 0; x < in.width; x += N<R>) {
         if (in.history) {
             prefetch_next_rows<R>(a, x, y);
             masterPixel<R>(a, rows, x, y);
         } else
-            store_first<R>(in, x, y, load_own<R>(sobel + x));
-        store(load<R>(in.depthView + o + x), a.keptDepth + o + x);
+            store_first<R>(in, x, y, load_own<R>(rows.current[1], x), load_own<R>(sobel + x));
+        store(load_own<R>(rows.depth[1] + x), a.keptDepth + o + x);
     }
     float* const row = in.next + 4 * o;
     for (int c = 0; c < 4; c++) row[c - 4] = row[c], row[4 * in.width + c] = row[4 * in.width - 4 + c];
@@ -223,18 +275,24 @@ __attribute__((flatten)) void masterRows(const MasterArgs& a, int y0, int y1) {
     MasterRings<T> rings;
     RingMaker<T> maker(a.scratch, in.stride, width, height);
     maker.make(rings.luminanceAlbedo), maker.make(rings.luminanceLit);
-    maker.make(rings.sobel), maker.make(rings.filtered);
+    maker.make(rings.sobel), maker.make(rings.filtered), maker.make(rings.depth);
     for (auto& channel : rings.past) maker.make(channel);
     maker.make(rings.pastDepth);
+    maker.height = height + 2;
+    for (auto& channel : rings.current) maker.make(channel);
+    maker.make(rings.sobelAt);
 
     // A step runs ahead of the last one by the margin that the windows between them add up to.
-    const int past = in.history ? 1 : 0, sobel = 2 * past, luminance = sobel + 1;
-    const auto within = [&](int y, int margin) __attribute__((always_inline)) {
-        return y >= 0 && y < height && y >= y0 - margin && y < y1 + margin;
+    const int past = in.history ? 1 : 0, sobelAt = 2 * past, sobel = sobelAt + 1, luminance = sobel + 1;
+    const auto within = [&](int y, int margin, int beyond = 0) __attribute__((always_inline)) {
+        return y >= -beyond && y < height + beyond && y >= y0 - margin && y < y1 + margin;
     };
     for (int y = y0 - 2 * luminance; y <= y1; y++) {
         if (a.useSobel && within(y + luminance, luminance)) luminance_row<R>(a, rings, y + luminance);
+        if (within(y + luminance, luminance)) depth_row<R>(a, rings, y + luminance);
         if (within(y + sobel, sobel)) sobel_row<R>(a, rings, y + sobel);
+        if (within(y + sobelAt, sobelAt, 1)) sobel_at_row<R>(a, rings, y + sobelAt);
+        if (within(y + 1, 1, 1)) current_row<R>(a, rings, y + 1);
         if (in.history && within(y + past, past)) past_row<R>(a, rings, y + past);
         if (within(y, 0)) resolve_row<R>(a, rings, y);
         const int r = y - 1;

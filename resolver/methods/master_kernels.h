@@ -3,18 +3,23 @@
 
 namespace aa {
 
-inline constexpr int kMasterScratchRows = 24;
+enum class DepthUnit { normalised, zfar, world };  // 2z / (z + far), z / far, scene units
+inline constexpr int kMasterScratchRows = 48;
 struct MasterArgs {
-    TemporalIn in;  // encoded colour; alpha of the history: the Sobel value, filtered over time
+    TemporalIn in;  // encoded colour as it is; alpha of the history: the Sobel value, filtered over time
     RgbIn albedoEncoded;
     const uint32_t* objectId;
     const float* previousDepth;
-    float* keptDepth;  // this frame's depth for the next one
+    float* keptDepth;  // this frame's depth for the next one, in depthUnit
     ExpectedDepth expected;
-    float weightAlbedo, weightLit, depthScale, farDepth;
+    const float* depthOfTexel;  // in.depthView before it was moved to the texel nearest to p - jitter,
+    int texelX, texelY;         // by this much
+    float weightAlbedo, weightLit, farDepth;
+    DepthUnit depthUnit;  // of Sobel, pseudo-variances and their threshold
+    Luminance luminance;
     float kMin, kMax, depthThreshold, minAlias;
     ClipTarget clipTarget;
-    bool bt601, temporalSobel, samePixelDepth, relativeThreshold, compensate;
+    bool temporalSobel, samePixelDepth, relativeThreshold, compensate;
     RgbOut
         sharpened;  // the sharpened blend, or null; but not the call's first and last row, whose neighbours are others'
     float sharpenGain;  // as of SharpenHistoryArgs

@@ -52,6 +52,7 @@ class Raptor : public Method {
         Rgb& blend = sharpen > 0 ? blend_ : out;
         RaptorArgs args{};
         args.in = temporal::frameView(frame, frame.colorLinear);
+        if (p.flag("unjitter")) temporal::unjitter(frame, args.in);
         args.in.out = view(blend);
         history_.begin(frame, "raptor", args.in);
         args.in.feedbackCeiling = temporal::feedbackCeiling(p, history_.framesSinceReset());
@@ -59,9 +60,9 @@ class Raptor : public Method {
         args.in.filter = temporal::historyFilter(p);
         for (int j = -1; j <= 1; j++)
             for (int i = -1; i <= 1; i++)
-                args.filter[(j + 1) * 3 + i + 1] =
-                    float(filterWeight(CurrentFilter(p.choiceIndex("currentFilter")),
-                                       p.choice("filterDomain") == "printed", i, j, frame.jitterPx));
+                args.filter[(j + 1) * 3 + i + 1] = float(filterWeight(CurrentFilter(p.choiceIndex("currentFilter")),
+                                                                      p.choice("filterDomain") == "printed", i, j,
+                                                                      {args.in.jitterXPx, args.in.jitterYPx}));
         args.constraint = RaptorConstraint(p.choiceIndex("constraint"));
         args.luminanceDifference = LuminanceDifference(p.choiceIndex("lumaDiff"));
         args.temporalFiltering = p.flag("temporalFiltering");
@@ -70,7 +71,7 @@ class Raptor : public Method {
         args.gamma = p.realf("gamma");
         args.kMin = p.realf("kmin"), args.kMax = p.realf("kmax");
         args.in.debug = debug_.begin(*this, frame.width, frame.height);
-        runKernel(raptorKernelsFor(exec.isa).resolve, exec, args, frame.height);
+        temporal::runTemporal(raptorKernelsFor(exec.isa).resolve, exec, args);
         history_.end(temporal::historyStorage(p), exec);
         if (sharpen > 0) {
             blend_.fillBorder();
@@ -99,7 +100,8 @@ MethodDescriptor raptorDescriptor() {
         .source = "seed 002 (Vulkan book ch. 11); methods/06 s.6.2",
         .passes = Pass::color | Pass::motion,
         .temporal = true,
-        .params = {temporal::dilationParam("closest3x3", "seed 002"),
+        .params = {temporal::unjitterParam(false, "methods/06 B0; not in the source"),
+                   temporal::dilationParam("closest3x3", "seed 002"),
                    temporal::historyFilterParam("catmullRom", "seed 002"),
                    choiceParam("constraint", "varianceClipClamp",
                                {"none", "clamp", "clip", "varianceClip", "varianceClipClamp"},

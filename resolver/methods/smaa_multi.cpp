@@ -4,6 +4,7 @@
 #include "image/error.h"
 #include "methods/smaa.h"
 #include "methods/smaa_temporal_kernels.h"
+#include "methods/temporal.h"
 
 namespace aa {
 namespace {
@@ -113,11 +114,17 @@ class VelocityWeightedPair {
     explicit VelocityWeightedPair(const Params& p)
         : rejection_(p.realf("rejection")),
           reproject_(p.flag("reproject")),
-          pixels1080_(p.choice("velocityUnit") == "px1080") {}
+          pixels1080_(p.choice("velocityUnit") == "px1080"),
+          unjitter_(p.flag("unjitter")) {}
     Rgb& current(const Frame& frame) { return TwoSamples::sized(current_, frame); }
     Rgb& velocity(const Frame& frame) { return TwoSamples::sized(velocity_, frame); }
     // Mixes the current frame with the previous one and keeps the current one for the next.
     void resolve(const Frame& frame, bool debug, const Exec& exec, Rgb& out) {
+        if (unjitter_) {
+            current_.fillBorder();
+            temporal::unjitter(current_, frame.jitterPx, exec, unjittered_);
+            std::swap(current_, unjittered_);
+        }
         const bool first = frame.reset || previous_.width() != frame.width || previous_.height() != frame.height;
         const Rgb& previous = first ? current_ : previous_;
         const Rgb& previousVelocity = first ? velocity_ : previousVelocity_;
@@ -144,13 +151,15 @@ class VelocityWeightedPair {
         std::swap(previousVelocity_, velocity_);
     }
     size_t bytes() const {
-        return current_.bytes() + previous_.bytes() + velocity_.bytes() + previousVelocity_.bytes();
+        return current_.bytes() + unjittered_.bytes() + previous_.bytes() + velocity_.bytes() +
+               previousVelocity_.bytes();
     }
     DebugLayer debugLayer() const { return {"weight.previous", {weight_}}; }
 
   private:
     float rejection_;
-    bool reproject_, pixels1080_;
+    bool reproject_, pixels1080_, unjitter_;
+    Rgb unjittered_;
     Rgb current_, previous_, velocity_, previousVelocity_;
     PlaneF weight_;
 };
@@ -215,6 +224,7 @@ Space outputSpaceOf(const Params& p) { return p.choice("blendSpace") == "linear"
 
 std::vector<ParamSpec> temporalParams() {
     auto params = smaaParams();
+    params.push_back(temporal::unjitterParam(false, "methods/06 B0; the pair of places is the filter"));
     params.push_back(flagParam("reproject", true, "fetch the previous frame where the pixel was", "SMAA v2.8"));
     params.push_back(realParam("rejection", "30", 0, 80, "K: how soon a difference in speed rejects the previous frame",
                                "SMAA v2.8", "reproject=on"));

@@ -12,13 +12,14 @@ class TaaSimplest : public Method {
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         TaaSimplestArgs args{temporal::frameView(frame, frame.colorLinear), params_.realf("k")};
+        if (params_.flag("unjitter")) temporal::unjitter(frame, args.in);
         args.in.out = view(out);
         history_.begin(frame, "taaSimplest", args.in);
         args.in.feedbackCeiling = temporal::feedbackCeiling(params_, history_.framesSinceReset());
         args.in.filter = temporal::historyFilter(params_);
         args.in.clampOutside = params_.choice("outside") == "clamp";
         args.in.debug = debug_.begin(*this, frame.width, frame.height);
-        runKernel(taaSimplestKernelsFor(exec.isa).resolve, exec, args, frame.height);
+        temporal::runTemporal(taaSimplestKernelsFor(exec.isa).resolve, exec, args);
         history_.end(temporal::historyStorage(params_), exec);
     }
     size_t stateBytes() const override { return history_.bytes(); }
@@ -42,6 +43,7 @@ MethodDescriptor taaSimplestDescriptor() {
             .passes = Pass::color | Pass::motion,
             .temporal = true,
             .params = {realParam("k", "0.9", 0, 1, "weight of history", "seed 002: \"normally around 0.9\""),
+                       temporal::unjitterParam(false, "methods/06 B0; not in the source"),
                        temporal::historyFilterParam("bilinear", "seed 002"), temporal::outsideParam(),
                        temporal::warmupParam(), temporal::historyBitsParam(Space::linear), temporal::ditherParam()},
             .create = [](const Params& p, const ShotInfo&) { return std::make_unique<TaaSimplest>(p); }};

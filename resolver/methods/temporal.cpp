@@ -1,5 +1,7 @@
 #include "methods/temporal.h"
 
+#include <cmath>
+
 #include "image/error.h"
 
 namespace aa {
@@ -37,6 +39,14 @@ void ColourHistory::narrow() {
 
 namespace temporal {
 
+ParamSpec unjitterParam(bool def, std::string_view source) {
+    return flagParam("unjitter", def, "read the current frame at the pixel centre less the jitter, bilinear", source);
+}
+ParamSpec luminanceParam(std::string_view def, std::string_view source, std::string_view onlyWhen) {
+    return choiceParam("luminance", def, {"quarter", "bt709", "bt601", "inside"},
+                       "luminance of displayed colours: weights 1/4 1/2 1/4, BT.709, BT.601, 0.22 0.707 0.071", source,
+                       onlyWhen);
+}
 ParamSpec dilationParam(std::string_view def, std::string_view source) {
     return choiceParam(
         "dilation", def, {"closest3x3", "closestX", "longest3x3", "none"},
@@ -96,6 +106,7 @@ Dilation dilation(const Params& p) { return Dilation(p.choiceIndex("dilation"));
 HistoryFilter historyFilter(const Params& p) { return HistoryFilter(p.choiceIndex("history")); }
 Neighbourhood neighbourhood(const Params& p) { return Neighbourhood(p.choiceIndex("neighbourhood")); }
 ClipTarget clipTarget(const Params& p) { return ClipTarget(p.choiceIndex("clipTarget")); }
+Luminance luminance(const Params& p) { return Luminance(p.choiceIndex("luminance")); }
 HistoryStorage historyStorage(const Params& p) {
     return {HistoryFormat(p.choiceIndex("historyBits")), p.flag("dither")};
 }
@@ -116,6 +127,56 @@ TemporalIn frameView(const Frame& frame, const Rgb& color) {
     in.jitterXPx = float(frame.jitterPx.x);
     in.jitterYPx = float(frame.jitterPx.y);
     return in;
+}
+
+glm::ivec2 unjitteredTexel(const Frame& frame) {
+    return {int(std::floor(0.5 - frame.jitterPx.x)), int(std::floor(0.5 - frame.jitterPx.y))};
+}
+void unjitter(const Frame& frame, TemporalIn& in) {
+    const glm::ivec2 texel = unjitteredTexel(frame);
+    const ptrdiff_t offset = ptrdiff_t(texel.y) * in.stride + texel.x;
+    if (in.depthView) in.depthView += offset;
+    in.motionXPx += offset, in.motionYPx += offset;
+    in.readXPx = -in.jitterXPx, in.readYPx = -in.jitterYPx;
+    in.jitterXPx = in.jitterYPx = 0;
+}
+ExpectedDepth moved(ExpectedDepth e, glm::ivec2 texel) {
+    e.perDepth[2] += e.perDepth[0] * float(texel.x) + e.perDepth[1] * float(texel.y);
+    e.constant[2] += e.constant[0] * float(texel.x) + e.constant[1] * float(texel.y);
+    return e;
+}
+void unjitter(const Rgb& in, glm::dvec2 jitterPx, const Exec& exec, Rgb& out) {
+    if (out.width() != in.width() || out.height() != in.height()) out = Rgb(in.width(), in.height());
+    const int stride = in.stride();
+    const UnjitterArgs all{view(in), view(out), stride, kBorderX, -float(jitterPx.x), -float(jitterPx.y)};
+    const auto fn = rowsOf(temporalKernelsFor(exec.isa).unjitter, exec.precision);
+    forRows(exec, in.height(), [&](int y0, int y1) {
+        UnjitterArgs a = all;
+        for (float*& p : a.out.c) p += ptrdiff_t(y0) * stride - kBorderX;
+        fn(a, y0, y1);
+    });
+    out.fillBorder();
+}
+
+UnjitteredRows::UnjitteredRows(const TemporalIn& in, const Exec& exec, int rows)
+    : args_{in.color, {}, in.stride, kBorderX, in.readXPx, in.readYPx},
+      run_(rowsOf(temporalKernelsFor(exec.isa).unjitter, exec.precision)),
+      rows_(rows > 0 ? size_t(rows) + 2 : 0),
+      scratch_(int(3 * rows_ + 1) / 2, in.stride) {}  // scratch rows are of double
+RgbIn UnjitteredRows::around(int y0, int y1) {
+    UnjitterArgs a = args_;
+    float* const memory = static_cast<float*>(scratch_.local());
+    const size_t stride = size_t(a.stride), channel = rows_ * stride;
+    for (size_t c = 0; c < 3; c++) a.out.c[c] = memory + c * channel;
+    run_(a, y0 - 1, y1 + 1);
+    // Pixel (0, 0) of a plane of which only these rows exist: outside of the memory, so an integer until it is used.
+    RgbIn colour{};
+    for (size_t c = 0; c < 3; c++) {
+        const auto first = reinterpret_cast<intptr_t>(a.out.c[c] + kBorderX);
+        const auto back = intptr_t(y0 - 1) * intptr_t(stride) * intptr_t(sizeof(float));
+        colour.c[c] = reinterpret_cast<const float*>(first - back);
+    }
+    return colour;
 }
 
 float feedbackCeiling(const Params& p, int framesSinceReset) {

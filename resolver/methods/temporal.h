@@ -4,6 +4,7 @@
 // The history holds the blend before sharpening (methods/06), RGBA float, two planes that swap roles. A frame with
 // `reset` set, and the first frame, drop it; a change of size without reset is an InputError (methods/08 s.8.3).
 #pragma once
+#include <algorithm>
 #include <glm/vec3.hpp>
 
 #include "methods/method.h"
@@ -41,6 +42,8 @@ class ColourHistory {
 
 // Parameters that several methods share, each declared once.
 namespace temporal {
+ParamSpec unjitterParam(bool def, std::string_view source);
+ParamSpec luminanceParam(std::string_view def, std::string_view source, std::string_view onlyWhen = {});
 ParamSpec dilationParam(std::string_view def, std::string_view source);
 ParamSpec historyFilterParam(std::string_view def, std::string_view source);
 ParamSpec neighbourhoodParam(std::string_view def, std::string_view source);
@@ -60,11 +63,65 @@ HistoryFilter historyFilter(const Params& p);
 Neighbourhood neighbourhood(const Params& p);
 ClipTarget clipTarget(const Params& p);
 HistoryStorage historyStorage(const Params& p);
+Luminance luminance(const Params& p);
+
 // Depth is read only to dilate motion by it.
 PassSet dilationPasses(const Params& p);
 
 // The members of TemporalIn that come from the frame alone; `color` in the method's working space.
 TemporalIn frameView(const Frame& frame, const Rgb& color);
+
+// ---- methods/06 B0: the current frame read at p - jitter ----
+// A jittered frame holds at texel m the scene at centre(m) + jitter, so what lies at p is read at p - jitter: colours
+// bilinear, depth, id and motion at the nearest texel, beyond the picture its edge. Without jitter nothing changes.
+// The nearest texel as offset from the pixel: 0 but for a jitter of half a pixel.
+glm::ivec2 unjitteredTexel(const Frame& frame);
+// Makes `in` see the frame so: moves depth and motion, and asks runTemporal() for the colours.
+void unjitter(const Frame& frame, TemporalIn& in);
+// Expectation for a pixel whose surface is that of another texel.
+ExpectedDepth moved(ExpectedDepth expected, glm::ivec2 texel);
+// A whole picture un-jittered, into `out`; for methods that filter the current frame before they blend it.
+void unjitter(const Rgb& in, glm::dvec2 jitterPx, const Exec& exec, Rgb& out);
+
+// A few rows of un-jittered colour per thread, so that no picture of them is ever written.
+class UnjitteredRows {
+  public:
+    // Of blocks of at most `rows` rows.
+    UnjitteredRows(const TemporalIn& in, const Exec& exec, int rows);
+    // What rows y0 - 1 .. y1 of `in.color` are, at the addresses that a kernel expects; until this thread's next call.
+    RgbIn around(int y0, int y1);
+
+  private:
+    UnjitterArgs args_;
+    void (*run_)(const UnjitterArgs&, int, int);
+    size_t rows_;
+    Scratch scratch_;
+};
+// runKernel for arguments that have a TemporalIn `in`, of whose colours the kernel reads a 3x3 window. `scratchRows`:
+// rows of working memory for arguments with a member `scratch` (kernels/ring.h).
+template <class Args>
+void runTemporal(const RowKernel<Args>& kernel, const Exec& exec, const Args& args, int grain = 8,
+                 int scratchRows = 0) {
+    const auto fn = rowsOf(kernel, exec.precision);
+    const TemporalIn& in = args.in;
+    const bool unjitters = in.readXPx != 0 || in.readYPx != 0;
+    Scratch scratch(scratchRows, in.stride);
+    UnjitteredRows current(in, exec, unjitters ? grain : 0);
+    forRows(
+        exec, in.height,
+        [&](int y0, int y1) {
+            Args own = args;
+            if constexpr (requires { own.scratch; }) own.scratch = scratch.local();
+            if (!unjitters) return fn(own, y0, y1);
+            for (int y = y0; y < y1; y += grain) {
+                const int end = std::min(y + grain, y1);
+                own.in.color = current.around(y, end);
+                fn(own, y, end);
+            }
+        },
+        grain);
+}
+
 // Largest weight that history may have in the frame t after a reset: warmup=ramp gives each of the first frames the
 // weight 1/(t+1), as a running mean.
 float feedbackCeiling(const Params& p, int framesSinceReset);

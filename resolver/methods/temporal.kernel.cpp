@@ -1,4 +1,5 @@
 #include "kernels/hash.h"
+#include "methods/temporal_reprojection.kernel.h"
 #include "methods/temporal_sharpen.kernel.h"
 
 namespace AA_ARCH {
@@ -46,6 +47,18 @@ __attribute__((flatten)) void narrowHistoryRows(const NarrowHistoryArgs& a, int 
     }
 }
 
+// Rows are multiples of N long (image/plane.h), so there is no tail.
+template <class R>
+__attribute__((flatten)) void unjitterRows(const UnjitterArgs& a, int y0, int y1) {
+    const UniformFetch<R> fetch(a.xPx, a.yPx);
+    for (int y = y0; y < y1; y++) {
+        const long from = long(y) * a.stride - a.border, to = long(y - y0) * a.stride;
+        for (int c = 0; c < 3; c++)
+            for (int x = 0; x < a.stride; x += N<R>) store(fetch(a.in.c[c] + from + x, a.stride), a.out.c[c] + to + x);
+    }
+}
+
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::TemporalKernels, temporalKernels) = {AA_WIDE_ROWS(sharpenHistoryRows), AA_ROWS(narrowHistoryRows)};
+AA_DEFINE_TABLE(aa::TemporalKernels, temporalKernels) = {AA_WIDE_ROWS(sharpenHistoryRows), AA_ROWS(narrowHistoryRows),
+                                                         AA_WIDE_ROWS(unjitterRows)};

@@ -239,11 +239,13 @@ AA_INLINE void store_first_debug(const TemporalIn& in, long o, vec3<R> current) 
     store(zero, d.clipAmount + o), store(zero, d.feedback + o);
 }
 template <class R>
-AA_INLINE void store_first(const TemporalIn& in, int x, int y, R alpha = R(Elem<R>(1))) {
-    const long o = long(y) * in.stride + x;
-    const vec3<R> current = load3<R>(in.color.c, o);
+AA_INLINE void store_first(const TemporalIn& in, int x, int y, vec3<R> current, R alpha) {
     store_blend(in, x, y, sanitised(current, current, vec3<R>(R(Elem<R>(0)))), alpha);
-    store_first_debug(in, o, current);
+    store_first_debug(in, long(y) * in.stride + x, current);
+}
+template <class R>
+AA_INLINE void store_first(const TemporalIn& in, int x, int y) {
+    store_first<R>(in, x, y, load3<R>(in.color.c, long(y) * in.stride + x), R(Elem<R>(1)));
 }
 template <class R>
 AA_INLINE void store_debug(const TemporalDebug& d, long o, Motion<R> motion, Mask<R> inside, const Box<R>& box,

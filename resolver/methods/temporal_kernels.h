@@ -9,6 +9,8 @@ enum class HistoryFilter { bilinear, catmullRom, catmullRom5 };  // methods/06 B
 enum class Neighbourhood { rounded, box3x3, plus };              // methods/06 B4
 enum class ClipTarget { aabbCentre, mean, current, clamp };      // methods/06 B6; clamp: B5 instead of a clip
 enum class SharpenKernel { none, xu, norm };                     // methods/06 s.6.10
+// Weights under the luminance feedback: 1/4 1/2 1/4 (the thesis's program), BT.709, BT.601, as INSIDE's source prints.
+enum class Luminance { quarter, bt709, bt601, inside };
 
 // Why a pixel's history was not used; 0 = it was. The numbers are those of the debug layer "validity".
 enum class Rejection { none = 0, outside = 1, disoccluded = 2, magnified = 3, otherObject = 4, firstFrame = 5 };
@@ -39,7 +41,9 @@ struct TemporalIn {
     float* next = nullptr;           // RGBA, this frame's blend
     RgbOut out = {};                 // this frame's blend again, planar; null: not wanted
     int stride = 0, width = 0, height = 0;
-    float jitterXPx = 0, jitterYPx = 0;
+    float jitterXPx = 0, jitterYPx = 0;  // of the colours as the kernel sees them: 0 once they are un-jittered
+    // Where a pixel's colours are to be read, from its centre: -jitter where the frame is un-jittered (B0), else 0.
+    float readXPx = 0, readYPx = 0;
     float feedbackCeiling = 1;  // largest history weight of this frame (warmup=ramp: 1 - 1/(t+1))
     bool clampOutside = false;  // a history position outside the image is moved to its border, not rejected
     Dilation dilation = Dilation::closest3x3;
@@ -62,9 +66,18 @@ struct NarrowHistoryArgs {
     bool dither;  // rounds up or down by chance, so that the mean is kept
     uint32_t frame;
 };
+// methods/06 B0: colours at p + (xPx, yPx), bilinear, over whole rows of planes. Row y0 of the call goes to `out`,
+// y0 + 1 after it, ...; each starts at x = -border and is `stride` long.
+struct UnjitterArgs {
+    RgbIn in;
+    RgbOut out;
+    int stride, border;
+    float xPx, yPx;
+};
 struct TemporalKernels {
     RowKernel<SharpenHistoryArgs> sharpen;
     RowKernel<NarrowHistoryArgs> narrow;
+    RowKernel<UnjitterArgs> unjitter;  // rows [-1, height + 1): a window reaches over the edge
 };
 }  // namespace aa
 AA_KERNEL_TABLE(aa::TemporalKernels, temporalKernels)

@@ -6,6 +6,7 @@
 // (one 16-byte load per texel) with a filled border, so a position inside the image needs no clamped taps.
 // Comparisons are written so that NaN rejects history (methods/08 s.8.0).
 #pragma once
+#include "kernels/ring.h"
 #include "methods/temporal_texels.kernel.h"
 
 namespace AA_ARCH {
@@ -152,7 +153,8 @@ AA_INLINE vec3<R> fetch_history(const TemporalIn& in, int x, int y, const Reproj
     if (in.filter == HistoryFilter::catmullRom5) return fetch_catmull_rom<false>(p, in.stride, q);
     return fetch_bilinear(p, in.stride, q).rgb;
 }
-// B(plane, p + offset) with one offset for the whole frame (un-jittering: offset = -jitter).
+// B0: B(plane, p + offset) with one offset for the whole frame (un-jittering: offset = -jitter). A plane of float, or
+// of Elem<R>. Offset 0 gives the texel itself.
 template <class R>
 struct UniformFetch {
     int dx, dy;
@@ -164,13 +166,25 @@ struct UniformFetch {
         wholeX = fx == 0, wholeY = fy == 0;
     }
     AA_INLINE R operator()(const float* p, int stride) const {
-        const float* t = p + long(dy) * stride + dx;
-        auto row = [&](const float* r) __attribute__((always_inline)) {
-            const R a = load<R>(r);
-            return wholeX ? a : a + (load<R>(r + 1) - a) * R(fx);
+        const float* const top = p + long(dy) * stride + dx;
+        return between(
+            top, top + stride, [](const float* r) __attribute__((always_inline)) { return load<R>(r); });
+    }
+    // The same from rows y + dy and y + dy + 1, each at the pixel's x.
+    AA_INLINE R operator()(const Elem<R>* upper, const Elem<R>* lower) const {
+        return between(
+            upper + dx, lower + dx, [](const Elem<R>* r) __attribute__((always_inline)) { return load_own<R>(r); });
+    }
+
+  private:
+    template <class S, class Load>
+    AA_INLINE R between(const S* upper, const S* lower, const Load& at) const {
+        const auto row = [&](const S* r) __attribute__((always_inline)) {
+            const R a = at(r);
+            return wholeX ? a : a + (at(r + 1) - a) * R(fx);
         };
-        const R top = row(t);
-        return wholeY ? top : top + (row(t + stride) - top) * R(fy);
+        const R top = row(upper);
+        return wholeY ? top : top + (row(lower) - top) * R(fy);
     }
 };
 

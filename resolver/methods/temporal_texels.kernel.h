@@ -46,8 +46,11 @@ AA_INLINE vec3<R> from_ycocg(vec3<R> c) {
     return {t + c.y, c.x + c.z, t - c.y};
 }
 template <class R>
-AA_INLINE R luminance(vec3<R> c, bool bt601) {
-    return bt601 ? luma601(c) : luma709(c);
+AA_INLINE R luminance(vec3<R> c, Luminance kind) {
+    using T = Elem<R>;
+    if (kind == Luminance::quarter) return c.x * R(T(0.25)) + c.y * R(T(0.5)) + c.z * R(T(0.25));
+    if (kind == Luminance::inside) return c.x * R(T(0.22)) + c.y * R(T(0.707)) + c.z * R(T(0.071));
+    return kind == Luminance::bt601 ? luma601(c) : luma709(c);
 }
 
 }  // namespace AA_ARCH

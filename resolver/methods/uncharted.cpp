@@ -12,15 +12,20 @@ class Uncharted : public Method {
         : params_(params), sharpen_(SharpenKernel(params.choiceIndex("sharpen"))) {}
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
-        UnchartedArgs args{temporal::frameView(frame, frame.colorEncoded), params_.realf("kmin"), params_.realf("kmax"),
-                           temporal::neighbourhood(params_), temporal::clipTarget(params_)};
+        UnchartedArgs args{temporal::frameView(frame, frame.colorEncoded),
+                           params_.realf("kmin"),
+                           params_.realf("kmax"),
+                           temporal::neighbourhood(params_),
+                           temporal::clipTarget(params_),
+                           temporal::luminance(params_)};
+        if (params_.flag("unjitter")) temporal::unjitter(frame, args.in);
         if (sharpen_ == SharpenKernel::none) args.in.out = view(out);
         history_.begin(frame, "uncharted", args.in);
         args.in.feedbackCeiling = temporal::feedbackCeiling(params_, history_.framesSinceReset());
         args.in.dilation = temporal::dilation(params_);
         args.in.filter = temporal::historyFilter(params_);
         args.in.debug = debug_.begin(*this, frame.width, frame.height);
-        runKernel(unchartedKernelsFor(exec.isa).resolve, exec, args, frame.height);
+        temporal::runTemporal(unchartedKernelsFor(exec.isa).resolve, exec, args);
         history_.end(temporal::historyStorage(params_), exec);
         if (sharpen_ != SharpenKernel::none) sharpenEncoded(history_.latest(), sharpen_, exec, out);
     }
@@ -46,8 +51,10 @@ MethodDescriptor descriptor(std::string_view id, std::string_view title, std::st
             .input = Space::encoded,
             .output = Space::encoded,
             .temporal = true,
-            .params = {temporal::kMinParam("0.88", "Pedersen's code; methods/11 nr 5"),
-                       temporal::kMaxParam("0.97", "Pedersen's code; methods/11 nr 5"),
+            .params = {temporal::unjitterParam(true, "seed 000 App. B; methods/06 B0"),
+                       temporal::kMinParam("0.925", "the author's public program; methods/11 nr 5"),
+                       temporal::kMaxParam("0.979", "the author's public program; methods/11 nr 5"),
+                       temporal::luminanceParam("quarter", "the author's public program; methods/06 s.6.4"),
                        temporal::sharpenParam(sharpen, sharpenSource),
                        temporal::dilationParam("closest3x3", "seed 000 s.3.6.2"),
                        temporal::historyFilterParam("bilinear", "methods/06 B1"),

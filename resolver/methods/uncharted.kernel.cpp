@@ -23,7 +23,8 @@ AA_INLINE void unchartedPixel(const UnchartedArgs& a, int x, int y) {
 
     // 3. blend
     const R k =
-        min(luminance_feedback(luma709(current), luma709(clipped), a.kMin, a.kMax), R(Elem<R>(in.feedbackCeiling)));
+        min(luminance_feedback(luminance(current, a.luminance), luminance(clipped, a.luminance), a.kMin, a.kMax),
+            R(Elem<R>(in.feedbackCeiling)));
     const vec3<R> mixed = select(q.inside, blend(current, clipped, k), current);
 
     store_blend(in, x, y, sanitised(mixed, current, history), R(Elem<R>(1)));

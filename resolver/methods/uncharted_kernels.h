@@ -7,6 +7,7 @@ struct UnchartedArgs {
     float kMin, kMax;
     Neighbourhood neighbourhood;
     ClipTarget clipTarget;
+    Luminance luminance;  // of the feedback
 };
 struct UnchartedKernels {
     RowKernel<UnchartedArgs> resolve;
