@@ -2,6 +2,8 @@
 SHELL := /bin/sh
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 BLENDER ?= blender
+# ON: warnings are errors, as in .ci/run. Said each time, so that a build folder follows.
+WERROR ?= OFF
 # A compiler cache is used where there is one.
 LAUNCHER := $(if $(shell command -v ccache 2>/dev/null),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache,)
 
@@ -21,7 +23,7 @@ deps:
 	@.ci/bootstrap
 
 configure: deps
-	@cmake --preset release $(LAUNCHER) >build.log 2>&1 || { cat build.log; rm -f build.log; exit 1; }; mv build.log build/configure.log
+	@cmake --preset release $(LAUNCHER) -DAA_WERROR=$(WERROR) >build.log 2>&1 || { cat build.log; rm -f build.log; exit 1; }; mv build.log build/configure.log
 
 build: configure
 	@cmake --build --preset release -j $(JOBS)
@@ -41,7 +43,7 @@ fuzz: program
 	@python3 tests/fuzz/fuzz.py build/aaresolve --seconds $(FUZZ_SECONDS) --seed $(SEED) --jobs $(JOBS)
 
 sanitize: deps
-	@cmake --preset sanitize $(LAUNCHER) >/dev/null
+	@cmake --preset sanitize $(LAUNCHER) -DAA_WERROR=$(WERROR) >/dev/null
 	@cmake --build --preset sanitize -j $(JOBS)
 	@ctest --preset sanitize -j $(JOBS)
 
