@@ -9,6 +9,7 @@ from pathlib import Path
 
 LINES = {0: 1, 2: 1, 3: 16}  # compression: lines per chunk
 MULTI_PART = 0x1000
+_HALF_TURN = bytes(b ^ 128 for b in range(256))
 
 
 def _decoded(chunk: bytes, size: int) -> bytes:
@@ -16,8 +17,8 @@ def _decoded(chunk: bytes, size: int) -> bytes:
     if len(chunk) == size:  # stored as it is: deflate did not pay
         return chunk
     deltas = zlib.decompress(chunk)
-    first_differs = accumulate(deltas[1:], lambda before, d: (before + d - 128) & 255, initial=deltas[0])
-    parted = bytes(first_differs)
+    parted = bytearray(map((255).__and__, accumulate(deltas)))
+    parted[1::2] = parted[1::2].translate(_HALF_TURN)  # each difference is stored 128 too large
     pixels = bytearray(size)
     half = (size + 1) // 2
     pixels[0::2], pixels[1::2] = parted[:half], parted[half:]
