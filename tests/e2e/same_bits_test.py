@@ -3,7 +3,9 @@
     python3 tests/e2e/same_bits_test.py build/aaresolve . --update     rewrites the file: `make bits`
 
 A method that differs here and nowhere else in the suite is the build's doing: another compiler, libm or library.
-The shots themselves are hashed, too: where they differ, the methods are not to blame.
+The shots themselves are hashed, too: where they differ, the methods are not to blame. The host's code calls libm in
+double (sin, cos, exp, log, pow, atan2, acos, hypot); glibc 2.36, 2.41 and 2.43 give the same bits for these, with and
+without FMA others, which rounding to float hides in these shots. In float only cbrt and acos differ; nothing calls them.
 """
 
 from __future__ import annotations
@@ -77,7 +79,8 @@ class SameBits(ProgramTest):
             if found.get(shot, {}).get(name) != wanted.get(shot, {}).get(name)
         ]
         advice = "if a method was meant to change, `make bits`; otherwise this build computes something else"
-        self.assertFalse(differ, "other bits than in same_bits.json:\n  " + "\n  ".join(differ) + f"\n{advice}")
+        if differ:
+            self.fail("other bits than in same_bits.json:\n  " + "\n  ".join(differ) + f"\n{advice}")
 
 
 UPDATE = "--update" in sys.argv
