@@ -2,10 +2,12 @@
 SHELL := /bin/sh
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 BLENDER ?= blender
+# ON: warnings are errors, as in .ci/run. Said each time, so that a build folder follows.
+WERROR ?= OFF
 # A compiler cache is used where there is one.
 LAUNCHER := $(if $(shell command -v ccache 2>/dev/null),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache,)
 
-.PHONY: help deps configure build program demo test fuzz sanitize bench addon docs reproduce format clean
+.PHONY: help deps configure build program demo test fuzz sanitize bench addon docs bits reproduce format clean
 help:
 	@echo "make demo       build, render two scenes in Blender, run the methods, make contact sheets and reports"
 	@echo "make test       build and run every test"
@@ -15,13 +17,13 @@ help:
 	@echo "make reproduce  render the study's scenes, run every method on each, write docs/results (QUICK=1: a short form)"
 	@echo "make fuzz       damaged input through the program, FUZZ_SECONDS=300, SEED=1"
 	@echo "make sanitize   unit and property tests under AddressSanitizer and UndefinedBehaviorSanitizer"
-	@echo "make deps, docs, format, clean"
+	@echo "make deps, docs, bits, format, clean"
 
 deps:
 	@.ci/bootstrap
 
 configure: deps
-	@cmake --preset release $(LAUNCHER) >build.log 2>&1 || { cat build.log; rm -f build.log; exit 1; }; mv build.log build/configure.log
+	@cmake --preset release $(LAUNCHER) -DAA_WERROR=$(WERROR) >build.log 2>&1 || { cat build.log; rm -f build.log; exit 1; }; mv build.log build/configure.log
 
 build: configure
 	@cmake --build --preset release -j $(JOBS)
@@ -41,7 +43,7 @@ fuzz: program
 	@python3 tests/fuzz/fuzz.py build/aaresolve --seconds $(FUZZ_SECONDS) --seed $(SEED) --jobs $(JOBS)
 
 sanitize: deps
-	@cmake --preset sanitize $(LAUNCHER) >/dev/null
+	@cmake --preset sanitize $(LAUNCHER) -DAA_WERROR=$(WERROR) >/dev/null
 	@cmake --build --preset sanitize -j $(JOBS)
 	@ctest --preset sanitize -j $(JOBS)
 
@@ -59,6 +61,10 @@ docs: program
 	@build/aaresolve list --markdown > docs/methods.md
 	@build/aaresolve list --json > blender_addon/aa_resolve/methods.json
 	@build/aaresolve bench --family temporal --markdown --size 480x270 --frames 8 --repeats 1 --threads 1 > docs/precision.md
+
+# After a change of a method's pixels that was meant: what every build must give from now on.
+bits: program
+	@python3 tests/e2e/same_bits_test.py build/aaresolve . --update
 
 # Resumable: what build/reproduce holds is kept.
 reproduce: program

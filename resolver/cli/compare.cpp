@@ -116,11 +116,11 @@ std::vector<Threshold> thresholdsOf(const Options& o) {
         const double limit = equals == std::string::npos ? 0 : std::strtod(text.c_str() + equals + 1, &end);
         if (equals == std::string::npos || end == text.c_str() + equals + 1 || *end)
             throw UsageError("--fail-below: expected metric=number such as psnr=40, found '" + text + "'");
-        const MetricName& m = metricByName(text.substr(0, equals));
-        if (!m.higherIsBetter)
-            throw UsageError("--fail-below " + text + ": of " + std::string(m.name) +
+        const MetricName* m = &metricByName(text.substr(0, equals));
+        if (!m->higherIsBetter)
+            throw UsageError("--fail-below " + text + ": of " + std::string(m->name) +
                              " smaller is better; use psnr, snr or an SSIM");
-        all.push_back({&m, limit});
+        all.push_back({m, limit});
     }
     return all;
 }

@@ -158,11 +158,9 @@ void JitterCheck::judge(CheckReport& report) const {
 // found = A stated over all frames: A shows flips, exchanged axes and a wrong unit at once, however noisy one frame is.
 bool JitterCheck::judgeTogether(const std::vector<Registered>& good, CheckReport& report) const {
     glm::dmat2 stated(0.0), cross(0.0);
-    double spread = 0;
     for (const auto& f : good) {
         stated += glm::outerProduct(f.statedPx, f.statedPx);
         cross += glm::outerProduct(f.found.offsetPx, f.statedPx);
-        spread += glm::dot(f.statedPx, f.statedPx);
     }
     // Some jitter on both axes, or A means nothing; then each frame is compared by itself.
     if (!(std::min(stated[0][0], stated[1][1]) > 1e-6) ||

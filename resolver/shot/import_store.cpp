@@ -58,7 +58,7 @@ std::optional<json> ImportStore::finished(const std::string& kind, int frame, co
     if (missing || !done.is_object() || !done.contains("facts") || done.value("inputs", json()) != inputs ||
         done.value("bytes", json()) != bytes)
         return std::nullopt;
-    return done["facts"];
+    return std::make_optional<json>(done["facts"]);  // json converts to anything, optional<json> too
 }
 
 void ImportStore::finish(const std::string& kind, int frame, const json& inputs, const json& facts) const {
