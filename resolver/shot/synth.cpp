@@ -66,13 +66,16 @@ const Placed* frontMost(const std::vector<Placed>& all, dvec2 p) {
     return nullptr;
 }
 
-// Signed distance along its major axis from p to the line of the polygon's nearest edge (methods/05 s.5.1).
-dvec2 nearestEdgePx(const Polygon& polygon, dvec2 p) {
+bool isSeam(const SynthShape& shape, size_t edge) { return edge < 32 && (shape.seams >> edge & 1); }
+
+// Signed distance along its major axis from p to the line of the shape's nearest edge (methods/05 s.5.1).
+dvec2 nearestEdgePx(const Placed& placed, dvec2 p) {
+    const auto& polygon = std::get<Polygon>(placed.region);
     double nearest = INFINITY;
     dvec2 r(0.5);
     for (size_t i = 0; i < polygon.size(); i++) {
         const dvec2 a = polygon[i], d = polygon[(i + 1) % polygon.size()] - a;
-        if (d == dvec2(0.0)) continue;
+        if (d == dvec2(0.0) || isSeam(*placed.shape, i)) continue;
         const dvec2 n(-d.y, d.x);
         const bool alongX = std::abs(n.x) > std::abs(n.y);
         const double s = glm::dot(a - p, n) / (alongX ? n.x : n.y);
@@ -136,7 +139,7 @@ void addSegments(const Placed& shape, const Sampler& sampler, std::vector<EdgeSe
     const auto& corners = std::get<Polygon>(shape.region);
     for (size_t i = 0; i < corners.size(); i++) {
         const dvec2 a = corners[i], b = corners[(i + 1) % corners.size()];
-        if (a == b) continue;
+        if (a == b || isSeam(*shape.shape, i)) continue;
         to.push_back(
             {float(a.x), float(a.y), sampler.depth(&shape, a), float(b.x), float(b.y), sampler.depth(&shape, b)});
     }
@@ -346,7 +349,7 @@ Frame SynthShot::frame(size_t index, Sampling sampling) const {
                 f.motionXPx.at(x, y) = float(motion.x);
                 f.motionYPx.at(x, y) = float(motion.y);
                 if (edges && hit) {
-                    const dvec2 e = nearestEdgePx(std::get<Polygon>(hit->region), p);
+                    const dvec2 e = nearestEdgePx(*hit, p);
                     f.edgeXPx.at(x, y) = float(e.x);
                     f.edgeYPx.at(x, y) = float(e.y);
                 }

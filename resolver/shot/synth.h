@@ -60,6 +60,9 @@ struct SynthShape {
     RigidMotion motion;
 };
 
+    // Bit i: behind the polygon's edge from corner i the same surface goes on in another shape, so it is no edge to
+    // see.
+    uint32_t seams = 0;
 // A shot that can be asked for any frame, in any order. Thread-safe.
 class SynthShot {
   public:

@@ -110,6 +110,18 @@ TEST_P(SynthScenes, PassesAreSound) {
     EXPECT_EQ(f.reset, false);
 }
 
+// So that a scene can be judged in one displayed space, too: displayed value = value, truth = its mean.
+TEST_P(SynthScenes, ValuesCanBeDisplayed) {
+    const SynthShot shot(small(GetParam().data()));
+    const Frame f = shot.frame(1);
+    const Truth t = shot.truth(1);
+    for (const Rgb* picture : {&f.colorLinear, &f.albedoLinear, &t.a})
+        for (const PlaneF& plane : picture->c)
+            for (int y = 0; y < f.height; y++)
+                for (int x = 0; x < f.width; x++)
+                    ASSERT_TRUE(plane.at(x, y) >= 0 && plane.at(x, y) <= 1) << x << " " << y << " " << plane.at(x, y);
+}
+
 // Where p was: the surface's point of the previous frame has the same object and colour there, unless it was hidden.
 TEST(Synth, MotionLeadsToTheSameSurface) {
     for (const char* scene : {"moving", "thin_motion"}) {
@@ -180,6 +192,64 @@ TEST(Synth, HalfPlanesShowAtLeast64Angles) {
     EXPECT_FALSE(SynthShot(small("circles")).passes().has(Pass::edges));
     EXPECT_TRUE(f.passes.has(Pass::segments));
     EXPECT_FALSE(SynthShot(small("circles")).passes().has(Pass::segments));
+}
+
+// Widths as promised along the whole strand, neither gaps nor steps where its parts meet, and no edges there.
+TEST(Synth, HairsAreStrandsOfTheirWidth) {
+    SynthOptions o = small("hairs");
+    o.width = 256;
+    o.height = 144;
+    const SynthShot shot(o);
+    const auto& shapes = shot.shapes();
+    const auto corners = [&](size_t i) { return std::get<Polygon>(shapes[i].region); };
+    std::set<double> depths;
+    double thinnest = 100, thickest = 0;
+    size_t joints = 0, straight = 0, grey = 0, outlines = 0;
+    for (size_t i = 0; i + 1 < shapes.size(); i++) {  // the last one is the wall
+        const Polygon p = corners(i);
+        ASSERT_EQ(p.size(), 4u);
+        const dvec2 along = glm::normalize(p[1] - p[0]), other = glm::normalize(p[2] - p[3]);
+        EXPECT_NEAR(glm::dot(along, other), 1, 1e-12) << "its sides are parallel";
+        const double width = along.x * (p[3] - p[0]).y - along.y * (p[3] - p[0]).x;
+        thinnest = std::min(thinnest, width), thickest = std::max(thickest, width);
+        outlines += shapes[i].seams & 1u << 1 ? 0 : 1;
+        outlines += shapes[i].seams & 1u << 3 ? 0 : 1;
+        if (depths.insert(shapes[i].distance).second) {
+            straight += shapes[i].seams == 0;
+            grey += shapes[i].color.x == shapes[i].color.y && shapes[i].color.x == shapes[i].color.z;
+            continue;
+        }
+        joints++;
+        EXPECT_EQ(p[0], corners(i - 1)[1]) << i;
+        EXPECT_EQ(p[3], corners(i - 1)[2]) << i;
+        EXPECT_TRUE(shapes[i].seams & 1u << 3 && shapes[i - 1].seams & 1u << 1) << i;
+    }
+    const size_t strands = depths.size();
+    EXPECT_EQ(strands, 256u * 144 / 160);
+    EXPECT_TRUE(thinnest > 0.29999 && thinnest < 0.33 && thickest > 1.9 && thickest < 2.00001)
+        << thinnest << " " << thickest;
+    EXPECT_GT(joints, 2 * strands);
+    EXPECT_TRUE(straight >= strands / 2 && straight < strands * 6 / 10) << straight;
+    EXPECT_TRUE(grey >= strands * 4 / 10 && grey <= strands * 6 / 10) << grey;
+    EXPECT_EQ(outlines, 2 * strands);
+    EXPECT_EQ(shot.frame(0).segments.size(), 2 * (shapes.size() - 1) + outlines + 4);
+
+    const auto hairShare = [](int w, int h, uint32_t seed) {
+        SynthOptions o = small("hairs");
+        o.width = w, o.height = h, o.seed = seed;
+        const Frame f = SynthShot(o).frame(0);
+        double hair = 0;
+        for (int y = 0; y < h; y++)
+            for (int x = 0; x < w; x++) hair += f.objectId.at(x, y) != 1;
+        return hair / w / h;
+    };
+    for (const auto& [w, h] : {std::pair{256, 144}, {333, 480}})
+        for (const uint32_t seed : {1u, 2u}) {
+            const double share = hairShare(w, h, seed);
+            EXPECT_TRUE(share > 0.25 && share < 0.42) << w << " " << seed << ": " << share;
+        }
+    o.seed = 2;
+    EXPECT_NE(std::get<Polygon>(SynthShot(o).shapes()[0].region)[0], corners(0)[0]);
 }
 
 // methods/05 s.5.1: an edge 0.2 px to the right makes (0.2, 0.5); the sign follows the side.
