@@ -98,8 +98,10 @@ bool polygonsOnly(const std::vector<SynthShape>& shapes) {
 // Everything that a sample at one position of one frame sees.
 class Sampler {
   public:
-    Sampler(const SynthSceneContents& scene, int width, int height, double time)
+    // All shapes moved by `shiftView` in view space.
+    Sampler(const SynthSceneContents& scene, int width, int height, double time, dvec3 shiftView = dvec3(0.0))
         : scene_(scene),
+          shiftView_(shiftView),
           width_(width),
           height_(height),
           time_(time),
@@ -116,8 +118,9 @@ class Sampler {
         const dvec2 ndc(2 * p.x / width_ - 1, 1 - 2 * p.y / height_);
         const dvec2 ray(ndc.x / m[0][0], ndc.y / m[1][1]);  // both cameras are centred
         const dvec3 n = s.normalView;
-        return float(scene_.camera.kind == "perspective" ? s.distance / (n.x * ray.x + n.y * ray.y - n.z)
-                                                         : (n.x * ray.x + n.y * ray.y - s.distance) / n.z);
+        const double distance = s.distance + glm::dot(n, shiftView_);
+        return float(scene_.camera.kind == "perspective" ? distance / (n.x * ray.x + n.y * ray.y - n.z)
+                                                         : (n.x * ray.x + n.y * ray.y - distance) / n.z);
     }
     dvec3 normal(const Placed* hit) const { return hit ? toWorld_ * hit->shape->normalView : dvec3(0.0); }
     static uint32_t object(const Placed* hit) { return hit ? hit->shape->object : 0; }
@@ -129,12 +132,31 @@ class Sampler {
 
   private:
     const SynthSceneContents& scene_;
+    dvec3 shiftView_;
     int width_, height_;
     double time_;
     glm::dmat3 toWorld_;
 };
 
-// All edges of a polygon, hidden ones too.
+// Seed 001 s.3.7.1: the jitter's translation in clip space, multiplied to the wrong side of the projection, moves the
+// geometry in view space instead. It is a translation parallel to the picture's plane, so every depth stays.
+dvec3 premultipliedShift(dvec2 jitterPx, int width, int height) {
+    return {-2 * jitterPx.x / width, 2 * jitterPx.y / height, 0.0};
+}
+
+// The same shapes, seen by a perspective camera after a movement by `shiftView` in view space.
+void moveInView(std::vector<Placed>& placed, const Sampler& before, const Manifest& m, dvec3 shiftView) {
+    const glm::dmat4& projection = m.frames[0].camera->projection;
+    const dvec2 pxAtUnitDepth(shiftView.x * projection[0][0] * m.width / 2,
+                              -shiftView.y * projection[1][1] * m.height / 2);
+    for (Placed& shape : placed) {
+        for (dvec2& corner : std::get<Polygon>(shape.region))
+            corner += pxAtUnitDepth / double(before.depth(&shape, corner));
+        shape.bounds = bounds(shape.region);
+    }
+}
+
+// All edges of a polygon but its seams, hidden ones too.
 void addSegments(const Placed& shape, const Sampler& sampler, std::vector<EdgeSegment>& to) {
     const auto& corners = std::get<Polygon>(shape.region);
     for (size_t i = 0; i < corners.size(); i++) {
@@ -257,6 +279,11 @@ SynthShot::SynthShot(const SynthOptions& o) {
     auto scene = std::make_shared<Scene>();
     scene->contents = makeScene(o);
     scene_ = scene;
+    const bool canPremultiply = scene->contents.camera.kind == "perspective" && scene->contents.isStatic;
+    if (o.premultiplied && (!canPremultiply || o.jitter == "none"))
+        throw UsageError(
+            "synth: premultiplied jitter errs with the depth, so it needs a jitter and a perspective scene at rest, "
+            "such as two_planes");
     const JitterInfo& sequence = jitterSequence(o.jitter);
     const JitterSpec jitter{o.jitter, o.jitterStart, sequence.naturalPeriod ? sequence.naturalPeriod : o.period,
                             o.centred};
@@ -273,6 +300,7 @@ SynthShot::SynthShot(const SynthOptions& o) {
     m.jitterSequence = o.jitter;
     m.jitterStart = o.jitterStart >= 0 ? o.jitterStart : sequence.start;
     m.jitterPeriod = jitter.period;
+    m.jitterPremultiplied = o.premultiplied;
     m.isStatic = scene_->contents.isStatic;
     m.objects = scene_->contents.objects;
     if (!o.subsamples.empty()) {
@@ -333,13 +361,22 @@ Frame SynthShot::frame(size_t index, Sampling sampling) const {
     }
 
     const double time = double(index);
-    const auto placed = placedAt(shapes(), time);
-    const Sampler sampler(scene_->contents, w, h, time);
+    const auto atRest = placedAt(shapes(), time);
+    const Sampler unmoved(scene_->contents, w, h, time);
+    dvec2 samplePx = f.jitterPx;
+    dvec3 shiftView(0.0);
+    auto placed = atRest;
+    if (manifest_.jitterPremultiplied) {
+        shiftView = premultipliedShift(f.jitterPx, w, h);
+        moveInView(placed, unmoved, manifest_, shiftView);
+        samplePx = dvec2(0.0);
+    }
+    const Sampler sampler(scene_->contents, w, h, time, shiftView);
     forRows({}, h, [&](int y0, int y1) {
         for (int y = y0; y < y1; y++) {
             const auto row = ofRow(placed, y);
             for (int x = 0; x < w; x++) {
-                const dvec2 centre(x + 0.5, y + 0.5), p = centre + f.jitterPx;
+                const dvec2 centre(x + 0.5, y + 0.5), p = centre + samplePx;
                 const Placed* hit = frontMost(row, p);
                 put(f.colorLinear, x, y, sampler.color(hit, p));
                 put(f.normalWorld, x, y, sampler.normal(hit));
@@ -367,7 +404,7 @@ Frame SynthShot::frame(size_t index, Sampling sampling) const {
         }
     });
     if (passes_.has(Pass::segments))
-        for (const Placed& shape : placed) addSegments(shape, sampler, f.segments);
+        for (const Placed& shape : atRest) addSegments(shape, unmoved, f.segments);
     f.albedoLinear = f.colorLinear;  // nothing is lit
     f.colorLinear.fillBorder();
     f.albedoLinear.fillBorder();

@@ -313,6 +313,64 @@ TEST(Synth, SegmentsLieOnTheEdges) {
     }
 }
 
+// Manifest::jitterPremultiplied: what a pixel shows lies at jitter x P / depth in the picture without jitter. A camera
+// that moves sees around edges, too, which no displacement of the picture does: there a few pixels differ.
+TEST(Synth, PremultipliedJitterFallsWithDepth) {
+    SynthOptions o = small("two_planes");
+    o.premultiplied = true;
+    const SynthShot shot(o);
+    EXPECT_TRUE(shot.manifest().jitterPremultiplied);
+    const Frame f = shot.frame(3), centre = shot.frame(3, Sampling::centre);
+    const glm::dmat4& projection = f.camera->projection;
+    const dvec2 focal(projection[0][0], projection[1][1]);
+    const auto picture = shot.picture(3);
+    ASSERT_GT(glm::length(f.jitterPx), 0.3);
+    int pixels = 0, right = 0, rightAtJitter = 0, rightIfFlipped = 0, surfaces = 0;
+    double nearest = 1e10, farthest = 0;
+    for (int y = 0; y < f.height; y++)
+        for (int x = 0; x < f.width; x++) {
+            const dvec2 p(x + .5, y + .5);
+            const double z = f.depthView.at(x, y);
+            const dvec2 offset = z == kBackgroundDepth ? dvec2(0.0) : f.jitterPx * focal / z;
+            const auto shows = [&](dvec2 at) { return float(picture(at).x) == f.colorLinear.c[0].at(x, y); };
+            pixels++;
+            right += shows(p + offset);
+            rightAtJitter += shows(p + f.jitterPx);
+            rightIfFlipped += shows(p - offset);
+            if (z == kBackgroundDepth) continue;
+            nearest = std::min(nearest, z), farthest = std::max(farthest, z);
+            // The depth that a camera without jitter has of this surface at p + offset: planes in 1/z, over one pixel.
+            const double here = 1 / double(centre.depthView.at(x, y));
+            if (x < 1 || y < 1 || x > 119 || y > 75) continue;
+            bool oneSurface = true;
+            for (const glm::ivec2 d : {glm::ivec2(-1, 0), {1, 0}, {0, -1}, {0, 1}, {0, 0}})
+                oneSurface &= centre.objectId.at(x + d.x, y + d.y) == f.objectId.at(x, y);
+            if (!oneSurface) continue;
+            const double perX =
+                             (1 / double(centre.depthView.at(x + 1, y)) - 1 / double(centre.depthView.at(x - 1, y))) /
+                             2,
+                         perY =
+                             (1 / double(centre.depthView.at(x, y + 1)) - 1 / double(centre.depthView.at(x, y - 1))) /
+                             2;
+            EXPECT_NEAR(1 / z, here + perX * offset.x + perY * offset.y, 1e-6 * here) << x << " " << y;
+            surfaces++;
+        }
+    EXPECT_GT(surfaces, 1000);
+    EXPECT_LT(nearest * 1.2, farthest);
+    EXPECT_GE(right, pixels - 12);
+    EXPECT_LT(rightAtJitter, right - 30);
+    EXPECT_LT(rightIfFlipped, right - 30);
+    // The truth, the centre-sampled frame and the list of edges know nothing of it.
+    o.premultiplied = false;
+    const SynthShot plain(o);
+    EXPECT_FALSE(plain.manifest().jitterPremultiplied);
+    EXPECT_EQ(plain.frame(3).jitterPx, f.jitterPx) << "the stated jitter is the one that was wanted";
+    EXPECT_TRUE(plain.truth(3).a.samePixels(shot.truth(3).a));
+    EXPECT_EQ(plain.frame(3).segments, f.segments);
+    EXPECT_TRUE(plain.frame(3, Sampling::centre).colorLinear.samePixels(centre.colorLinear));
+    EXPECT_FALSE(plain.frame(3).colorLinear.samePixels(f.colorLinear));
+}
+
 TEST(Synth, SameBitsAtEveryCall) {
     const SynthShot shot(small("moving"));
     EXPECT_TRUE(shot.frame(2).colorLinear.samePixels(SynthShot(small("moving")).frame(2).colorLinear));
@@ -407,6 +465,13 @@ TEST(Synth, WrongOptionsAreUsageErrors) {
     EXPECT_THROW(with([](auto& o) { o.jitter = "x"; })(), UsageError);
     EXPECT_THROW(with([](auto& o) { o.subsamples = "d3d3"; })(), UsageError);
     EXPECT_THROW(with([](auto& o) { o.subsampleColor = true; })(), UsageError);
+    EXPECT_THROW(with([](auto& o) { o.premultiplied = true; })(), UsageError);  // orthographic
+    EXPECT_THROW(with([](auto& o) {
+                     o.scene = "two_planes";
+                     o.premultiplied = true;
+                     o.jitter = "none";
+                 })(),
+                 UsageError);
     EXPECT_THROW(with([](auto& o) { o.width = 0; })(), UsageError);
     EXPECT_THROW(with([](auto& o) { o.frames = 0; })(), UsageError);
     EXPECT_THROW(with([](auto& o) {
