@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cameras: the shift that jitters a picture, and matrices without jitter.
+"""Cameras: the shift that jitters a picture (or, as a labelled variant, a movement), and matrices without jitter.
 
 Positions are pixels of the exported picture, x right, y **down**, origin at the top-left corner. Matrices are
 row-major for column vectors: world -> view (the camera looks along -z) and view -> clip (OpenGL, z in -w..w).
@@ -74,6 +74,16 @@ def jitter_to_shift(
         fit = "HORIZONTAL" if wide else "VERTICAL"
     side = frame.full_width if fit == "HORIZONTAL" else aspect * frame.full_height
     return jitter_x / side, -jitter_y * aspect / side
+
+
+def premultiplied_movement(frame: Frame, jitter_x: float, jitter_y: float) -> tuple[float, float]:
+    """How far, in scene units to the right and up, a camera moves parallel to its picture in place of a jitter.
+
+    The error of the T2MSAA/ASAA thesis, for its reproduction: the translation (-2 jx / W, +2 jy / H) of clip space was
+    multiplied to the wrong side of the projection P and moved the geometry in view space. A point at depth z is then
+    sampled at (jx P00 / z, jy P11 / z) pixels instead of at the jitter.
+    """
+    return 2.0 * jitter_x / frame.full_width, -2.0 * jitter_y / frame.full_height
 
 
 @dataclass(frozen=True)
@@ -177,13 +187,24 @@ class JitterCamera:
         scene.collection.objects.link(self.object)
 
     def aim(
-        self, frame: Frame, depsgraph: bpy.types.Depsgraph, jitter_x: float, jitter_y: float
+        self,
+        frame: Frame,
+        depsgraph: bpy.types.Depsgraph,
+        jitter_x: float,
+        jitter_y: float,
+        premultiplied: tuple[float, float] = (0.0, 0.0),
     ) -> None:
-        """Displaces the samples by a jitter (pixels, y down) from the source camera at the current frame."""
-        source = self.source.evaluated_get(depsgraph).data
-        shift_x, shift_y = jitter_to_shift(frame, source, jitter_x, jitter_y)
-        self.object.data.shift_x = source.shift_x + shift_x
-        self.object.data.shift_y = source.shift_y + shift_y
+        """Displaces the samples by a jitter (pixels, y down) from the source camera at the current frame.
+
+        ``premultiplied`` is a further jitter in pixels that moves the camera, as ``premultiplied_movement`` says."""
+        placed = self.source.evaluated_get(depsgraph)
+        shift_x, shift_y = jitter_to_shift(frame, placed.data, jitter_x, jitter_y)
+        self.object.data.shift_x = placed.data.shift_x + shift_x
+        self.object.data.shift_y = placed.data.shift_y + shift_y
+        # Scene units: the scale of a camera, or of what it hangs on, scales the place of its child.
+        axes = [column.length for column in placed.matrix_world.to_3x3().col]
+        right, up = premultiplied_movement(frame, *premultiplied)
+        self.object.location = (right / axes[0], up / axes[1], 0.0)
 
 
 class CameraCuts:

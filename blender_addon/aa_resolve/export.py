@@ -83,6 +83,7 @@ class Exporter:
                 "start": jitter.start_of(settings.jitter),
                 "period": settings.period,
                 "centred": settings.jitter_centred,
+                **({"projection": "premultiplied"} if settings.jitter_projection == "pre" else {}),
             },
             "static": self.static,
         }

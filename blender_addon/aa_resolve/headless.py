@@ -108,6 +108,12 @@ def build_parser() -> argparse.ArgumentParser:
         help="subtract the mean of one period of the jitter",
     )
     add(
+        "--jitter-projection",
+        choices=("post", "pre"),
+        default="post",
+        help="post: samples move by the jitter; pre: labelled variant, the error of the T2MSAA/ASAA thesis: the camera moves by (2 jx / W, -2 jy / H) scene units and the picture by jitter x focal length / depth (post)",
+    )
+    add(
         "--subsamples",
         default=None,
         metavar="PATTERN",
@@ -190,6 +196,12 @@ def settings_from(arguments: argparse.Namespace, scene: bpy.types.Scene) -> Sett
         raise UsageError(
             f"--jitter: unknown sequence '{arguments.jitter}'; known: {', '.join(jitter.SEQUENCES)}"
         )
+    if arguments.jitter_projection == "pre" and arguments.jitter == "none":
+        raise UsageError("--jitter-projection pre: has no effect without a jitter")
+    if arguments.jitter_projection == "pre" and "edges" in passes:
+        raise UsageError(
+            "--jitter-projection pre: distances to edges are measured from the jitter, which the samples do not keep; leave out the pass 'edges'"
+        )
     _check_range("--period", arguments.period, 1, 1 << 20)
     _check_range("--samples", arguments.samples, 1, 1 << 16)
     _check_range("--truth-samples", arguments.truth_samples, 1, 1 << 20)
@@ -236,6 +248,7 @@ def settings_from(arguments: argparse.Namespace, scene: bpy.types.Scene) -> Sett
         jitter=arguments.jitter,
         period=arguments.period,
         jitter_centred=arguments.jitter_centred,
+        jitter_projection=arguments.jitter_projection,
         pattern=pattern,
         lighting=arguments.lighting,
         ambient=tuple(arguments.ambient) if arguments.ambient else None,

@@ -82,7 +82,7 @@ class _Pcg32:
         return self.next() / 4294967296.0
 
 
-def _gaussian(index: int, sigma: float) -> Offset:
+def _gaussian(index: int, scale: float) -> Offset:
     """Marsaglia's polar method, one generator per frame, clipped to the pixel."""
     generator = _Pcg32(index)
     while True:
@@ -90,7 +90,7 @@ def _gaussian(index: int, sigma: float) -> Offset:
         square = a * a + b * b
         if 0.0 < square < 1.0:
             break
-    factor = sigma * math.sqrt(-2.0 * math.log(square) / square)
+    factor = scale * math.sqrt(-2.0 * math.log(square) / square)
     return max(-0.5, min(0.5, factor * a)), max(-0.5, min(0.5, factor * b))
 
 
@@ -98,7 +98,12 @@ _QUADRANTS: tuple[Offset, ...] = ((-0.25, -0.25), (-0.25, 0.25), (0.25, -0.25), 
 # The INSIDE lists are published with y up.
 _UNIFORM4: tuple[Offset, ...] = ((-0.25, 0.25), (0.25, -0.25), (0.25, 0.25), (-0.25, -0.25))
 _ROTATED4: tuple[Offset, ...] = ((-0.125, 0.375), (0.375, 0.125), (0.125, -0.375), (-0.375, -0.125))
-_GAUSSIAN_SIGMA = 0.2575  # seed 001, Listing 4.2
+# Seed 001, Listing 4.2, which multiplies by the square of sigma by mistake.
+_GAUSSIAN_SCALE: dict[str, float] = {
+    "gaussian": 0.2575,
+    "quadrantGaussian": 0.2575,
+    "quadrantGaussianVariance": 0.2575 * 0.2575,
+}
 
 SEQUENCES: dict[str, str] = {
     "none": "every sample at the pixel centre",
@@ -111,18 +116,24 @@ SEQUENCES: dict[str, str] = {
     "gaussian": "normal distribution, sigma 0.2575 px, clipped to the pixel",
     "quadrant": "the four quarter points in turn",
     "quadrantGaussian": "quarter points plus the normal distribution (asaa)",
+    "quadrantGaussianVariance": "labelled variant: quarter points plus a normal distribution of 0.0663 px, the square of sigma, as seed 001 lists it",
     "insideUniform4": "four quarter points, helix order",
     "insideRotated4": "rotated grid of four",
     "msaa8": "the Direct3D 8x pattern in turn",
     "smaaT2x": "(+.25, +.25) and (-.25, -.25) in turn",
     "smaa4x": "(+.125, -.125) and (-.125, +.125) in turn, for sub-samples d3d2",
     "t2msaa": "(+.25, -.25) and (-.25, +.25) in turn, for sub-samples d3d2",
+    "t2msaa1875": "(+.1875, -.1875) and (-.1875, +.1875) in turn, for sub-samples d3d2",
+    "t2msaa125": "(+.125, -.125) and (-.125, +.125) in turn, for sub-samples d3d2",
 }
-# Two places in turn: SMAA's (methods/03 s.3.3 and 3.5, published with y up) and those of seed 001 s.4.4.2.
+# Two places in turn: SMAA's (methods/03 s.3.3 and 3.5, published with y up) and those of seed 001 s.4.4.2, whose tables
+# 5.18 and 5.19 have the two smaller ones: with these the samples of two frames lie in rows and columns of their own.
 _PAIRS: dict[str, tuple[Offset, Offset]] = {
     "smaaT2x": ((0.25, 0.25), (-0.25, -0.25)),
     "smaa4x": ((0.125, -0.125), (-0.125, 0.125)),
     "t2msaa": ((0.25, -0.25), (-0.25, 0.25)),
+    "t2msaa1875": ((0.1875, -0.1875), (-0.1875, 0.1875)),
+    "t2msaa125": ((0.125, -0.125), (-0.125, 0.125)),
 }
 
 
@@ -149,10 +160,10 @@ def _raw(sequence: str, index: int, period: int) -> Offset:
         )
     if sequence == "ign":
         return _interleaved_gradient(1.0, 1.0, n) - 0.5, _interleaved_gradient(1.0, 2.0, n) - 0.5
-    if sequence == "gaussian":
-        return _gaussian(n, _GAUSSIAN_SIGMA)
-    if sequence == "quadrantGaussian":
-        (x, y), (dx, dy) = _QUADRANTS[n % 4], _gaussian(n, _GAUSSIAN_SIGMA)
+    if sequence in _GAUSSIAN_SCALE:
+        (dx, dy), (x, y) = _gaussian(n, _GAUSSIAN_SCALE[sequence]), _QUADRANTS[n % 4]
+        if sequence == "gaussian":
+            return dx, dy
         return max(-0.5, min(0.5, x + dx)), max(-0.5, min(0.5, y + dy))
     tables = {"quadrant": _QUADRANTS, "insideUniform4": _UNIFORM4, "insideRotated4": _ROTATED4}
     if sequence in tables:

@@ -70,7 +70,10 @@ class Pictures:
         camera = self._cameras[source.name_full]
         self.plan.scene.camera = camera.object
         bpy.context.view_layer.update()
-        camera.aim(self.plan.frame, bpy.context.evaluated_depsgraph_get(), *offset)
+        shift, movement = self.plan.settings.shift_and_movement(offset)
+        camera.aim(
+            self.plan.frame, bpy.context.evaluated_depsgraph_get(), *shift, premultiplied=movement
+        )
 
     def _views(self, number: int) -> subsamples.ViewSet:
         source = self.plan.cuts.at(number)

@@ -11,6 +11,7 @@ import bpy
 from . import analysis
 from . import camera as cam
 from . import instances, jitter, lighting, rendering, subsamples
+from .errors import SceneError
 from .report import Reporter
 from .settings import Settings
 
@@ -67,6 +68,13 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, reporter: Reporter) ->
     frame = cam.frame_of(scene)
     cuts = cam.CameraCuts(scene)
     cuts.at(settings.frames[0])
+    if settings.jitter_projection == "pre":
+        for number in settings.frames:
+            if cuts.at(number).data.type != "PERSP":
+                raise SceneError(
+                    f"--jitter-projection pre: camera '{cuts.at(number).name}' is not a perspective one, "
+                    "and the error that it reproduces is one of perspective"
+                )
     analysis.show_what_renders(scene)
     passes_of = {"frames": set(settings.passes), "centre": set(settings.centre_passes)}
     motion = analysis.find_motion(scene, settings.frames, frame, cuts)

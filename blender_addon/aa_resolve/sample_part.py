@@ -21,7 +21,8 @@ def render(
 ) -> list[rendering.Layers]:
     """All sub-samples of the current frame: one render, or one per light where they are shaded."""
     bpy.context.view_layer.update()
-    views.aim(plan.frame, bpy.context.evaluated_depsgraph_get(), offset)
+    shift, movement = plan.settings.shift_and_movement(offset)
+    views.aim(plan.frame, bpy.context.evaluated_depsgraph_get(), shift, movement)
     wants_color = "subsampleColor" in passes
     geometry = {"Depth", "Normal", "IndexOB"} if "subsamples" in passes else set()
     if not wants_color:

@@ -49,6 +49,7 @@ class Settings:
     jitter: str = "halton23"
     period: int = 16
     jitter_centred: bool = False
+    jitter_projection: str = "post"  # pre: camera.premultiplied_movement, a labelled variant
     pattern: str = "d3d8"
     lighting: str = "noise-free"
     ambient: tuple[float, float, float] | None = None
@@ -58,6 +59,13 @@ class Settings:
     instance_ids: bool = True
     source: str = ""
     overwrite: bool = False
+
+    def shift_and_movement(
+        self, offset: tuple[float, float]
+    ) -> tuple[tuple[float, float], tuple[float, float]]:
+        """A frame's jitter as JitterCamera.aim takes it: what shifts the picture and what moves the camera."""
+        nothing = (0.0, 0.0)
+        return (nothing, offset) if self.jitter_projection == "pre" else (offset, nothing)
 
     def fingerprint(self) -> dict:
         """What decides the content of every file: equal fingerprints, equal bytes.
@@ -80,6 +88,7 @@ _FLAGS = {
     "jitter": "--jitter",
     "period": "--period",
     "jitter_centred": "--jitter-centred",
+    "jitter_projection": "--jitter-projection",
     "pattern": "--subsamples",
     "lighting": "--lighting",
     "ambient": "--ambient",

@@ -34,11 +34,15 @@ class ViewSet:
             self.cameras.append(camera)
 
     def aim(
-        self, frame: cam.Frame, depsgraph: bpy.types.Depsgraph, jitter: tuple[float, float]
+        self,
+        frame: cam.Frame,
+        depsgraph: bpy.types.Depsgraph,
+        jitter: tuple[float, float],
+        premultiplied: tuple[float, float] = (0.0, 0.0),
     ) -> None:
-        """Places all sub-samples of the current frame: each at its position beside the jitter."""
+        """Places all sub-samples of the current frame: each at its position beside the jitter (JitterCamera.aim)."""
         for camera, (x, y) in zip(self.cameras, self.positions):
-            camera.aim(frame, depsgraph, jitter[0] + x, jitter[1] + y)
+            camera.aim(frame, depsgraph, jitter[0] + x, jitter[1] + y, premultiplied)
 
     def render(self, view_layer: bpy.types.ViewLayer, folder: str) -> rendering.Layers:
         """Renders all views with the current passes, lights and materials."""

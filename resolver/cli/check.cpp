@@ -17,10 +17,11 @@ std::string passList(PassSet passes) {
 void print(const CheckReport& r) {
     for (const auto& f : r.findings) std::printf("%s\n", f.line().c_str());
     for (const auto& m : r.measured) std::printf("  %-32s %.4g\n", m.name.c_str(), m.value);
+    for (const auto& v : r.variants) std::printf("  labelled variant: %s\n", v.c_str());
     for (const auto& n : r.notChecked) std::printf("  not checked: %s\n", n.c_str());
     std::printf("%s: %s; %zu frames; passes: %s\n", r.name.c_str(),
                 r.clean()
-                    ? "clean"
+                    ? (r.variants.empty() ? "clean" : "clean as the labelled variant that it is")
                     : (std::to_string(r.findings.size()) + (r.findings.size() == 1 ? " finding" : " findings")).c_str(),
                 r.frames, passList(r.passes).c_str());
 }

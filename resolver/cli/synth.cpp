@@ -16,6 +16,7 @@ struct Options {
     std::string out;
     std::vector<std::string> methods;
     std::vector<int> resolution = {480, 270}, nanPixel;
+    std::string jitterProjection = "post";
     int threads = 0;
     bool quiet = false, list = false;
 };
@@ -66,6 +67,7 @@ int synth(Options& o) {
     o.synth.width = o.resolution[0];
     o.synth.height = o.resolution[1];
     if (!o.nanPixel.empty()) o.synth.nanPixel = glm::ivec2(o.nanPixel[0], o.nanPixel[1]);
+    o.synth.premultiplied = o.jitterProjection == "pre";
     if (!o.methods.empty()) planFor(o.methods, o.synth);
     Manifest m;
     bool stopped = false;
@@ -77,8 +79,9 @@ int synth(Options& o) {
             return !stopped;
         });
     });
-    std::printf("%s: %zu frames of %s, %dx%d, jitter %s, %s -> %s\n", stopped ? "stopped" : "done", m.frames.size(),
-                m.name.c_str(), m.width, m.height, m.jitterSequence.c_str(), m.isStatic ? "static" : "moving",
+    std::printf("%s: %zu frames of %s, %dx%d, jitter %s%s, %s -> %s\n", stopped ? "stopped" : "done", m.frames.size(),
+                m.name.c_str(), m.width, m.height, m.jitterSequence.c_str(),
+                m.jitterPremultiplied ? " (labelled variant: premultiplied)" : "", m.isStatic ? "static" : "moving",
                 o.out.c_str());
     return stopped ? 1 : 0;
 }
@@ -98,6 +101,10 @@ void addSynth(CLI::App& app, Context& context) {
     c->add_option("--start", o->synth.jitterStart, "index of the first point of halton23; -1 = its own");
     c->add_option("--period", o->synth.period, "frames after which the jitter repeats")->check(CLI::Range(1, 1 << 20));
     c->add_flag("--centre", o->synth.centred, "subtract the mean of one period from the jitter");
+    c->add_option("--jitter-projection", o->jitterProjection,
+                  "post: samples move by the jitter; pre: labelled variant, the error of the T2MSAA/ASAA thesis, they "
+                  "move by jitter x focal length / depth (perspective scenes)")
+        ->check(CLI::IsMember({"post", "pre"}));
     c->add_option("--subsamples", o->synth.subsamples,
                   "pattern: d3d1, d3d2, d3d4, d3d8, d3d16, quincunx, grid1..grid8; empty = none");
     c->add_flag("--subsample-color", o->synth.subsampleColor, "colour at the sub-samples, too");

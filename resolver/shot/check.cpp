@@ -53,7 +53,10 @@ class ShotCheck {
             previous = std::move(frame);
             if (goOn && !goOn(manifest_.frames[i].frame)) break;
         }
-        if (jitter_.size() == 0) registerWithoutTruth();
+        if (manifest_.jitterPremultiplied)
+            namePremultiplied();
+        else if (jitter_.size() == 0)
+            registerWithoutTruth();
         if (jitter_.size() > 0) jitter_.judge(report_);
         if (!manifest_.isStatic) motion_.judge(report_);
         depth_.judge(report_);
@@ -228,8 +231,30 @@ class ShotCheck {
             }
         }
         if (!truthMean_) return;
+        const bool atOwnPlace = !manifest_.jitterPremultiplied || statedPx == dvec2(0.0);
         entry.jitterPx = statedPx;
-        jitter_.add(entry, registerSamples(planesOf(f.colorLinear), planesOf(*truthMean_)));
+        (atOwnPlace ? jitter_ : premultiplied_)
+            .add(entry, registerSamples(planesOf(f.colorLinear), planesOf(*truthMean_)));
+    }
+
+    // Its samples do not lie at the stated jitter, so they are not held against it; frames at pixel centres are.
+    void namePremultiplied() {
+        char text[400];
+        const auto& camera = manifest_.frames[0].camera;
+        const dvec2 focal = camera ? dvec2(camera->projection[0][0], camera->projection[1][1]) : dvec2(0.0);
+        std::snprintf(
+            text, sizeof text,
+            "premultiplied jitter, as shot.json says: a sample lies at (%.4g jx, %.4g jy) / depth px from the "
+            "pixel centre and not at the jitter (jx, jy) that the methods are told",
+            focal.x, focal.y);
+        report_.variants.emplace_back(text);
+        const auto scale = premultiplied_.scaleFound();
+        if (!scale) {
+            report_.notChecked.push_back("premultiplied jitter: no truth, or too few edges that can be registered");
+            return;
+        }
+        report_.measured.push_back({"jitter.premultipliedScaleX", scale->x});
+        report_.measured.push_back({"jitter.premultipliedScaleY", scale->y});
     }
 
     // No truth: the mean over all frames stands in for it, on pixels that rest. Ids are registered like a picture,
@@ -302,7 +327,7 @@ class ShotCheck {
     ShotReader reader_;
     const Manifest& manifest_;
     CheckReport report_;
-    JitterCheck jitter_;
+    JitterCheck jitter_, premultiplied_;
     IdCheck ids_;
     MotionCheck motion_;
     DepthCheck depth_;
@@ -343,6 +368,7 @@ nlohmann::ordered_json toJson(const CheckReport& r) {
     j["measured"] = nlohmann::ordered_json::object();
     for (const auto& m : r.measured) j["measured"][m.name] = m.value;
     j["notChecked"] = r.notChecked;
+    j["variants"] = r.variants;
     return j;
 }
 

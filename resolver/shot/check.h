@@ -5,6 +5,7 @@
 //   motion             p - motion must land on the same object; the 8 sign and axis variants compete (check_motion.h)
 //   depth, normals     planar and consistent with the normals, within near..far, scale (check_depth.h)
 //   ids                named in the manifest; 0 exactly where the depth is background
+// A labelled variant (premultiplied jitter) is named, with what was found of it, instead of being a finding.
 // What cannot be tested with the passes at hand is listed as such.
 #pragma once
 #include <functional>
@@ -37,6 +38,7 @@ struct CheckReport {
     std::vector<Finding> findings;
     std::vector<Measured> measured;
     std::vector<std::string> notChecked;  // what, and why
+    std::vector<std::string> variants;    // what the manifest says to be wrong on purpose: labelled, so no finding
     bool clean() const { return findings.empty(); }
 };
 nlohmann::ordered_json toJson(const CheckReport& report);

@@ -126,10 +126,25 @@ void JitterCheck::add(const FrameEntry& entry, const Registration& found, double
     frames_.push_back({entry.frame, entry.jitterPx, found, slackPx});
 }
 
-void JitterCheck::judge(CheckReport& report) const {
+std::vector<JitterCheck::Registered> JitterCheck::registered() const {
     std::vector<Registered> good;
     for (const auto& f : frames_)
         if (f.found.pixels >= kFewestPixels) good.push_back(f);
+    return good;
+}
+
+std::optional<dvec2> JitterCheck::scaleFound() const {
+    dvec2 cross(0.0), stated(0.0);
+    for (const auto& f : registered()) {
+        cross += f.found.offsetPx * f.statedPx;
+        stated += f.statedPx * f.statedPx;
+    }
+    if (!(std::min(stated.x, stated.y) > 1e-6)) return std::nullopt;
+    return cross / stated;
+}
+
+void JitterCheck::judge(CheckReport& report) const {
+    const std::vector<Registered> good = registered();
     if (good.empty()) {
         report.notChecked.push_back("jitter: no frame has enough edges that can be registered");
         return;

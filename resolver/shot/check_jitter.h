@@ -31,6 +31,8 @@ class JitterCheck {
     void add(const FrameEntry& entry, const Registration& found, double slackPx = 0);
     size_t size() const { return frames_.size(); }
     void judge(CheckReport& report) const;
+    // found = scale x stated, per axis, over the frames that could be registered; nothing without any jitter.
+    std::optional<glm::dvec2> scaleFound() const;
 
   private:
     struct Registered {
@@ -39,6 +41,7 @@ class JitterCheck {
         Registration found;
         double slackPx;
     };
+    std::vector<Registered> registered() const;
     bool judgeTogether(const std::vector<Registered>& good, CheckReport& report) const;
     std::vector<Registered> frames_;
 };

@@ -84,6 +84,39 @@ TEST_F(CheckTest, UnusableSegmentsAreCounted) {
     EXPECT_EQ(r.findings[0].frame, 2);
 }
 
+// A mistake made on purpose is named, and what the pixels show of it is measured; unlabelled it is a finding.
+TEST_F(CheckTest, PremultipliedJitterIsALabelledVariant) {
+    SynthOptions o = options("two_planes");
+    o.width = 480;
+    o.height = 270;
+    o.frames = 8;
+    o.premultiplied = true;
+    const CheckReport labelled = withManifest(o, [](Manifest&) {});
+    EXPECT_TRUE(labelled.clean()) << lines(labelled);
+    ASSERT_EQ(labelled.variants.size(), 1u);
+    EXPECT_THAT(labelled.variants[0], HasSubstr("premultiplied jitter, as shot.json says: a sample lies at (2.74 jx, "
+                                                "4.87 jy) / depth px"));
+    const auto measured = [](const CheckReport& r, const std::string& name) {
+        for (const auto& m : r.measured)
+            if (m.name == name) return m.value;
+        return -1.0;
+    };
+    const double x = measured(labelled, "jitter.premultipliedScaleX"),
+                 y = measured(labelled, "jitter.premultipliedScaleY");
+    EXPECT_TRUE(x > 0.3 && x < 0.65) << x;   // 2.74 / 9 to 2.74 / 4.2
+    EXPECT_TRUE(y > 0.54 && y < 1.16) << y;  // 4.87 / 9 to 4.87 / 4.2
+    EXPECT_EQ(measured(labelled, "jitter.meanErrorPx"), -1);
+    EXPECT_EQ(toJson(labelled)["variants"].size(), 1u);
+
+    // At these depths about half of the jitter is left, which is within the tolerance of a single frame; the mean error
+    // tells.
+    const CheckReport unlabelled = withManifest(o, [](Manifest& m) { m.jitterPremultiplied = false; });
+    o.premultiplied = false;
+    const CheckReport right = withManifest(o, [](Manifest&) {});
+    EXPECT_TRUE(unlabelled.variants.empty() && right.variants.empty());
+    EXPECT_GT(measured(unlabelled, "jitter.meanErrorPx"), 2 * measured(right, "jitter.meanErrorPx"));
+}
+
 TEST_F(CheckTest, CleanShotsAreClean) {
     for (const auto& scene : synthScenes()) {
         SynthOptions o = options(scene.name.data(), "d3d4");

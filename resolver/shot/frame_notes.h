@@ -15,6 +15,7 @@ struct FrameNotes {
     std::map<int, Note> frames;
     std::string jitterSequence = "file";
     int jitterStart = 0, jitterPeriod = 1;
+    bool jitterPremultiplied = false;
 };
 FrameNotes readFrameNotes(const std::filesystem::path& file);  // throws InputError
 

@@ -119,6 +119,7 @@ class Import {
             m.jitterSequence = jitter_->jitterSequence;
             m.jitterStart = jitter_->jitterStart;
             m.jitterPeriod = jitter_->jitterPeriod;
+            m.jitterPremultiplied = jitter_->jitterPremultiplied;
         }
         BlenderExr first(frames_.begin()->second);
         first.choose(plan_.layer, plan_.view);

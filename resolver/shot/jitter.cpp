@@ -10,7 +10,8 @@
 
 namespace aa {
 namespace {
-constexpr double kGaussianSigmaPx = 0.2575;  // seed 001, Listing 4.2 (which multiplies by its square by mistake)
+constexpr double kGaussianSigmaPx = 0.2575;  // seed 001, Listing 4.2, which multiplies by its square by mistake
+constexpr double kListedScalePx = kGaussianSigmaPx * kGaussianSigmaPx;  // that mistake: what its figures were made with
 
 double frac(double v) { return v - std::floor(v); }
 double clampToPixel(double v) { return std::clamp(v, -0.5, 0.5); }
@@ -42,12 +43,12 @@ class Pcg32 {
 };
 
 // Marsaglia's polar method (seed 001), one generator per frame.
-glm::dvec2 gaussian(uint64_t n) {
+glm::dvec2 gaussian(uint64_t n, double scalePx) {
     Pcg32 generator(n);
     for (;;) {
         const double a = 2 * generator.uniform() - 1, b = 2 * generator.uniform() - 1, s = a * a + b * b;
         if (!(s > 0 && s < 1)) continue;
-        const double f = kGaussianSigmaPx * std::sqrt(-2 * std::log(s) / s);
+        const double f = scalePx * std::sqrt(-2 * std::log(s) / s);
         return {clampToPixel(f * a), clampToPixel(f * b)};
     }
 }
@@ -58,8 +59,10 @@ constexpr glm::dvec2 kUniform4[] = {{-0.25, 0.25}, {0.25, -0.25}, {0.25, 0.25}, 
 constexpr glm::dvec2 kRotated4[] = {{-0.125, 0.375}, {0.375, 0.125}, {0.125, -0.375}, {-0.375, -0.125}};
 constexpr glm::dvec2 kSmaaT2x[] = {{0.25, 0.25}, {-0.25, -0.25}};
 constexpr glm::dvec2 kSmaa4x[] = {{0.125, -0.125}, {-0.125, 0.125}};  // methods/03 s.3.5, published with y up
-constexpr glm::dvec2 kT2msaa[] = {{0.25, -0.25}, {-0.25, 0.25}};      // seed 001 s.4.4.2 with d = 0.25
-constexpr uint32_t kReverseRadix3[] = {0, 2, 1};                      // MATLAB's RR2 in base 3; the identity in base 2
+// T2MSAA: (d, -d) and (-d, d) in turn. Seed 001 s.4.4.2 has d = 0.25 px, its tables 5.18 and 5.19 the two others, with
+// which the four samples of two frames lie in rows and columns of their own.
+constexpr glm::dvec2 kT2msaaDirection[] = {{1, -1}, {-1, 1}};
+constexpr uint32_t kReverseRadix3[] = {0, 2, 1};  // MATLAB's RR2 in base 3; the identity in base 2
 
 glm::dvec2 point(std::string_view sequence, uint64_t start, uint64_t n, uint64_t period) {
     const auto fromUnit = [](double u, double v) { return glm::dvec2(u - 0.5, v - 0.5); };
@@ -72,17 +75,20 @@ glm::dvec2 point(std::string_view sequence, uint64_t start, uint64_t n, uint64_t
     if (sequence == "r2")  // Roberts: powers of the inverse plastic number
         return fromUnit(frac(0.5 + double(n) * 0.7548776662466927), frac(0.5 + double(n) * 0.5698402909980532));
     if (sequence == "ign") return fromUnit(interleavedGradient(1, 1, double(n)), interleavedGradient(1, 2, double(n)));
-    if (sequence == "gaussian") return gaussian(n);
+    if (sequence == "gaussian") return gaussian(n, kGaussianSigmaPx);
     if (sequence == "quadrant") return kQuadrants[n % 4];
-    if (sequence == "quadrantGaussian") {
-        const glm::dvec2 q = kQuadrants[n % 4], g = gaussian(n);
+    if (sequence == "quadrantGaussian" || sequence == "quadrantGaussianVariance") {
+        const double scalePx = sequence == "quadrantGaussian" ? kGaussianSigmaPx : kListedScalePx;
+        const glm::dvec2 q = kQuadrants[n % 4], g = gaussian(n, scalePx);
         return {clampToPixel(q.x + g.x), clampToPixel(q.y + g.y)};
     }
     if (sequence == "insideUniform4") return kUniform4[n % 4];
     if (sequence == "insideRotated4") return kRotated4[n % 4];
     if (sequence == "msaa8") return glm::dvec2(kD3d8[n % 8].x, kD3d8[n % 8].y) / 16.0;
     if (sequence == "smaa4x") return kSmaa4x[n % 2];
-    if (sequence == "t2msaa") return kT2msaa[n % 2];
+    if (sequence == "t2msaa") return kT2msaaDirection[n % 2] * 0.25;
+    if (sequence == "t2msaa1875") return kT2msaaDirection[n % 2] * 0.1875;
+    if (sequence == "t2msaa125") return kT2msaaDirection[n % 2] * 0.125;
     return kSmaaT2x[n % 2];
 }
 }  // namespace
@@ -109,12 +115,18 @@ const std::vector<JitterInfo>& jitterSequences() {
         {"gaussian", "normal distribution, sigma 0.2575 px, clipped to the pixel", 0, 0},
         {"quadrant", "the four quarter points in turn", 0, 4},
         {"quadrantGaussian", "quarter points plus the normal distribution (asaa)", 0, 0},
+        {"quadrantGaussianVariance",
+         "labelled variant: quarter points plus a normal distribution of 0.0663 px, the square of sigma, as seed 001 "
+         "lists it",
+         0, 0},
         {"insideUniform4", "four quarter points, helix order", 0, 4},
         {"insideRotated4", "rotated grid of four", 0, 4},
         {"msaa8", "the Direct3D 8x pattern in turn", 0, 8},
         {"smaaT2x", "(+.25, +.25) and (-.25, -.25) in turn", 0, 2},
         {"smaa4x", "(+.125, -.125) and (-.125, +.125) in turn, for sub-samples d3d2", 0, 2},
         {"t2msaa", "(+.25, -.25) and (-.25, +.25) in turn, for sub-samples d3d2", 0, 2},
+        {"t2msaa1875", "(+.1875, -.1875) and (-.1875, +.1875) in turn, for sub-samples d3d2", 0, 2},
+        {"t2msaa125", "(+.125, -.125) and (-.125, +.125) in turn, for sub-samples d3d2", 0, 2},
     };
     return table;
 }

@@ -69,6 +69,10 @@ TEST(Jitter, ListsKeepTheirOrderAndSign) {
     expectPoints("insideUniform4", 16, {{-.25, .25}, {.25, -.25}, {.25, .25}, {-.25, -.25}});
     expectPoints("insideRotated4", 16, {{-.125, .375}, {.375, .125}, {.125, -.375}, {-.375, -.125}});
     expectPoints("smaaT2x", 2, {{.25, .25}, {-.25, -.25}, {.25, .25}});
+    // Seed 001 moves the geometry by (-d, d) and (d, -d), y down; the samples go the other way.
+    expectPoints("t2msaa", 2, {{.25, -.25}, {-.25, .25}, {.25, -.25}});
+    expectPoints("t2msaa1875", 2, {{.1875, -.1875}, {-.1875, .1875}, {.1875, -.1875}});
+    expectPoints("t2msaa125", 2, {{.125, -.125}, {-.125, .125}, {.125, -.125}});
     expectPoints("msaa8", 8, {{1 / 16., -3 / 16.}, {-1 / 16., 3 / 16.}, {5 / 16., 1 / 16.}});
     expectPoints("none", 1, {{0, 0}, {0, 0}});
 }
@@ -82,6 +86,24 @@ TEST(Jitter, GaussianHasItsSpreadAndStaysInThePixel) {
     EXPECT_NEAR(std::sqrt(square / 8000), 0.2455, 0.004);  // sigma 0.2575, clipped at 1.94 sigma
     EXPECT_EQ(jitterPx({.sequence = "gaussian"}, 3), jitterPx({.sequence = "gaussian"}, 3));
     EXPECT_NE(jitterPx({.sequence = "gaussian"}, 3), jitterPx({.sequence = "gaussian"}, 4));
+}
+// Seed 001 multiplies the same normal numbers by sigma squared: quarter points with hardly any spread.
+TEST(Jitter, TheListedVarianceIsALabelledVariant) {
+    double square = 0;
+    int unclipped = 0;
+    for (uint64_t n = 0; n < 4000; n++) {
+        const glm::dvec2 quadrant = jitterPx({.sequence = "quadrant"}, n % 4);
+        const glm::dvec2 g = jitterPx({.sequence = "gaussian", .period = 4000}, n),
+                         v = jitterPx({.sequence = "quadrantGaussianVariance", .period = 4000}, n) - quadrant;
+        square += v.x * v.x + v.y * v.y;
+        if (std::abs(g.x) == 0.5 || std::abs(g.y) == 0.5) continue;
+        unclipped++;
+        EXPECT_NEAR(v.x, 0.2575 * g.x, 1e-12);
+        EXPECT_NEAR(v.y, 0.2575 * g.y, 1e-12);
+    }
+    EXPECT_GT(unclipped, 3000);
+    EXPECT_NEAR(std::sqrt(square / 8000), 0.0663, 0.001);
+    EXPECT_EQ(jitterSequence("quadrantGaussianVariance").meaning.substr(0, 16), "labelled variant");
 }
 TEST(Jitter, EverySequenceStaysInThePixelAndRepeats) {
     for (const auto& s : jitterSequences())

@@ -176,6 +176,15 @@ void parseObjects(const Member& m, Manifest& manifest) {
     }
 }
 
+bool isPremultiplied(const Member& jitter) {
+    const auto projection = jitter.find("projection");
+    if (!projection) return false;
+    const std::string text = projection->text();
+    if (text != "premultiplied" && text != "postmultiplied")
+        projection->fail("\"postmultiplied\" or \"premultiplied\"");
+    return text == "premultiplied";
+}
+
 Manifest parseDocument(const Member& doc) {
     Manifest m;
     if (doc["format"].text() != "aaresolve-shot") doc["format"].fail("\"aaresolve-shot\"");
@@ -192,7 +201,8 @@ Manifest parseDocument(const Member& doc) {
         m.jitterSequence = (*j)["sequence"].text();
         if (const auto v = j->find("start")) m.jitterStart = v->integer(0, INT32_MAX);
         if (const auto v = j->find("period")) m.jitterPeriod = v->integer(1, INT32_MAX);
-        keepUnknown(m.extra, "jitter", j->value(), {"sequence", "start", "period"});
+        m.jitterPremultiplied = isPremultiplied(*j);
+        keepUnknown(m.extra, "jitter", j->value(), {"sequence", "start", "period", "projection"});
     }
     if (const auto v = doc.find("static")) m.isStatic = v->flag();
     if (const auto s = doc.find("subsamples"); s && !s->value().is_null()) {
@@ -320,6 +330,7 @@ FrameNotes readFrameNotes(const fs::path& file) {
         if (const auto v = j->find("sequence")) notes.jitterSequence = v->text();
         if (const auto v = j->find("start")) notes.jitterStart = v->integer(0, INT32_MAX);
         if (const auto v = j->find("period")) notes.jitterPeriod = v->integer(1, INT32_MAX);
+        notes.jitterPremultiplied = isPremultiplied(*j);
     }
     const Member frames = doc["frames"];
     json unused = json::object();
@@ -346,6 +357,7 @@ json toJson(const Manifest& m) {
     j["jitter"]["sequence"] = m.jitterSequence;
     j["jitter"]["start"] = m.jitterStart;
     j["jitter"]["period"] = m.jitterPeriod;
+    if (m.jitterPremultiplied) j["jitter"]["projection"] = "premultiplied";
     j["static"] = m.isStatic;
     if (!m.subsamplePositionsPx.empty()) {
         j["subsamples"]["pattern"] = m.subsamplePattern;

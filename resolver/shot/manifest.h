@@ -40,6 +40,12 @@ struct Manifest {
     double fps = 24;
     std::string jitterSequence = "none";
     int jitterStart = 1, jitterPeriod = 1;
+    // A labelled variant, made on purpose to reproduce a published error (seed 001 s.3.7.1, eqs 3.12 and 3.14): the
+    // jitter's translation was multiplied to the wrong side of the projection P, so it moved the geometry by
+    // (-2 jx / W, +2 jy / H) scene units in view space. A point at depth z is then sampled at (jx P[0][0] / z,
+    // jy P[1][1] / z) px, while FrameEntry::jitterPx states (jx, jy), as the methods of that thesis believed: right at
+    // the depth P[0][0] alone.
+    bool jitterPremultiplied = false;
     bool isStatic = false;  // camera and every object at rest
     std::string subsamplePattern;
     std::vector<glm::dvec2> subsamplePositionsPx;  // offsets from pixel centre + jitter, y down

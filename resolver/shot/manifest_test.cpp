@@ -43,6 +43,19 @@ std::string errorOf(const std::string& text) {
 }
 std::string errorOf(const json& j) { return errorOf(j.dump()); }
 
+TEST(Manifest, PremultipliedJitterIsKeptAndNeverAssumed) {
+    json j = validShot();
+    EXPECT_FALSE(parse(j).jitterPremultiplied);
+    EXPECT_FALSE(toJson(parse(j))["jitter"].contains("projection"));
+    j["jitter"]["projection"] = "postmultiplied";
+    EXPECT_FALSE(parse(j).jitterPremultiplied);
+    j["jitter"]["projection"] = "premultiplied";
+    EXPECT_TRUE(parse(j).jitterPremultiplied);
+    EXPECT_EQ(toJson(parse(j))["jitter"]["projection"], "premultiplied");
+    j["jitter"]["projection"] = "pre";
+    EXPECT_THAT(errorOf(j), HasSubstr("jitter.projection"));
+}
+
 TEST(Manifest, ReadsEveryMember) {
     const Manifest m = parse(validShot());
     EXPECT_EQ(m.name, "pipe");

@@ -66,13 +66,16 @@ const Placed* frontMost(const std::vector<Placed>& all, dvec2 p) {
     return nullptr;
 }
 
-// Signed distance along its major axis from p to the line of the polygon's nearest edge (methods/05 s.5.1).
-dvec2 nearestEdgePx(const Polygon& polygon, dvec2 p) {
+bool isSeam(const SynthShape& shape, size_t edge) { return edge < 32 && (shape.seams >> edge & 1); }
+
+// Signed distance along its major axis from p to the line of the shape's nearest edge (methods/05 s.5.1).
+dvec2 nearestEdgePx(const Placed& placed, dvec2 p) {
+    const auto& polygon = std::get<Polygon>(placed.region);
     double nearest = INFINITY;
     dvec2 r(0.5);
     for (size_t i = 0; i < polygon.size(); i++) {
         const dvec2 a = polygon[i], d = polygon[(i + 1) % polygon.size()] - a;
-        if (d == dvec2(0.0)) continue;
+        if (d == dvec2(0.0) || isSeam(*placed.shape, i)) continue;
         const dvec2 n(-d.y, d.x);
         const bool alongX = std::abs(n.x) > std::abs(n.y);
         const double s = glm::dot(a - p, n) / (alongX ? n.x : n.y);
@@ -95,8 +98,10 @@ bool polygonsOnly(const std::vector<SynthShape>& shapes) {
 // Everything that a sample at one position of one frame sees.
 class Sampler {
   public:
-    Sampler(const SynthSceneContents& scene, int width, int height, double time)
+    // All shapes moved by `shiftView` in view space.
+    Sampler(const SynthSceneContents& scene, int width, int height, double time, dvec3 shiftView = dvec3(0.0))
         : scene_(scene),
+          shiftView_(shiftView),
           width_(width),
           height_(height),
           time_(time),
@@ -113,8 +118,9 @@ class Sampler {
         const dvec2 ndc(2 * p.x / width_ - 1, 1 - 2 * p.y / height_);
         const dvec2 ray(ndc.x / m[0][0], ndc.y / m[1][1]);  // both cameras are centred
         const dvec3 n = s.normalView;
-        return float(scene_.camera.kind == "perspective" ? s.distance / (n.x * ray.x + n.y * ray.y - n.z)
-                                                         : (n.x * ray.x + n.y * ray.y - s.distance) / n.z);
+        const double distance = s.distance + glm::dot(n, shiftView_);
+        return float(scene_.camera.kind == "perspective" ? distance / (n.x * ray.x + n.y * ray.y - n.z)
+                                                         : (n.x * ray.x + n.y * ray.y - distance) / n.z);
     }
     dvec3 normal(const Placed* hit) const { return hit ? toWorld_ * hit->shape->normalView : dvec3(0.0); }
     static uint32_t object(const Placed* hit) { return hit ? hit->shape->object : 0; }
@@ -126,17 +132,36 @@ class Sampler {
 
   private:
     const SynthSceneContents& scene_;
+    dvec3 shiftView_;
     int width_, height_;
     double time_;
     glm::dmat3 toWorld_;
 };
 
-// All edges of a polygon, hidden ones too.
+// Seed 001 s.3.7.1: the jitter's translation in clip space, multiplied to the wrong side of the projection, moves the
+// geometry in view space instead. It is a translation parallel to the picture's plane, so every depth stays.
+dvec3 premultipliedShift(dvec2 jitterPx, int width, int height) {
+    return {-2 * jitterPx.x / width, 2 * jitterPx.y / height, 0.0};
+}
+
+// The same shapes, seen by a perspective camera after a movement by `shiftView` in view space.
+void moveInView(std::vector<Placed>& placed, const Sampler& before, const Manifest& m, dvec3 shiftView) {
+    const glm::dmat4& projection = m.frames[0].camera->projection;
+    const dvec2 pxAtUnitDepth(shiftView.x * projection[0][0] * m.width / 2,
+                              -shiftView.y * projection[1][1] * m.height / 2);
+    for (Placed& shape : placed) {
+        for (dvec2& corner : std::get<Polygon>(shape.region))
+            corner += pxAtUnitDepth / double(before.depth(&shape, corner));
+        shape.bounds = bounds(shape.region);
+    }
+}
+
+// All edges of a polygon but its seams, hidden ones too.
 void addSegments(const Placed& shape, const Sampler& sampler, std::vector<EdgeSegment>& to) {
     const auto& corners = std::get<Polygon>(shape.region);
     for (size_t i = 0; i < corners.size(); i++) {
         const dvec2 a = corners[i], b = corners[(i + 1) % corners.size()];
-        if (a == b) continue;
+        if (a == b || isSeam(*shape.shape, i)) continue;
         to.push_back(
             {float(a.x), float(a.y), sampler.depth(&shape, a), float(b.x), float(b.y), sampler.depth(&shape, b)});
     }
@@ -254,6 +279,11 @@ SynthShot::SynthShot(const SynthOptions& o) {
     auto scene = std::make_shared<Scene>();
     scene->contents = makeScene(o);
     scene_ = scene;
+    const bool canPremultiply = scene->contents.camera.kind == "perspective" && scene->contents.isStatic;
+    if (o.premultiplied && (!canPremultiply || o.jitter == "none"))
+        throw UsageError(
+            "synth: premultiplied jitter errs with the depth, so it needs a jitter and a perspective scene at rest, "
+            "such as two_planes");
     const JitterInfo& sequence = jitterSequence(o.jitter);
     const JitterSpec jitter{o.jitter, o.jitterStart, sequence.naturalPeriod ? sequence.naturalPeriod : o.period,
                             o.centred};
@@ -270,6 +300,7 @@ SynthShot::SynthShot(const SynthOptions& o) {
     m.jitterSequence = o.jitter;
     m.jitterStart = o.jitterStart >= 0 ? o.jitterStart : sequence.start;
     m.jitterPeriod = jitter.period;
+    m.jitterPremultiplied = o.premultiplied;
     m.isStatic = scene_->contents.isStatic;
     m.objects = scene_->contents.objects;
     if (!o.subsamples.empty()) {
@@ -330,13 +361,22 @@ Frame SynthShot::frame(size_t index, Sampling sampling) const {
     }
 
     const double time = double(index);
-    const auto placed = placedAt(shapes(), time);
-    const Sampler sampler(scene_->contents, w, h, time);
+    const auto atRest = placedAt(shapes(), time);
+    const Sampler unmoved(scene_->contents, w, h, time);
+    dvec2 samplePx = f.jitterPx;
+    dvec3 shiftView(0.0);
+    auto placed = atRest;
+    if (manifest_.jitterPremultiplied) {
+        shiftView = premultipliedShift(f.jitterPx, w, h);
+        moveInView(placed, unmoved, manifest_, shiftView);
+        samplePx = dvec2(0.0);
+    }
+    const Sampler sampler(scene_->contents, w, h, time, shiftView);
     forRows({}, h, [&](int y0, int y1) {
         for (int y = y0; y < y1; y++) {
             const auto row = ofRow(placed, y);
             for (int x = 0; x < w; x++) {
-                const dvec2 centre(x + 0.5, y + 0.5), p = centre + f.jitterPx;
+                const dvec2 centre(x + 0.5, y + 0.5), p = centre + samplePx;
                 const Placed* hit = frontMost(row, p);
                 put(f.colorLinear, x, y, sampler.color(hit, p));
                 put(f.normalWorld, x, y, sampler.normal(hit));
@@ -346,7 +386,7 @@ Frame SynthShot::frame(size_t index, Sampling sampling) const {
                 f.motionXPx.at(x, y) = float(motion.x);
                 f.motionYPx.at(x, y) = float(motion.y);
                 if (edges && hit) {
-                    const dvec2 e = nearestEdgePx(std::get<Polygon>(hit->region), p);
+                    const dvec2 e = nearestEdgePx(*hit, p);
                     f.edgeXPx.at(x, y) = float(e.x);
                     f.edgeYPx.at(x, y) = float(e.y);
                 }
@@ -364,7 +404,7 @@ Frame SynthShot::frame(size_t index, Sampling sampling) const {
         }
     });
     if (passes_.has(Pass::segments))
-        for (const Placed& shape : placed) addSegments(shape, sampler, f.segments);
+        for (const Placed& shape : atRest) addSegments(shape, unmoved, f.segments);
     f.albedoLinear = f.colorLinear;  // nothing is lit
     f.colorLinear.fillBorder();
     f.albedoLinear.fillBorder();

@@ -25,6 +25,8 @@ struct SynthOptions {
     int jitterStart = -1;  // as JitterSpec
     int period = 16;
     bool centred = false;
+    // The jitter moves the geometry before the projection instead of after it: Manifest::jitterPremultiplied.
+    bool premultiplied = false;
     std::string subsamples;       // pattern name; empty: none
     bool subsampleColor = false;  // colour at the sub-samples, too
     uint32_t seed = 1;            // of the colours
@@ -58,12 +60,15 @@ struct SynthShape {
     glm::dvec3 normalView{0.0, 0.0, 1.0};
     double distance = -10;
     RigidMotion motion;
+    // Bit i: behind the polygon's edge from corner i the same surface goes on in another shape, so it is no edge to
+    // see.
+    uint32_t seams = 0;
 };
 
 // A shot that can be asked for any frame, in any order. Thread-safe.
 class SynthShot {
   public:
-    // Throws UsageError: unknown scene, jitter or pattern; sizes out of range.
+    // Throws UsageError: unknown scene, jitter or pattern; sizes out of range; premultiplied without perspective.
     explicit SynthShot(const SynthOptions& options);
 
     const Manifest& manifest() const { return manifest_; }

@@ -265,6 +265,59 @@ SynthSceneContents clutter(int w, int h, uint32_t seed) {
     return s;
 }
 
+// A curved line of a width: a chain of quadrilaterals that share their ends, so that it is covered once. `turn` is the
+// angle between its two ends, spread evenly over its length.
+constexpr double kLargestBend = 0.15;  // radians between two parts: no corner to see at these widths
+void addStrand(SynthSceneContents& s, dvec2 at, double angle, double length, double turn, const SynthShape& like,
+               double width) {
+    const int parts = std::max(1, int(std::ceil(std::abs(turn) / kLargestBend)));
+    const double bend = turn / parts, half = width / 2;
+    // Across the strand at the end of a part: between its two directions, and longer, so that the width stays.
+    const auto across = [&](int i) {
+        const bool tip = i == 0 || i == parts;
+        const double normal = angle + bend * (i == parts ? i - 1 : tip ? 0 : i - 0.5) + kPi / 2;
+        return direction(normal) * (half / (tip ? 1 : std::cos(bend / 2)));
+    };
+    for (int i = 0; i < parts; i++) {
+        const dvec2 from = at, n0 = across(i), n1 = across(i + 1);
+        at += direction(angle + bend * i) * (length / parts);
+        SynthShape part = like;
+        part.region = Polygon{from - n0, at - n1, at + n1, from + n0};  // its edges 1 and 3 are the ends
+        part.seams = (i + 1 < parts ? 1u << 1 : 0u) | (i > 0 ? 1u << 3 : 0u);
+        s.shapes.push_back(part);
+    }
+}
+
+// Strands of 0.3 to 2 px in width, thrown over each other before a wall, half of them straight and half of them grey:
+// every random number is a hash of the strand's index. As many per area at every size, so that about a third of a large
+// picture is hair. Their values fill [0,1], as the picture that the thesis judges does (seed 000).
+SynthSceneContents hairs(int w, int h, uint32_t seed) {
+    constexpr double kAreaPerHair = 160, kShortest = 40, kLongest = 140, kThinnest = 0.3, kThickest = 2;  // px
+    constexpr int kTufts = 16, kFewest = 24;
+    SynthSceneContents s;
+    Palette palette(seed);
+    const auto count = std::max(kFewest, int(double(w) * h / kAreaPerHair));
+    for (int i = 0; i < count; i++) {
+        uint32_t index = 16 * uint32_t(i);
+        const auto next = [&](double lo, double hi) { return lo + (hi - lo) * hashed(seed ^ 0xA1Bu, index++); };
+        const double width = kThinnest * std::pow(kThickest / kThinnest, next(0, 1)),
+                     length = next(kShortest, kLongest);
+        const double angle = next(0, 2 * kPi), turn = i % 2 ? next(-2, 2) : 0.0;
+        const dvec2 middle{next(0, w), next(0, h)};  // braces: in this order with every compiler
+        dvec3 color{next(0, 1), next(0, 1), next(0, 1)};
+        if (i % 4 < 2) color = dvec3(color.x);
+        SynthShape like;
+        like.object = uint32_t(2 + i % kTufts);
+        like.color = color;
+        like.distance = -(5 + 20.0 * i / count);  // front to back, each at a depth of its own
+        addStrand(s, middle - direction(angle + turn / 2) * (length / 2), angle, length, turn, like, width);
+        s.objects[like.object] = "tuft " + std::to_string(i % kTufts);
+    }
+    s.shapes.push_back(flat(rectangle(-1, -1, w + 1, h + 1), 1, palette.middle(), 60));
+    s.objects[1] = "wall";
+    return s;
+}
+
 // Wires and poles before an empty sky and a field.
 SynthSceneContents thinMotion(int w, int h, uint32_t seed) {
     SynthSceneContents s;
@@ -339,6 +392,7 @@ const std::vector<SynthScene>& synthScenes() {
         {"moving", "shapes that translate and turn by fractions of a pixel over a striped wall"},
         {"two_planes", "a crease, a plane behind, sky; perspective, for the methods that read geometry"},
         {"clutter", "triangles and wires everywhere: one pixel in eight lies on an edge, for timing"},
+        {"hairs", "strands of 0.3 to 2 px over each other, straight and curved, of any colour"},
         {"thin_motion", "wires that move before sky, field and poles"},
     };
     return table;
@@ -365,6 +419,7 @@ SynthSceneContents makeScene(const SynthOptions& o) {
     if (name == "moving") return with(moving(w, h, seed));
     if (name == "two_planes") return with(twoPlanes(w, h, seed));
     if (name == "clutter") return with(clutter(w, h, seed));
+    if (name == "hairs") return with(hairs(w, h, seed));
     if (name == "thin_motion") return with(thinMotion(w, h, seed));
     std::string known;
     for (const auto& s : synthScenes()) known += (known.empty() ? "" : ", ") + std::string(s.name);

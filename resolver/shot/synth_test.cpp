@@ -110,6 +110,18 @@ TEST_P(SynthScenes, PassesAreSound) {
     EXPECT_EQ(f.reset, false);
 }
 
+// So that a scene can be judged in one displayed space, too: displayed value = value, truth = its mean.
+TEST_P(SynthScenes, ValuesCanBeDisplayed) {
+    const SynthShot shot(small(GetParam().data()));
+    const Frame f = shot.frame(1);
+    const Truth t = shot.truth(1);
+    for (const Rgb* picture : {&f.colorLinear, &f.albedoLinear, &t.a})
+        for (const PlaneF& plane : picture->c)
+            for (int y = 0; y < f.height; y++)
+                for (int x = 0; x < f.width; x++)
+                    ASSERT_TRUE(plane.at(x, y) >= 0 && plane.at(x, y) <= 1) << x << " " << y << " " << plane.at(x, y);
+}
+
 // Where p was: the surface's point of the previous frame has the same object and colour there, unless it was hidden.
 TEST(Synth, MotionLeadsToTheSameSurface) {
     for (const char* scene : {"moving", "thin_motion"}) {
@@ -182,6 +194,64 @@ TEST(Synth, HalfPlanesShowAtLeast64Angles) {
     EXPECT_FALSE(SynthShot(small("circles")).passes().has(Pass::segments));
 }
 
+// Widths as promised along the whole strand, neither gaps nor steps where its parts meet, and no edges there.
+TEST(Synth, HairsAreStrandsOfTheirWidth) {
+    SynthOptions o = small("hairs");
+    o.width = 256;
+    o.height = 144;
+    const SynthShot shot(o);
+    const auto& shapes = shot.shapes();
+    const auto corners = [&](size_t i) { return std::get<Polygon>(shapes[i].region); };
+    std::set<double> depths;
+    double thinnest = 100, thickest = 0;
+    size_t joints = 0, straight = 0, grey = 0, outlines = 0;
+    for (size_t i = 0; i + 1 < shapes.size(); i++) {  // the last one is the wall
+        const Polygon p = corners(i);
+        ASSERT_EQ(p.size(), 4u);
+        const dvec2 along = glm::normalize(p[1] - p[0]), other = glm::normalize(p[2] - p[3]);
+        EXPECT_NEAR(glm::dot(along, other), 1, 1e-12) << "its sides are parallel";
+        const double width = along.x * (p[3] - p[0]).y - along.y * (p[3] - p[0]).x;
+        thinnest = std::min(thinnest, width), thickest = std::max(thickest, width);
+        outlines += shapes[i].seams & 1u << 1 ? 0 : 1;
+        outlines += shapes[i].seams & 1u << 3 ? 0 : 1;
+        if (depths.insert(shapes[i].distance).second) {
+            straight += shapes[i].seams == 0;
+            grey += shapes[i].color.x == shapes[i].color.y && shapes[i].color.x == shapes[i].color.z;
+            continue;
+        }
+        joints++;
+        EXPECT_EQ(p[0], corners(i - 1)[1]) << i;
+        EXPECT_EQ(p[3], corners(i - 1)[2]) << i;
+        EXPECT_TRUE(shapes[i].seams & 1u << 3 && shapes[i - 1].seams & 1u << 1) << i;
+    }
+    const size_t strands = depths.size();
+    EXPECT_EQ(strands, 256u * 144 / 160);
+    EXPECT_TRUE(thinnest > 0.29999 && thinnest < 0.33 && thickest > 1.9 && thickest < 2.00001)
+        << thinnest << " " << thickest;
+    EXPECT_GT(joints, 2 * strands);
+    EXPECT_TRUE(straight >= strands / 2 && straight < strands * 6 / 10) << straight;
+    EXPECT_TRUE(grey >= strands * 4 / 10 && grey <= strands * 6 / 10) << grey;
+    EXPECT_EQ(outlines, 2 * strands);
+    EXPECT_EQ(shot.frame(0).segments.size(), 2 * (shapes.size() - 1) + outlines + 4);
+
+    const auto hairShare = [](int w, int h, uint32_t seed) {
+        SynthOptions o = small("hairs");
+        o.width = w, o.height = h, o.seed = seed;
+        const Frame f = SynthShot(o).frame(0);
+        double hair = 0;
+        for (int y = 0; y < h; y++)
+            for (int x = 0; x < w; x++) hair += f.objectId.at(x, y) != 1;
+        return hair / w / h;
+    };
+    for (const auto& [w, h] : {std::pair{256, 144}, {333, 480}})
+        for (const uint32_t seed : {1u, 2u}) {
+            const double share = hairShare(w, h, seed);
+            EXPECT_TRUE(share > 0.25 && share < 0.42) << w << " " << seed << ": " << share;
+        }
+    o.seed = 2;
+    EXPECT_NE(std::get<Polygon>(SynthShot(o).shapes()[0].region)[0], corners(0)[0]);
+}
+
 // methods/05 s.5.1: an edge 0.2 px to the right makes (0.2, 0.5); the sign follows the side.
 TEST(Synth, EdgeDistancesAreSignedAndPointAtTheEdge) {
     SynthOptions o = small("half_planes", 1);
@@ -241,6 +311,64 @@ TEST(Synth, SegmentsLieOnTheEdges) {
             }
         EXPECT_GT(seen, 10) << scene;
     }
+}
+
+// Manifest::jitterPremultiplied: what a pixel shows lies at jitter x P / depth in the picture without jitter. A camera
+// that moves sees around edges, too, which no displacement of the picture does: there a few pixels differ.
+TEST(Synth, PremultipliedJitterFallsWithDepth) {
+    SynthOptions o = small("two_planes");
+    o.premultiplied = true;
+    const SynthShot shot(o);
+    EXPECT_TRUE(shot.manifest().jitterPremultiplied);
+    const Frame f = shot.frame(3), centre = shot.frame(3, Sampling::centre);
+    const glm::dmat4& projection = f.camera->projection;
+    const dvec2 focal(projection[0][0], projection[1][1]);
+    const auto picture = shot.picture(3);
+    ASSERT_GT(glm::length(f.jitterPx), 0.3);
+    int pixels = 0, right = 0, rightAtJitter = 0, rightIfFlipped = 0, surfaces = 0;
+    double nearest = 1e10, farthest = 0;
+    for (int y = 0; y < f.height; y++)
+        for (int x = 0; x < f.width; x++) {
+            const dvec2 p(x + .5, y + .5);
+            const double z = f.depthView.at(x, y);
+            const dvec2 offset = z == kBackgroundDepth ? dvec2(0.0) : f.jitterPx * focal / z;
+            const auto shows = [&](dvec2 at) { return float(picture(at).x) == f.colorLinear.c[0].at(x, y); };
+            pixels++;
+            right += shows(p + offset);
+            rightAtJitter += shows(p + f.jitterPx);
+            rightIfFlipped += shows(p - offset);
+            if (z == kBackgroundDepth) continue;
+            nearest = std::min(nearest, z), farthest = std::max(farthest, z);
+            // The depth that a camera without jitter has of this surface at p + offset: planes in 1/z, over one pixel.
+            const double here = 1 / double(centre.depthView.at(x, y));
+            if (x < 1 || y < 1 || x > 119 || y > 75) continue;
+            bool oneSurface = true;
+            for (const glm::ivec2 d : {glm::ivec2(-1, 0), {1, 0}, {0, -1}, {0, 1}, {0, 0}})
+                oneSurface &= centre.objectId.at(x + d.x, y + d.y) == f.objectId.at(x, y);
+            if (!oneSurface) continue;
+            const double perX =
+                             (1 / double(centre.depthView.at(x + 1, y)) - 1 / double(centre.depthView.at(x - 1, y))) /
+                             2,
+                         perY =
+                             (1 / double(centre.depthView.at(x, y + 1)) - 1 / double(centre.depthView.at(x, y - 1))) /
+                             2;
+            EXPECT_NEAR(1 / z, here + perX * offset.x + perY * offset.y, 1e-6 * here) << x << " " << y;
+            surfaces++;
+        }
+    EXPECT_GT(surfaces, 1000);
+    EXPECT_LT(nearest * 1.2, farthest);
+    EXPECT_GE(right, pixels - 12);
+    EXPECT_LT(rightAtJitter, right - 30);
+    EXPECT_LT(rightIfFlipped, right - 30);
+    // The truth, the centre-sampled frame and the list of edges know nothing of it.
+    o.premultiplied = false;
+    const SynthShot plain(o);
+    EXPECT_FALSE(plain.manifest().jitterPremultiplied);
+    EXPECT_EQ(plain.frame(3).jitterPx, f.jitterPx) << "the stated jitter is the one that was wanted";
+    EXPECT_TRUE(plain.truth(3).a.samePixels(shot.truth(3).a));
+    EXPECT_EQ(plain.frame(3).segments, f.segments);
+    EXPECT_TRUE(plain.frame(3, Sampling::centre).colorLinear.samePixels(centre.colorLinear));
+    EXPECT_FALSE(plain.frame(3).colorLinear.samePixels(f.colorLinear));
 }
 
 TEST(Synth, SameBitsAtEveryCall) {
@@ -337,6 +465,13 @@ TEST(Synth, WrongOptionsAreUsageErrors) {
     EXPECT_THROW(with([](auto& o) { o.jitter = "x"; })(), UsageError);
     EXPECT_THROW(with([](auto& o) { o.subsamples = "d3d3"; })(), UsageError);
     EXPECT_THROW(with([](auto& o) { o.subsampleColor = true; })(), UsageError);
+    EXPECT_THROW(with([](auto& o) { o.premultiplied = true; })(), UsageError);  // orthographic
+    EXPECT_THROW(with([](auto& o) {
+                     o.scene = "two_planes";
+                     o.premultiplied = true;
+                     o.jitter = "none";
+                 })(),
+                 UsageError);
     EXPECT_THROW(with([](auto& o) { o.width = 0; })(), UsageError);
     EXPECT_THROW(with([](auto& o) { o.frames = 0; })(), UsageError);
     EXPECT_THROW(with([](auto& o) {

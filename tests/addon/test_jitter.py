@@ -4,15 +4,17 @@
 from __future__ import annotations
 
 import itertools
+import math
 import os
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import support as t  # noqa: E402
-from support import bpy, np  # noqa: E402
+from support import Vector, bpy, np  # noqa: E402
 
 from aa_resolve import analysis, jitter, lighting, rendering  # noqa: E402
 from aa_resolve import camera as cam  # noqa: E402
+from aa_resolve.errors import SceneError, UsageError  # noqa: E402
 
 FACTOR = 8
 CELLS = ((1, 6), (7, 0), (3, 3))  # column and row of the sub-sample, of 8
@@ -47,9 +49,9 @@ def recorder(scene):
         item.pass_index = index
     folder = lighting.temporary_folder()
 
-    def record(jittered, x, y):
+    def record(jittered, x, y, premultiplied=(0.0, 0.0)):
         frame = cam.frame_of(scene)
-        jittered.aim(frame, bpy.context.evaluated_depsgraph_get(), x, y)
+        jittered.aim(frame, bpy.context.evaluated_depsgraph_get(), x, y, premultiplied)
         scene.camera = jittered.object
         layers = rendering.render(scene, layer, folder)
         return layers.get("IndexOB")[:, :, 0], layers.get("Depth")[:, :, 0]
@@ -135,6 +137,97 @@ def test_border() -> None:
     assert np.array_equal(part, window)
 
 
+def test_premultiplied() -> None:
+    """The camera moves parallel to its picture: every point by jitter x focal length / depth, whatever holds it."""
+    for parent_scale in (None, (2.0, 0.5, 3.0)):
+        scene, camera = scattered_cubes(64, 36)
+        camera.data.shift_x = 0.1
+        if parent_scale:
+            parent = bpy.data.objects.new("Parent", None)
+            parent.scale = parent_scale
+            scene.collection.objects.link(parent)
+            camera.parent = parent
+            camera.rotation_euler = (math.pi / 2, 0.0, 0.0)  # along the axes: scaled, not sheared
+            camera.location = (0.0, -4.0 / parent_scale[1] * 2, 0.5 / parent_scale[2])
+        bpy.context.view_layer.update()
+        record = recorder(scene)
+        jittered = cam.JitterCamera(scene, camera, "Jittered")
+        x, y = 0.4, -0.3
+        _, at_rest = record(jittered, 0.0, 0.0)
+        _, moved = record(jittered, 0.0, 0.0, premultiplied=(x, y))
+        bpy.context.view_layer.update()
+        projection = t.Projection(camera, 64, 36)
+        # (2 jx / W, -2 jy / H) scene units to the camera's right and up.
+        movement = projection.to_view[:3, :3].T @ np.array((2.0 * x / 64.0, -2.0 * y / 36.0, 0.0))
+        found = jittered.object.matrix_world.translation - camera.matrix_world.translation
+        assert np.allclose(found, movement, atol=1e-6), (found, movement)
+        # What a pixel shows lies at jitter x P / depth from its centre in the picture at rest; P is the focal length in
+        # units of half the picture.
+        seen = moved < 1e9
+        assert seen.sum() > 500
+        row, column = np.nonzero(seen)
+        depth = moved[seen].astype(np.float64)
+        offset_x, offset_y = x * projection.focal / 32.0 / depth, y * projection.focal / 18.0 / depth
+        there = projection.unproject(column + 0.5 + offset_x, row + 0.5 + offset_y, depth)
+        here = projection.unproject(column + 0.5, row + 0.5, depth) + movement
+        assert np.allclose(there, here, atol=1e-5)
+        # The same picture as that of a camera that was moved there by hand; not that of the jitter.
+        _, jittered_depth = record(jittered, x, y)
+        world = camera.matrix_world.copy()
+        world.translation += Vector(movement)
+        camera.matrix_world = world
+        bpy.context.view_layer.update()
+        _, by_hand = record(jittered, 0.0, 0.0)
+        assert np.mean(np.abs(by_hand / moved - 1.0) < 1e-5) > 0.999
+        assert np.mean(moved != at_rest) > 0.3 and np.mean(moved != jittered_depth) > 0.3
+
+
+def test_premultiplied_export() -> None:
+    """The shot says so, keeps the wanted jitter, and its truth is that of the camera at rest."""
+    shots, folders = {}, {}
+    for name in ("post", "pre"):
+        scattered_cubes(48, 27)
+        folders[name] = t.temporary_folder()
+        shots[name] = t.export(
+            folders[name],
+            *("--frames", "1-2", "--for", "taaSimplest", "--passes", "depth"),
+            *("--jitter", "t2msaa", "--period", "2", "--truth-samples", "4"),
+            *("--jitter-projection", name),
+        )
+    assert shots["pre"]["jitter"]["projection"] == "premultiplied"
+    assert "projection" not in shots["post"]["jitter"]
+    for one, other in zip(shots["pre"]["frames"], shots["post"]["frames"]):
+        assert one["jitter"] == other["jitter"] and abs(one["jitter"][0]) == 0.25
+        assert one["camera"] == other["camera"]
+        file, truth = one["file"], one["truth"]
+        depth = [t.read_part(f"{folders[name]}/{file}", "depth")["Z"] for name in shots]
+        assert (depth[0] != depth[1]).any()
+        truths = [t.read_part(f"{folders[name]}/{truth}", "a") for name in shots]
+        for channel in truths[0]:
+            assert np.array_equal(truths[0][channel], truths[1][channel])
+    scene, camera = scattered_cubes(48, 27)
+    for options, says in (
+        (("--jitter", "none"), "no effect"),
+        (("--passes", "edges"), "leave out the pass 'edges'"),
+    ):
+        expect_error(
+            UsageError, says, "--for", "taaSimplest", "--jitter-projection", "pre", *options
+        )
+    camera.data.type = "ORTHO"
+    expect_error(
+        SceneError, "not a perspective one", "--for", "taaSimplest", "--jitter-projection", "pre"
+    )
+
+
+def expect_error(kind: type[Exception], says: str, *options: str) -> None:
+    try:
+        t.export(t.temporary_folder(), "--frames", "1-2", *options)
+    except kind as error:
+        assert says in str(error), error
+    else:
+        raise AssertionError(f"{options}: expected {kind.__name__}")
+
+
 def test_sequences() -> None:
     expected = [(0, -1 / 6), (-1 / 4, 1 / 6), (1 / 4, -7 / 18), (-3 / 8, -1 / 18)]
     expected += [(1 / 8, 5 / 18), (-1 / 8, -5 / 18), (3 / 8, 1 / 18), (-7 / 16, 7 / 18)]
@@ -160,6 +253,8 @@ def test_sequences() -> None:
         "smaaT2x": [(0.25, 0.25), (-0.25, -0.25), (0.25, 0.25)],
         "smaa4x": [(0.125, -0.125), (-0.125, 0.125), (0.125, -0.125)],
         "t2msaa": [(0.25, -0.25), (-0.25, 0.25), (0.25, -0.25)],
+        "t2msaa1875": [(0.1875, -0.1875), (-0.1875, 0.1875), (0.1875, -0.1875)],
+        "t2msaa125": [(0.125, -0.125), (-0.125, 0.125), (0.125, -0.125)],
         "r2": [
             ((0.5 + n * a) % 1 - 0.5, (0.5 + n * b) % 1 - 0.5)
             for a, b in ((0.7548776662466927, 0.5698402909980532),)
@@ -184,7 +279,17 @@ def test_sequences() -> None:
         place = np.array(lists["quadrant"][index % 4]) + jitter.jitter_at("gaussian", index, 64)
         both = jitter.jitter_at("quadrantGaussian", index, 64)
         assert np.allclose(both, np.clip(place, -0.5, 0.5), atol=1e-12), index
-    assert {*lists, "halton23", "thesis", "gaussian", "quadrantGaussian"} == set(jitter.SEQUENCES)
+    # Seed 001 multiplies by sigma squared where sigma is meant: the same numbers, smaller by 0.2575.
+    shrunk = [
+        np.array(jitter.jitter_at("quadrantGaussianVariance", index, 4096))
+        - lists["quadrant"][index % 4]
+        for index in range(4096)
+    ]
+    assert np.allclose(np.std(shrunk, axis=0), 0.0663, atol=2e-3)
+    inside = (np.abs(normal) < 0.5).all(axis=1)
+    assert np.allclose(np.array(shrunk)[inside], 0.2575 * normal[inside], atol=1e-12)
+    named = {"halton23", "thesis", "gaussian", "quadrantGaussian", "quadrantGaussianVariance"}
+    assert {*lists, *named} == set(jitter.SEQUENCES)
     mean = np.mean([jitter.jitter_at("halton23", index, 16) for index in range(16)], axis=0)
     assert np.allclose(mean, (-0.0293, -0.0370), atol=5e-5), mean
     for name in jitter.SEQUENCES:
@@ -203,6 +308,8 @@ def test_sequences() -> None:
 if __name__ == "__main__":
     t.main(
         test_sequences,
+        test_premultiplied,
+        test_premultiplied_export,
         test_border,
         test_parent_with_scale,
         test_existing_shift_and_percentage,
