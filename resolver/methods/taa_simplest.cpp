@@ -42,8 +42,9 @@ MethodDescriptor taaSimplestDescriptor() {
             .passes = Pass::color | Pass::motion,
             .temporal = true,
             .params = {realParam("k", "0.9", 0, 1, "weight of history", "seed 002: \"normally around 0.9\""),
-                       temporal::historyFilterParam("bilinear", "seed 002"), temporal::outsideParam(),
-                       temporal::warmupParam(), temporal::historyBitsParam(Space::linear), temporal::ditherParam()},
+                       temporal::historyFilterParam("bilinear", "seed 002"), temporal::historyClampParam(),
+                       temporal::outsideParam(), temporal::warmupParam(), temporal::historyBitsParam(Space::linear),
+                       temporal::ditherParam()},
             .create = [](const Params& p, const ShotInfo&) { return std::make_unique<TaaSimplest>(p); }};
 }
 }  // namespace aa

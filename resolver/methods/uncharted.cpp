@@ -50,7 +50,7 @@ MethodDescriptor descriptor(std::string_view id, std::string_view title, std::st
                        temporal::kMaxParam("0.97", "Pedersen's code; methods/11 nr 5"),
                        temporal::sharpenParam(sharpen, sharpenSource),
                        temporal::dilationParam("closest3x3", "seed 000 s.3.6.2"),
-                       temporal::historyFilterParam("bilinear", "methods/06 B1"),
+                       temporal::historyFilterParam("bilinear", "methods/06 B1"), temporal::historyClampParam(),
                        temporal::neighbourhoodParam("rounded", "seed 000 s.3.6.3"),
                        temporal::clipTargetParam("aabbCentre", "methods/11 nr 6"), temporal::warmupParam(),
                        temporal::historyBitsParam(Space::encoded), temporal::ditherParam()},
