@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "image/error.h"
+#include "methods/temporal_kernels.h"
 #include "methods/temporal_test_frames.h"
 
 namespace aa {
@@ -138,7 +139,7 @@ TEST(Rejection, ThresholdsAreParameters) {
         m.resolve(f, {}, {});
         return Rejection(int(m.method->rejection()->at(15, 10)));
     };
-    for (const std::string& id : {"asaa", "t2msaa", "accumReject"}) {
+    for (const std::string id : {"asaa", "t2msaa", "accumReject"}) {
         const std::string with = id + (id == "accumReject" ? ":depthTest=point,objectIds=off," : ":");
         // 6 behind 5: by a sixth of its depth.
         EXPECT_EQ(reason(with + "bothSides=off", 6, 0), Rejection::disoccluded) << id;
