@@ -44,8 +44,7 @@ class AccumReject : public Method {
             if (args.objectId) args.objectId += ptrdiff_t(texel.y) * args.in.stride + texel.x;
         }
         args.depthTest = test_;
-        args.bothSides = p.flag("bothSides");
-        args.magnification = p.flag("magnification");
+        args.rejection = temporal::rejectionTest(p);
         args.nMaxStatic = p.realf("nMaxStatic");
         args.nMaxMoving = p.realf("nMaxMoving");
         temporal::runTemporal(kernels.resolve, exec, args);
@@ -95,19 +94,17 @@ MethodDescriptor accumRejectDescriptor() {
                                "previous depth compared: interpolated point, but farthest of 3x3 for a pixel at rest "
                                "(window); the point alone; none",
                                "methods/06 B3; window is ours: jitter moves silhouettes at rest"),
-                   flagParam("bothSides", false, "reject nearer surfaces too, not only hidden ones", "methods/11 nr 19",
-                             "depthTest=point"),
+                   temporal::depthToleranceParam("depthTest=window|point"), temporal::bothSidesParam("depthTest=point"),
                    flagParam("objectIds", true, "reject where the previous 3x3 has no pixel of this object",
                              "methods/06 B3"),
-                   flagParam("magnification", false, "reject where one previous sample would be enlarged",
-                             "seed 001 s.4.4.1; methods/11 nr 18"),
+                   temporal::magnificationParam("off", "methods/06 B3: off but in seed 001's methods"),
                    realParam("nMaxStatic", "100000", 1, 16777215, "most frames in the mean of a pixel at rest",
                              "methods/06 s.6.12"),
                    realParam("nMaxMoving", "16", 1, 16777215, "most frames in the mean of a moving pixel",
                              "methods/06 s.6.12"),
                    temporal::unjitterParam(false, "methods/06 B0"),
                    temporal::dilationParam("closest3x3", "methods/06 B2"),
-                   temporal::historyFilterParam("bilinear", "methods/06 s.6.12")},
+                   temporal::historyFilterParam("bilinear", "methods/06 s.6.12"), temporal::historyClampParam()},
         .create = [](const Params& p, const ShotInfo&) { return std::make_unique<AccumReject>(p); },
         .morePasses = [](const Params& p) { return p.flag("objectIds") ? PassSet(Pass::object) : PassSet{}; }};
 }

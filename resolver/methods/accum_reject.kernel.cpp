@@ -36,15 +36,18 @@ AA_INLINE void accumRejectPixel(const AccumRejectArgs& a, int x, int y) {
     };
     const auto still = both(motion.x == zero, motion.y == zero);
     if (a.depthTest != DepthTest::off) {
-        auto hidden = disoccluded(expected, fetch_depth(in.history + 4 * o, in.stride, q), a.bothSides);
+        const float tolerance = a.rejection.depthTolerance;
+        auto hidden =
+            disoccluded(expected, fetch_depth(in.history + 4 * o, in.stride, q), tolerance, a.rejection.bothSides);
         // At rest the jitter alone moves a silhouette: no sample is lost to it. Behind a moving one the window would
         // pass what it uncovers.
         if (a.depthTest == DepthTest::window)
-            hidden = both(hidden, either(negate(still),
-                                         disoccluded(expected, gather<R>(a.previousFarthest + o, nearest), false)));
+            hidden = both(hidden,
+                          either(negate(still),
+                                 disoccluded(expected, gather<R>(a.previousFarthest + o, nearest), tolerance, false)));
         reject(hidden, Rejection::disoccluded);
     }
-    if (a.magnification) reject(magnified(in, o, q, 1.0f), Rejection::magnified);
+    if (a.rejection.magnification > 0) reject(magnified(in, o, q, a.rejection.magnification), Rejection::magnified);
     if (a.objectId) reject(id_lost<R>(a.objectId + o, a.previousId + o, in.stride, nearest), Rejection::otherObject);
     const auto valid = reason == zero;
 

@@ -11,7 +11,7 @@ struct AccumRejectArgs {
     const uint32_t *objectId, *previousId;  // null: ids are not compared
     ExpectedDepth expected;
     DepthTest depthTest;
-    bool bothSides, magnification;
+    RejectionTest rejection;
     float nMaxStatic, nMaxMoving;
     float* debugCount;  // or null
 };

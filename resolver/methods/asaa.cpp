@@ -63,7 +63,9 @@ class Asaa : public Method {
         args.previousCount = count_[0].row(0);
         args.nextCount = count_[1].row(0);
         args.eq331 = params_.choice("blurMode") == "eq331";
-        args.bothSides = params_.flag("bothSides");
+        args.fourInMotion = params_.choice("motionCount") == "four";
+        args.countAtPixel = !args.eq331 && temporal::countAtPixel(params_);
+        args.rejection = temporal::rejectionTest(params_);
         args.in.debug = debug_.begin(*this, w, h);
         runKernel(asaaKernelsFor(exec.isa).resolve, exec, args, h);
 
@@ -111,11 +113,17 @@ MethodDescriptor asaaDescriptor() {
             .output = Space::encoded,
             .temporal = true,
             .params = {choiceParam("blurMode", "thesis", {"thesis", "eq331"},
-                                   "limit of blur in motion: at most 4 samples (listing 4.11), or eq 3.31 with the "
-                                   "threshold 0.12 above the filter's variance",
+                                   "limit of blur in motion: 4 samples, or eq 3.31 with the threshold 0.12 above the "
+                                   "filter's variance and the sample count of eq 3.29",
                                    "methods/11 nr 23"),
-                       flagParam("bothSides", false, "reject nearer surfaces too, not only hidden ones",
-                                 "methods/11 nr 19")},
+                       choiceParam("motionCount", "atMost", {"atMost", "four"},
+                                   "sample count of a moving pixel: at most 4 as the text says, or 4 as its listing "
+                                   "4.11 sets it",
+                                   "seed 001 s.4.4.1", "blurMode=thesis"),
+                       temporal::countAtParam("seed 001 s.4.4.1; eq331 reads it where the surface was, as eq 3.29 does",
+                                              "blurMode=thesis"),
+                       temporal::depthToleranceParam(), temporal::bothSidesParam(),
+                       temporal::magnificationParam("1", "seed 001 s.4.4.1: figures 4.10 and 4.11; methods/11 nr 18")},
             .create = [](const Params& p, const ShotInfo&) { return std::make_unique<Asaa>(p); }};
 }
 }  // namespace aa

@@ -5,8 +5,13 @@
 //  1. s = the current sample   2. the surface point is followed into the frame of each buffer: by the two cameras, plus
 //     the object's own motion (motion less camera motion) times the buffer's age   3. tent-weighted sums over the four
 //     nearest samples of every buffer: b~ (radius half the footprint) and f~ (twice that)   4. rejection per buffer:
-//     border, depth 0.08, magnification   5. alpha = 1 / (N + 1), N capped at 4 in motion (thesis) or alpha bounded by
-//     eq 3.31   6. buffer = alpha s + (1 - alpha) b~, frame = alpha/4 s + (1 - alpha/4) f~   7. N + 1
+//     border, depth (depthTolerance 0.08), magnification (1)   5. alpha = 1 / (N + 1), N limited to 4 in motion
+//     (thesis) or alpha bounded by eq 3.31 (blurMode=eq331)   6. buffer = alpha s + (1 - alpha) b~,
+//     frame = alpha/4 s + (1 - alpha/4) f~   7. N + 1, or eq 3.29 with eq331
+// N counts earlier samples. Where every buffer is rejected the thesis stores 0, so that the next frame, too, shows its
+// own sample alone; eq 3.29 then gives 1. The first frame after a reset rejects nothing: N = 0 + 1. The thesis's text
+// restricts N to four samples in motion, its listing 4.11 sets N = 4, also where fewer were taken (motionCount=four).
+// It reads N at the pixel itself (countAt=reprojected: where the surface was, as eq 3.29 does).
 // Works with any jitter (the quadrant is taken from its sign, the buffers' ages are tracked); made for the sequence
 // "quadrants" with Gaussian sigma 0.2575. The output filter is a tent of radius 1 px: blurrier than a box truth.
 // Display-encoded, as the thesis's 8-bit buffers (methods/00 s.4). Depth of each buffer rides in its alpha.

@@ -55,7 +55,7 @@ AA_INLINE void asaaPixel(const AsaaArgs& a, int x, int y) {
     const R depth = load<R>(in.depthView + o);
     if (!a.anyHistory) {
         store_blend(in, x, y, sanitised(sample, sample, vec3<R>(zero)), depth);
-        store(one, a.nextCount + o);
+        store(one, a.nextCount + o);  // nothing was rejected: 0 + 1
         if (in.debug.rejection) store(R(T(int(Rejection::firstFrame))), in.debug.rejection + o);
         return;
     }
@@ -77,9 +77,13 @@ AA_INLINE void asaaPixel(const AsaaArgs& a, int x, int y) {
         const R footX = max(abs(one - (right.x - motion.x) * age), abs((down.x - motion.x) * age)),
                 footY = max(abs((right.y - motion.y) * age), abs(one - (down.y - motion.y) * age));
         const R expected = expected_previous_depth(buffer.expected, depth, x, y);
-        Mask<R> valid = both(q.inside, negate(disoccluded(expected, fetch_depth(p, in.stride, q), a.bothSides)));
-        const R nearX = min(q.fracX, one - q.fracX), nearY = min(q.fracY, one - q.fracY);
-        valid = both(valid, both(nearX <= footX, nearY <= footY));
+        Mask<R> valid = both(q.inside, negate(disoccluded(expected, fetch_depth(p, in.stride, q),
+                                                          a.rejection.depthTolerance, a.rejection.bothSides)));
+        if (a.rejection.magnification > 0) {
+            const R nearX = min(q.fracX, one - q.fracX), nearY = min(q.fracY, one - q.fracY);
+            const R scale(T(a.rejection.magnification));
+            valid = both(valid, both(nearX <= footX * scale, nearY <= footY * scale));
+        }
         anyValid = either(anyValid, valid);
         const R least(T(0.125)), most(T(1));  // the four nearest samples serve radii up to 1 px
         const R rx = min(max(footX * half, least), most), ry = min(max(footY * half, least), most);
@@ -93,29 +97,33 @@ AA_INLINE void asaaPixel(const AsaaArgs& a, int x, int y) {
     const vec3<R> previousB = select(hasB, b.color / select(hasB, b.weight, one), sample);
     const vec3<R> previousF = select(hasF, f.color / select(hasF, f.weight, one), sample);
 
-    // 5: weight of the current sample
+    // 5: weight of the current sample, 7: sample count
     const Reprojection<R> q = reproject(in, motion, x, y);
-    const Offsets<R> nearest = nearest_offsets(q, in.stride);
-    R count = select(hit, gather<R>(a.previousCount + o, nearest), zero);
-    const auto still = both(motion.x == zero, motion.y == zero);
-    R alpha;
+    const R count =
+        a.countAtPixel ? load<R>(a.previousCount + o) : gather<R>(a.previousCount + o, nearest_offsets(q, in.stride));
+    R alpha, nextCount;
     if (a.eq331) {
         const R vx = abs(motion.x) - floor(abs(motion.x)), vy = abs(motion.y) - floor(abs(motion.y));
         const R V = vx * (one - vx) + vy * (one - vy);
-        alpha = max(one / (count + one), V / (V + R(T(2 * 0.12))));  // tau_b - sigma_G^2 = 0.12
+        const R bound = V / (V + R(T(2 * 0.12)));  // tau_b - sigma_G^2 = 0.12
+        alpha = select(hit, max(one / (count + one), bound), one);
+        // Eq 3.29. alpha is at least 2^-24 and N at least 1, as after a rejection (alpha = 1): neither term is
+        // infinite.
+        nextCount = one / (alpha * alpha + (one - alpha) * (one - alpha) / max(count, one));
     } else {
-        count = select(still, count, min(count, R(T(4))));
-        alpha = one / (count + one);
+        const auto still = both(motion.x == zero, motion.y == zero);
+        const R four(T(4)), used = select(still, count, a.fourInMotion ? four : min(count, four));
+        alpha = select(hit, one / (used + one), one);
+        nextCount = select(hit, used + one, zero);
     }
-    alpha = select(hit, alpha, one);
 
-    // 6, 7
+    // 6
     const vec3<R> updated = previousB + (sample - previousB) * alpha;
     const vec3<R> shown = previousF + (sample - previousF) * (alpha * R(T(0.25)));
     const vec3<R> next = sanitised(select(alpha == one, sample, updated), sample, vec3<R>(zero));
     store_rgba(next, depth, in.next + 4 * o);
     store3(sanitised(select(alpha == one, sample, shown), sample, next), in.out.c, o);
-    store(min(count + one, R(T(16777215))), a.nextCount + o);
+    store(min(nextCount, R(T(16777215))), a.nextCount + o);  // the last whole step of float
     if (!in.debug.rejection) return;
     store_debug(in.debug, o, motion, hit, Box<R>{previousF, previousF}, vec3<R>(zero), one - alpha);
     store(select(hit, zero, select(q.inside, R(T(int(Rejection::disoccluded))), R(T(int(Rejection::outside))))),

@@ -23,7 +23,10 @@ struct AsaaArgs {
     float phiX, phiY;  // of this frame's quadrant
     const float* previousCount;
     float* nextCount;
-    bool eq331, bothSides;
+    bool eq331;         // bound of alpha by eq 3.31 and N by eq 3.29, instead of a limit on N
+    bool fourInMotion;  // N = 4 in motion (listing 4.11), not at most 4
+    bool countAtPixel;  // N is read at the pixel itself, not where its surface was
+    RejectionTest rejection;
 };
 struct AsaaKernels {
     RowKernel<AsaaArgs> resolve;

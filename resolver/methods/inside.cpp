@@ -68,7 +68,8 @@ MethodDescriptor insideDescriptor() {
                    temporal::luminanceParam("bt709", "methods/06 s.6.3; inside: as in Pedersen's source", "ycocg=off"),
                    temporal::clipTargetParam("aabbCentre", "Pedersen 2016"),
                    temporal::dilationParam("closest3x3", "Pedersen 2016"),
-                   temporal::historyFilterParam("bilinear", "Pedersen 2016"), temporal::outsideParam(),
+                   temporal::historyFilterParam("bilinear", "Pedersen 2016"), temporal::historyClampParam(),
+                   temporal::outsideParam(),
                    realParam("motionBlur", "0", 0, 16,
                              "length of the blur of what moves by more than 2 px, in frame intervals; the history "
                              "stays sharp; 0 = off, as the truth is an instant",

@@ -81,7 +81,7 @@ AA_INLINE void insidePixel(const InsideArgs& a, bool ycocg, bool unjitterWindow,
     vec3<R> mean(zero);
     if (a.neighbourhood == InsideNeighbourhood::fourTapVarying) {
         const R speed = sqrt(motion.x * motion.x + motion.y * motion.y);
-        const R depth = load<R>(in.depthView + o);
+        const R depth = dilated_depth<R>(in, o);
         // 0 * 1e10 is 0, and a far surface at any speed counts as moving (methods/08 s.8.3).
         const R still = saturate(R(T(0.5)) / max(speed * depth, R(T(1e-6))));
         box = four_tap_box<R>(at, R(T(0.5)) + still * R(T(0.1666)), mean);

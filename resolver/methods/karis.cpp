@@ -77,6 +77,8 @@ MethodDescriptor descriptor(const Preset& d) {
     const auto flag = [](std::string_view name, std::string_view def, std::string_view help, std::string_view source) {
         return flagParam(name, def == "on", help, source);
     };
+    ParamSpec neighbourhood = temporal::neighbourhoodParam("rounded", "Karis 2014");
+    neighbourhood.onlyWhen = "box=minmax|intersection";
     return {.id = d.id,
             .title = d.title,
             .family = "temporal",
@@ -95,7 +97,7 @@ MethodDescriptor descriptor(const Preset& d) {
                                    "colour box: bounds, mean -+ gamma sigma, both", d.source),
                        realParam("gamma", "1", 0, 8, "half width of the variance box in standard deviations",
                                  "Salvi 2016: 0.75 to 1.25", "box=variance|intersection"),
-                       temporal::neighbourhoodParam("rounded", "Karis 2014"),
+                       neighbourhood,
                        choiceParam("constraint", d.constraint, {"clipFiltered", "clipMean", "clamp"},
                                    "history to the box: clipped toward the current colour or the mean, or clamped",
                                    d.source),
@@ -104,7 +106,8 @@ MethodDescriptor descriptor(const Preset& d) {
                        flag("inverseLuminance", d.inverseLuminance, "blend with weights 1/(1+Y)", d.source),
                        temporal::unjitterParam(false, "methods/06 B0; not in the source"),
                        temporal::dilationParam(d.dilation, d.source), temporal::historyFilterParam(d.history, d.source),
-                       temporal::warmupParam(), temporal::historyBitsParam(Space::linear), temporal::ditherParam()},
+                       temporal::historyClampParam(), temporal::warmupParam(),
+                       temporal::historyBitsParam(Space::linear), temporal::ditherParam()},
             .create = [id = d.id, pq = d.id == "donut"](const Params& p,
                                                         const ShotInfo&) { return std::make_unique<Karis>(id, p, pq); },
             .morePasses = temporal::dilationPasses};

@@ -110,9 +110,9 @@ TEST(Raptor, PrintedWeightsIgnoreHistoryWhereColoursAgree) {
                 {}, {});
         return m.out.c[0].at(4, 4);
     };
-    const float corrected = level("raptor:sharpen=0,inverseLuminance=off,currentFilter=none,constraint=none");
+    const float corrected = level("raptor:sharpen=0,lumaDiffWeights=off,currentFilter=none,constraint=none");
     const float printed =
-        level("raptor:sharpen=0,inverseLuminance=off,currentFilter=none,constraint=none,lumaDiff=printed");
+        level("raptor:sharpen=0,lumaDiffWeights=off,currentFilter=none,constraint=none,lumaDiff=printed");
     EXPECT_NEAR(corrected, 0.5 + 0.01 * 0.0318, 2e-4);  // 1 - k, k close to 0.97
     EXPECT_NEAR(printed, 0.51, 5e-4);
 }

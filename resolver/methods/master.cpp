@@ -179,6 +179,7 @@ MethodDescriptor masterDescriptor() {
                    temporal::clipTargetParam("aabbCentre", "methods/11 nr 6"),
                    temporal::dilationParam("closest3x3", "seed 000 s.3.6.2"),
                    temporal::historyFilterParam("bilinear", "methods/06 B1"),
+                   temporal::historyClampParam(),
                    temporal::warmupParam(),
                    temporal::historyBitsParam(Space::encoded),
                    temporal::ditherParam()},

@@ -106,18 +106,23 @@ Params::Params(std::string_view method, const std::vector<ParamSpec>& table,
                                      didYouMean(text, p->choices));
         }
         values_[key] = value;
+        given_.insert(key);
     }
     for (const auto& [key, text] : given) {  // after all are set: does each one act?
-        const auto p = std::find_if(table_.begin(), table_.end(), [&](const auto& s) { return s.name == key; });
-        if (p->onlyWhen.empty()) continue;
-        const size_t eq = p->onlyWhen.find('=');
-        const auto& actual = values_.find(p->onlyWhen.substr(0, eq))->second;
-        std::istringstream allowed{std::string(p->onlyWhen.substr(eq + 1))};
-        bool acts = false;
-        for (std::string a; std::getline(allowed, a, '|');) acts = acts || a == actual;
-        if (!acts)
-            throw UsageError(std::string(method) + ": parameter '" + key + "' has no effect unless " +
-                             std::string(p->onlyWhen) + " (it is '" + actual + "'); leave it out");
+        std::string_view name = key;
+        for (;;) {  // a condition on a parameter without effect does not hold either
+            const auto p = std::find_if(table_.begin(), table_.end(), [&](const auto& s) { return s.name == name; });
+            if (p->onlyWhen.empty()) break;
+            const size_t eq = p->onlyWhen.find('=');
+            name = p->onlyWhen.substr(0, eq);
+            const auto& actual = values_.find(name)->second;
+            std::istringstream allowed{std::string(p->onlyWhen.substr(eq + 1))};
+            bool acts = false;
+            for (std::string a; std::getline(allowed, a, '|');) acts = acts || a == actual;
+            if (!acts)
+                throw UsageError(std::string(method) + ": parameter '" + key + "' has no effect unless " +
+                                 std::string(p->onlyWhen) + " (it is '" + actual + "'); leave it out");
+        }
     }
 }
 
@@ -146,5 +151,7 @@ size_t Params::choiceIndex(std::string_view name) const {
     const auto& choices = spec(name, ParamSpec::Type::choice).choices;
     return size_t(std::find(choices.begin(), choices.end(), choice(name)) - choices.begin());
 }
+
+bool Params::isGiven(std::string_view name) const { return given_.find(name) != given_.end(); }
 
 }  // namespace aa

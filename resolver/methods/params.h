@@ -1,6 +1,7 @@
 // One parameter table per method: it makes the command-line help, the JSON, the add-on's panel, the docs and the sweep.
 #pragma once
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -17,7 +18,8 @@ struct ParamSpec {
     std::vector<std::string_view> choices;
     std::string_view help;    // one line, with the unit
     std::string_view source;  // where the default comes from
-    // "name=value|value": the parameter acts only then; setting it otherwise is a usage error. Empty: always.
+    // "name=value|value": the parameter acts only then, and only while `name` acts itself; setting it otherwise is a
+    // usage error. Empty: always.
     std::string_view onlyWhen = {};
 };
 ParamSpec realParam(std::string_view name, std::string_view def, double min, double max, std::string_view help,
@@ -33,7 +35,8 @@ ParamSpec flagParam(std::string_view name, bool def, std::string_view help, std:
 class Params {
   public:
     // Defaults overridden by `given` (name -> text). Throws UsageError: unknown name (with a suggestion), not a number,
-    // out of range, unknown choice, no effect in the chosen mode.
+    // out of range, unknown choice, no effect in the chosen mode (its own condition fails, or that of the parameter
+    // which its condition names).
     Params(std::string_view method, const std::vector<ParamSpec>& table,
            const std::vector<std::pair<std::string, std::string>>& given);
     double real(std::string_view name) const;
@@ -42,12 +45,14 @@ class Params {
     bool flag(std::string_view name) const;
     const std::string& choice(std::string_view name) const;
     size_t choiceIndex(std::string_view name) const;  // position in the table's `choices`
+    bool isGiven(std::string_view name) const;        // written by the user, be it with the default's value
     const std::map<std::string, std::string, std::less<>>& all() const { return values_; }
 
   private:
     const ParamSpec& spec(std::string_view name, ParamSpec::Type type) const;
     std::vector<ParamSpec> table_;
     std::map<std::string, std::string, std::less<>> values_;
+    std::set<std::string, std::less<>> given_;
 };
 
 // The candidate nearest to `word` by edit distance, for "did you mean"; empty when none is near.

@@ -66,7 +66,9 @@ class Raptor : public Method {
         args.constraint = RaptorConstraint(p.choiceIndex("constraint"));
         args.luminanceDifference = LuminanceDifference(p.choiceIndex("lumaDiff"));
         args.temporalFiltering = p.flag("temporalFiltering");
-        args.inverseLuminance = p.flag("inverseLuminance");
+        args.luminanceWeights = p.flag(p.choice("lumaDiff") == "off" ? "inverseLuminance" : "lumaDiffWeights");
+        args.clampCurrent = p.flag("currentClamp");
+        args.signedDivisor = p.choice("contrastDivisor") == "printed";
         args.ycocg = p.flag("ycocg");
         args.gamma = p.realf("gamma");
         args.kMin = p.realf("kmin"), args.kMax = p.realf("kmax");
@@ -103,6 +105,7 @@ MethodDescriptor raptorDescriptor() {
         .params = {temporal::unjitterParam(false, "methods/06 B0; not in the source"),
                    temporal::dilationParam("closest3x3", "seed 002"),
                    temporal::historyFilterParam("catmullRom", "seed 002"),
+                   temporal::historyClampParam(),
                    choiceParam("constraint", "varianceClipClamp",
                                {"none", "clamp", "clip", "varianceClip", "varianceClipClamp"},
                                "how history is held to the 3x3 window's colours", "seed 002"),
@@ -114,11 +117,24 @@ MethodDescriptor raptorDescriptor() {
                                "distance under that filter: of the sample from the pixel centre, radius 1.5 px; or as "
                                "printed",
                                "methods/11 nr 26"),
-                   flagParam("temporalFiltering", true, "more history where the window has contrast", "seed 002"),
-                   flagParam("inverseLuminance", true, "weights 1/(1+L) of compressed colours", "seed 002"),
+                   flagParam("currentClamp", true,
+                             "hold that filter's result within the window's bounds: negative lobes overshoot them; off "
+                             "as in the book, whose printed domain has no such lobes",
+                             "ours: methods/08", "filterDomain=fixed"),
+                   flagParam("temporalFiltering", true, "more history where the window has contrast", "seed 002",
+                             "lumaDiff=off"),
+                   choiceParam("contrastDivisor", "guarded", {"guarded", "printed"},
+                               "what temporalFiltering divides the contrast by: the colour, at least 1e-4; or the "
+                               "colour as printed, with the sign of chroma in YCoCg",
+                               "methods/11 nr 29", "temporalFiltering=on"),
+                   flagParam("inverseLuminance", true, "weights 1/(1+L) of compressed colours", "seed 002",
+                             "lumaDiff=off"),
                    choiceParam("lumaDiff", "corrected", {"off", "corrected", "printed"},
                                "weight from the luminance difference; printed has history and current exchanged",
                                "methods/11 nr 25"),
+                   flagParam("lumaDiffWeights", true,
+                             "weights 1/(1+L) with the luminance difference, too, as the book has them; off is ours",
+                             "seed 002", "lumaDiff=corrected|printed"),
                    realParam("kmin", "0.88", 0, 1, "weight of history where its luminance differs most",
                              "Pedersen 2016", "lumaDiff=corrected"),
                    realParam("kmax", "0.97", 0, 1, "weight of history where its luminance is equal", "Pedersen 2016",
@@ -126,7 +142,9 @@ MethodDescriptor raptorDescriptor() {
                    flagParam("ycocg", false, "work in YCoCg", "seed 002"),
                    realParam("sharpen", "1", 0, 4, "luminance sharpening of the output, never fed back; 0 = none",
                              "seed 002: 1 is standard; the sample program has 0.1 (methods/11 nr 30)"),
-                   temporal::warmupParam(), temporal::historyBitsParam(Space::linear), temporal::ditherParam()},
+                   temporal::warmupParam(),
+                   temporal::historyBitsParam(Space::linear),
+                   temporal::ditherParam()},
         .create =
             [](const Params& p, const ShotInfo&) {
                 temporal::requireOrdered("raptor", p);

@@ -4,11 +4,18 @@
 //  4. outside: the filtered current colour   5. YCoCg: chroma range from the luma range
 //  6. constraint: clamp, clip, variance clip, or clamp then variance clip
 //  7. weights 0.1 / 0.9   8. temporal filtering: more history where contrast is high
-//  9. luminance of compressed colours c / (1 + max c)   10. luminance difference   11. inverse luminance   12. blend
+//  9. luminance of compressed colours c / (1 + max c)   10. luminance difference, in place of 7 and 8
+//  11. weights 1 / (1 + L)   12. blend
 //  afterwards sharpening by luminance: L' = L + s (L - mean L of 3x3), c L' / L
 // `lumaDiff=printed` exchanges the weights as the book's code does (similar colours then ignore history);
 // `filterDomain=printed` evaluates the filters at twice the pixel distance (Mitchell and Catmull-Rom then return the
 // centre pixel). Both default to the corrected form (methods/11 nr 25, 26); 27-30 list the other corrections.
+// In the book step 11 acts when either of its two filters (inverse luminance, luminance difference) is on, and step 10
+// replaces what step 8 has found. So `temporalFiltering` and `inverseLuminance` have an effect only without lumaDiff
+// and are refused beside it; `lumaDiffWeights=off` (ours) takes the weights of step 11 away from the luminance
+// difference. Ours, against overshoot and division by nothing, each can be switched off to get the published step:
+// `historyClamp` (2), `currentClamp` (3), `contrastDivisor=guarded` (8; in YCoCg chroma is signed). The combination
+// that the book prints is `raptor:lumaDiff=printed,filterDomain=printed,historyClamp=off` (docs/published_steps.md).
 // Input and output: linear light; depth planar; motion in px, current - previous.
 #pragma once
 #include "methods/method.h"

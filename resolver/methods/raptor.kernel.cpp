@@ -57,7 +57,10 @@ AA_INLINE void raptorPixel(const RaptorArgs& a, YCoCg ycocg, int x, int y) {
             filtered = filtered + d * R(w), weights += w;
         });
     vec3<R> current = centre;
-    if (weights > T(1e-6)) current = clamp3(centre + filtered * R(T(1) / weights), bounds.lo, bounds.hi);
+    if (weights > T(1e-6)) {
+        current = centre + filtered * R(T(1) / weights);
+        if (a.clampCurrent) current = clamp3(current, bounds.lo, bounds.hi);
+    }
 
     // 5, 6
     if (ycocg) {
@@ -74,7 +77,7 @@ AA_INLINE void raptorPixel(const RaptorArgs& a, YCoCg ycocg, int x, int y) {
     // 11, 12: (1 - k) / (1 + Lc) against k / (1 + Lh), both times (1 + Lc) (1 + Lh) >= 1
     const auto weighted = [&](R weight) __attribute__((always_inline)) {
         const R w = min(weight, most), wh = w * brighterCurrent;
-        return a.inverseLuminance ? wh / ((one - w) * brighterHistory + wh) : w;
+        return a.luminanceWeights ? wh / ((one - w) * brighterHistory + wh) : w;
     };
     R shown;
     vec3<R> mixed;
@@ -82,7 +85,8 @@ AA_INLINE void raptorPixel(const RaptorArgs& a, YCoCg ycocg, int x, int y) {
         // 7, 8: weight of history per channel
         vec3<R> k(R(T(0.9)));
         if (a.temporalFiltering) {
-            const vec3<R> contrast = saturate(abs(bounds.hi - bounds.lo) / max(current, vec3<R>(R(T(1e-4)))));
+            const vec3<R> divisor = a.signedDivisor ? current : max(current, vec3<R>(R(T(1e-4))));
+            const vec3<R> contrast = saturate(abs(bounds.hi - bounds.lo) / divisor);
             k = vec3<R>(R(T(0.25))) + contrast * R(T(0.6));
         }
         k = {weighted(k.x), weighted(k.y), weighted(k.z)};

@@ -9,7 +9,10 @@ struct RaptorArgs {
     float filter[9];  // weights of the 3x3 current samples, row-major; their sum may be 0: then the centre alone
     RaptorConstraint constraint;
     LuminanceDifference luminanceDifference;
-    bool temporalFiltering, inverseLuminance, ycocg;
+    bool temporalFiltering, ycocg;
+    bool luminanceWeights;  // 1 / (1 + L)
+    bool clampCurrent;      // the filtered current colour is held within the window's bounds
+    bool signedDivisor;     // temporal filtering divides by the colour as it is: printed
     float gamma, kMin, kMax;
 };
 struct RaptorKernels {

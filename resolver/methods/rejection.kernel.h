@@ -4,8 +4,6 @@
 
 namespace AA_ARCH {
 
-constexpr float kDisocclusion = 0.08f;  // seed 001 s.4.4.1, share of the expected depth
-
 // Bilinear depth from the history's alpha. Bilinear over a silhouette invents depths: when the taps differ more than
 // tenfold (background), the nearest counts (methods/08 s.8.1).
 template <class R>
@@ -22,10 +20,11 @@ AA_INLINE R fetch_depth(const float* p, int stride, const Reprojection<R>& q) {
     const R top = a + (b - a) * q.fracX, bottom = c + (d - c) * q.fracX;
     return select(farthest > nearest * R(T(10)), nearest, top + (bottom - top) * q.fracY);
 }
-// True where the surface was hidden: it should have been at `expected`, something nearer was there. NaN is hidden.
+// True where the surface was hidden: it should have been at `expected`, something nearer by more than `tolerance` times
+// that was there. NaN is hidden.
 template <class R>
-AA_INLINE Mask<R> disoccluded(R expected, R found, bool bothSides) {
-    const R difference = expected - found, limit = expected * R(Elem<R>(kDisocclusion));
+AA_INLINE Mask<R> disoccluded(R expected, R found, float tolerance, bool bothSides) {
+    const R difference = expected - found, limit = expected * R(Elem<R>(tolerance));
     return negate(bothSides ? abs(difference) <= limit : difference <= limit);
 }
 // True where a pixel covers less than a previous pixel and q is far from that pixel's centre: reading would enlarge one

@@ -30,7 +30,8 @@ class T2msaa : public Method {
         args.expected = expectedDepth(frame);
         args.encoded = p.choice("space") == "encoded";
         args.fractionalVelocity = p.choice("velocity") == "fractional";
-        args.bothSides = p.flag("bothSides");
+        args.countAtPixel = temporal::countAtPixel(p);
+        args.rejection = temporal::rejectionTest(p);
         args.in.debug = debug_.begin(*this, frame.width, frame.height);
         runKernel(t2msaaKernelsFor(exec.isa).resolve, exec, args, frame.height);
         history_.end({}, exec);
@@ -83,17 +84,25 @@ MethodDescriptor t2msaa() {
     d.temporal = true;
     d.params = {
         realParam("offset", "0.25", 0.0625, 0.375,
-                  "shift of the two samples between frames, px; the thesis has 0.25, 0.1875, 0.125",
+                  "shift of the two samples between frames, px; the thesis has 0.25, 0.1875, 0.125; chooses among more "
+                  "than two recorded sub-samples, where there are two the shot's jitter has shifted them",
                   "seed 001 tables 5.17-5.20"),
         choiceParam("velocity", "uv", {"uv", "fractional"},
                     "velocity in the blur limit: in UV as listed, or the fraction of a pixel", "methods/11 nr 20"),
-        flagParam("bothSides", false, "reject nearer surfaces too, not only hidden ones", "methods/11 nr 19"),
+        temporal::countAtParam("seed 001 s.4.4.2"),
+        temporal::depthToleranceParam(),
+        temporal::bothSidesParam(),
+        temporal::magnificationParam("1", "seed 001 s.4.4.1: figures 4.10 and 4.11; methods/11 nr 18"),
         choiceParam("space", "encoded", {"encoded", "linear"}, "space of the blend",
                     "seed 001: 8-bit buffers; methods/00 s.4")};
     d.create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
         if (shot.subSamplePositionsPx.size() < 2)
             throw InputError("t2msaa: expected at least 2 sub-samples a pixel, found " +
                              std::to_string(shot.subSamplePositionsPx.size()) + "; export the shot with sub-samples");
+        if (shot.subSamplePositionsPx.size() == 2 && p.isGiven("offset"))
+            throw UsageError(
+                "t2msaa: parameter 'offset' has no effect on a shot with exactly 2 sub-samples, which are taken as "
+                "rendered: its jitter has shifted them; leave it out, or export the shot with more sub-samples");
         return std::make_unique<T2msaa>(p);
     };
     return d;

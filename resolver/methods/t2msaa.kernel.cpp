@@ -47,12 +47,14 @@ AA_INLINE void t2msaaPixel(const T2msaaArgs& a, int x, int y) {
     const auto reject = [&](Mask<R> when, Rejection why) __attribute__((always_inline)) {
         reason = select(both(reason == zero, when), R(T(int(why))), reason);
     };
-    reject(disoccluded(expected, fetch_depth(in.history + 4 * o, in.stride, q), a.bothSides), Rejection::disoccluded);
-    reject(magnified(in, o, q, 1.0f), Rejection::magnified);
+    const RejectionTest& test = a.rejection;
+    reject(disoccluded(expected, fetch_depth(in.history + 4 * o, in.stride, q), test.depthTolerance, test.bothSides),
+           Rejection::disoccluded);
+    if (test.magnification > 0) reject(magnified(in, o, q, test.magnification), Rejection::magnified);
     const auto hit = reason == zero;
 
-    const Offsets<R> nearest = nearest_offsets(q, in.stride);
-    const R count = gather<R>(a.previousCount + o, nearest);
+    const R count =
+        a.countAtPixel ? load<R>(a.previousCount + o) : gather<R>(a.previousCount + o, nearest_offsets(q, in.stride));
     const R mean = one / (count + one);
     // Listing 4.19: velocity in UV; eq 3.31 means the fraction of a pixel.
     const R vx = a.fractionalVelocity ? fraction(abs(motion.x)) : abs(motion.x) * R(T(1) / T(in.width)),

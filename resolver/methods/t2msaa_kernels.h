@@ -10,7 +10,9 @@ struct T2msaaArgs {
     float* nextCount;
     ExpectedDepth expected;
     bool encoded;  // blend display-encoded colours
-    bool fractionalVelocity, bothSides;
+    bool fractionalVelocity;
+    bool countAtPixel;  // the sample count is read at the pixel itself, not where its surface was
+    RejectionTest rejection;
 };
 struct T2msaaKernels {
     RowKernel<T2msaaArgs> resolve;

@@ -44,8 +44,9 @@ MethodDescriptor taaSimplestDescriptor() {
             .temporal = true,
             .params = {realParam("k", "0.9", 0, 1, "weight of history", "seed 002: \"normally around 0.9\""),
                        temporal::unjitterParam(false, "methods/06 B0; not in the source"),
-                       temporal::historyFilterParam("bilinear", "seed 002"), temporal::outsideParam(),
-                       temporal::warmupParam(), temporal::historyBitsParam(Space::linear), temporal::ditherParam()},
+                       temporal::historyFilterParam("bilinear", "seed 002"), temporal::historyClampParam(),
+                       temporal::outsideParam(), temporal::warmupParam(), temporal::historyBitsParam(Space::linear),
+                       temporal::ditherParam()},
             .create = [](const Params& p, const ShotInfo&) { return std::make_unique<TaaSimplest>(p); }};
 }
 }  // namespace aa

@@ -56,6 +56,11 @@ ParamSpec historyFilterParam(std::string_view def, std::string_view source) {
     return choiceParam("history", def, {"bilinear", "catmullRom", "catmullRom5"},
                        "filter that reads the history: 2x2, 4x4, 4x4 without corners", source);
 }
+ParamSpec historyClampParam() {
+    return flagParam("historyClamp", true,
+                     "hold what Catmull-Rom reads in the range of the four central texels, and >= 0; off: as published",
+                     "methods/08 s.8.1", "history=catmullRom|catmullRom5");
+}
 ParamSpec neighbourhoodParam(std::string_view def, std::string_view source) {
     return choiceParam("neighbourhood", def, {"rounded", "3x3", "plus"},
                        "window of the colour box: mean of 3x3 and plus, 3x3, plus", source);
@@ -96,6 +101,27 @@ ParamSpec kMinParam(std::string_view def, std::string_view source) {
 ParamSpec kMaxParam(std::string_view def, std::string_view source) {
     return realParam("kmax", def, 0, 1, "weight of history where its luminance is that of the current colour", source);
 }
+ParamSpec depthToleranceParam(std::string_view onlyWhen) {
+    return realParam("depthTolerance", "0.08", 0, 10,
+                     "a surface is new where the last frame shows one nearer by more than this share of its depth; 1 "
+                     "and more: nowhere",
+                     "seed 001 s.4.4.1", onlyWhen);
+}
+ParamSpec bothSidesParam(std::string_view onlyWhen) {
+    return flagParam("bothSides", false, "reject nearer surfaces too, not only hidden ones", "methods/11 nr 19",
+                     onlyWhen);
+}
+ParamSpec magnificationParam(std::string_view def, std::string_view source) {
+    return choiceParam("magnification", def, {"off", "0.5", "1"},
+                       "reject where one previous sample would be enlarged: its centre is farther than this share of "
+                       "the footprint",
+                       source);
+}
+ParamSpec countAtParam(std::string_view source, std::string_view onlyWhen) {
+    return choiceParam("countAt", "pixel", {"pixel", "reprojected"},
+                       "where the sample count of the last frame is read: at this pixel, or where its surface was",
+                       source, onlyWhen);
+}
 void requireOrdered(std::string_view method, const Params& p) {
     if (p.real("kmin") > p.real("kmax"))
         throw UsageError(std::string(method) + ": expected kmin <= kmax, found kmin=" + p.all().find("kmin")->second +
@@ -103,13 +129,22 @@ void requireOrdered(std::string_view method, const Params& p) {
 }
 
 Dilation dilation(const Params& p) { return Dilation(p.choiceIndex("dilation")); }
-HistoryFilter historyFilter(const Params& p) { return HistoryFilter(p.choiceIndex("history")); }
+HistoryFilter historyFilter(const Params& p) {
+    const auto filter = HistoryFilter(p.choiceIndex("history"));
+    if (p.flag("historyClamp")) return filter;
+    return filter == HistoryFilter::catmullRom ? HistoryFilter::catmullRomFree : HistoryFilter::catmullRom5Free;
+}
 Neighbourhood neighbourhood(const Params& p) { return Neighbourhood(p.choiceIndex("neighbourhood")); }
 ClipTarget clipTarget(const Params& p) { return ClipTarget(p.choiceIndex("clipTarget")); }
 Luminance luminance(const Params& p) { return Luminance(p.choiceIndex("luminance")); }
 HistoryStorage historyStorage(const Params& p) {
     return {HistoryFormat(p.choiceIndex("historyBits")), p.flag("dither")};
 }
+RejectionTest rejectionTest(const Params& p) {
+    const std::string& scale = p.choice("magnification");
+    return {p.realf("depthTolerance"), scale == "off" ? 0.0f : std::stof(scale), p.flag("bothSides")};
+}
+bool countAtPixel(const Params& p) { return p.choice("countAt") == "pixel"; }
 PassSet dilationPasses(const Params& p) {
     const Dilation d = dilation(p);
     return d == Dilation::closest3x3 || d == Dilation::closestX ? PassSet(Pass::depth) : PassSet{};

@@ -46,6 +46,7 @@ ParamSpec unjitterParam(bool def, std::string_view source);
 ParamSpec luminanceParam(std::string_view def, std::string_view source, std::string_view onlyWhen = {});
 ParamSpec dilationParam(std::string_view def, std::string_view source);
 ParamSpec historyFilterParam(std::string_view def, std::string_view source);
+ParamSpec historyClampParam();  // every method with historyFilterParam has it
 ParamSpec neighbourhoodParam(std::string_view def, std::string_view source);
 ParamSpec clipTargetParam(std::string_view def, std::string_view source);
 ParamSpec warmupParam();
@@ -56,6 +57,12 @@ ParamSpec sharpenParam(std::string_view def, std::string_view source);
 // The two ends of the luminance feedback B8.
 ParamSpec kMinParam(std::string_view def, std::string_view source);
 ParamSpec kMaxParam(std::string_view def, std::string_view source);
+// Thresholds of the rejection by geometry B3: read together by rejectionTest().
+ParamSpec depthToleranceParam(std::string_view onlyWhen = {});
+ParamSpec bothSidesParam(std::string_view onlyWhen = {});
+ParamSpec magnificationParam(std::string_view def, std::string_view source);
+// Where the sample count of the last frame is read: countAtPixel().
+ParamSpec countAtParam(std::string_view source, std::string_view onlyWhen = {});
 void requireOrdered(std::string_view method, const Params& p);  // kmin <= kmax, else UsageError
 
 Dilation dilation(const Params& p);
@@ -64,6 +71,8 @@ Neighbourhood neighbourhood(const Params& p);
 ClipTarget clipTarget(const Params& p);
 HistoryStorage historyStorage(const Params& p);
 Luminance luminance(const Params& p);
+RejectionTest rejectionTest(const Params& p);
+bool countAtPixel(const Params& p);
 
 // Depth is read only to dilate motion by it.
 PassSet dilationPasses(const Params& p);

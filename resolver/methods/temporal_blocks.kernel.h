@@ -54,6 +54,14 @@ AA_INLINE Motion<R> dilated_motion(const TemporalIn& in, long o) {
     return best;
 }
 
+// Of the surface that dilated_motion() takes by its depth; otherwise the pixel's own.
+template <class R>
+AA_INLINE R dilated_depth(const TemporalIn& in, long o) {
+    if (in.dilation == Dilation::closest3x3) return closest_surface<R>(in, o, false).depthView;
+    if (in.dilation == Dilation::closestX) return closest_surface<R>(in, o, true).depthView;
+    return load<R>(in.depthView + o);
+}
+
 // The nine colours around a pixel, loaded (and converted) once; at(i, j) as the functions below take it.
 template <class R>
 struct Window {

@@ -5,7 +5,8 @@
 namespace aa {
 
 enum class Dilation { closest3x3, closestX, longest3x3, none };  // methods/06 B2
-enum class HistoryFilter { bilinear, catmullRom, catmullRom5 };  // methods/06 B1
+// methods/06 B1; the last two are Catmull-Rom as published, without the clamp of methods/08 s.8.1.
+enum class HistoryFilter { bilinear, catmullRom, catmullRom5, catmullRomFree, catmullRom5Free };
 enum class Neighbourhood { rounded, box3x3, plus };              // methods/06 B4
 enum class ClipTarget { aabbCentre, mean, current, clamp };      // methods/06 B6; clamp: B5 instead of a clip
 enum class SharpenKernel { none, xu, norm };                     // methods/06 s.6.10
@@ -20,6 +21,13 @@ enum class Rejection { none = 0, outside = 1, disoccluded = 2, magnified = 3, ot
 struct ExpectedDepth {
     bool known = false;
     float perDepth[3] = {0, 0, 1}, constant[3] = {0, 0, 0};
+};
+
+// Thresholds of the tests that reject history by geometry (methods/06 B3).
+struct RejectionTest {
+    float depthTolerance;  // share of the expected depth
+    float magnification;   // of the footprint within which the previous pixel's centre must lie; 0: not tested
+    bool bothSides;        // nearer surfaces are rejected, too
 };
 
 // Intermediates for --debug-layers: all or none of them; the rejection may also be kept alone.

@@ -104,11 +104,12 @@ AA_INLINE void lanczos_weights(R f, R* w) {
     w[2] = lanczos2((one - f) * (one - f)), w[3] = lanczos2((two - f) * (two - f));
 }
 // 4x4 taps of weight wx[i] wy[j]; `corners` false drops the four corner taps (the "5-tap" form of GPUs, 12 texels).
-// `normalise` divides by the sum of the weights; Catmull-Rom's sixteen sum to 1. Held in the range of the four central
-// texels against overshoot at fireflies, and >= 0 (methods/08 s.8.1). Whole motion takes the texel itself; beside it,
-// taps of weight 0 are exact because a history is finite (sanitised()).
+// `normalise` divides by the sum of the weights; Catmull-Rom's sixteen sum to 1. `clamped` holds the sum in the range
+// of the four central texels against overshoot at fireflies, and >= 0 (methods/08 s.8.1). Whole motion takes the texel
+// itself; beside it, taps of weight 0 are exact because a history is finite (sanitised()).
 template <bool corners, bool normalise, class R>
-AA_INLINE vec3<R> fetch_4x4(const float* p, int stride, const Reprojection<R>& q, const R (&wx)[4], const R (&wy)[4]) {
+AA_INLINE vec3<R> fetch_4x4(const float* p, int stride, const Reprojection<R>& q, const R (&wx)[4], const R (&wy)[4],
+                            bool clamped) {
     using T = Elem<R>;
     const Offsets<R> k = texel_offsets(q, stride);
     if (all_whole(q)) return fetch_rgba<R>(p, k).rgb;
@@ -129,28 +130,31 @@ AA_INLINE vec3<R> fetch_4x4(const float* p, int stride, const Reprojection<R>& q
         if constexpr (normalise) norm = norm + (!corners && outerRow ? wy[j] * inner : wy[j] * all4);
     }
     if constexpr (normalise) sum = sum * (R(T(1)) / norm);
-    const vec3<R> held = max(clamp3(sum, lo, hi), vec3<R>(zero));
+    const vec3<R> held = clamped ? max(clamp3(sum, lo, hi), vec3<R>(zero)) : sum;
     return select(both(q.fracX == zero, q.fracY == zero), own, held);
 }
 template <bool corners, class R>
-AA_INLINE vec3<R> fetch_catmull_rom(const float* p, int stride, const Reprojection<R>& q) {
+AA_INLINE vec3<R> fetch_catmull_rom(const float* p, int stride, const Reprojection<R>& q, bool clamped = true) {
     R wx[4], wy[4];
     catmull_rom_weights(q.fracX, wx);
     catmull_rom_weights(q.fracY, wy);
-    return fetch_4x4<corners, !corners>(p, stride, q, wx, wy);
+    return fetch_4x4<corners, !corners>(p, stride, q, wx, wy, clamped);
 }
 template <class R>
 AA_INLINE vec3<R> fetch_lanczos(const float* p, int stride, const Reprojection<R>& q) {
     R wx[4], wy[4];
     lanczos_weights(q.fracX, wx);
     lanczos_weights(q.fracY, wy);
-    return fetch_4x4<true, true>(p, stride, q, wx, wy);
+    return fetch_4x4<true, true>(p, stride, q, wx, wy, true);
 }
 template <class R>
 AA_INLINE vec3<R> fetch_history(const TemporalIn& in, int x, int y, const Reprojection<R>& q) {
     const float* p = in.history + 4 * (long(y) * in.stride + x);
-    if (in.filter == HistoryFilter::catmullRom) return fetch_catmull_rom<true>(p, in.stride, q);
-    if (in.filter == HistoryFilter::catmullRom5) return fetch_catmull_rom<false>(p, in.stride, q);
+    const bool clamped = in.filter == HistoryFilter::catmullRom || in.filter == HistoryFilter::catmullRom5;
+    if (in.filter == HistoryFilter::catmullRom || in.filter == HistoryFilter::catmullRomFree)
+        return fetch_catmull_rom<true>(p, in.stride, q, clamped);
+    if (in.filter == HistoryFilter::catmullRom5 || in.filter == HistoryFilter::catmullRom5Free)
+        return fetch_catmull_rom<false>(p, in.stride, q, clamped);
     return fetch_bilinear(p, in.stride, q).rgb;
 }
 // B0: B(plane, p + offset) with one offset for the whole frame (un-jittering: offset = -jitter). A plane of float, or

@@ -57,7 +57,7 @@ MethodDescriptor descriptor(std::string_view id, std::string_view title, std::st
                        temporal::luminanceParam("quarter", "the author's public program; methods/06 s.6.4"),
                        temporal::sharpenParam(sharpen, sharpenSource),
                        temporal::dilationParam("closest3x3", "seed 000 s.3.6.2"),
-                       temporal::historyFilterParam("bilinear", "methods/06 B1"),
+                       temporal::historyFilterParam("bilinear", "methods/06 B1"), temporal::historyClampParam(),
                        temporal::neighbourhoodParam("rounded", "seed 000 s.3.6.3"),
                        temporal::clipTargetParam("aabbCentre", "methods/11 nr 6"), temporal::warmupParam(),
                        temporal::historyBitsParam(Space::encoded), temporal::ditherParam()},

@@ -140,22 +140,23 @@ inline glm::dvec2 halton(int n) {
     return {inverse(n, 2) - 0.5, inverse(n, 3) - 0.5};
 }
 
-// "name=value," that makes a parameter act; empty where the defaults do.
+// "name=value," that makes a parameter act, and before it what makes that one act; empty where the defaults do.
 inline std::string condition(const MethodDescriptor& method, const ParamSpec& param) {
     const size_t eq = param.onlyWhen.find('=');
     if (eq == std::string_view::npos) return "";
     const std::string_view name = param.onlyWhen.substr(0, eq);
     for (const ParamSpec& other : method.params) {
         if (other.name != name) continue;
+        const std::string before = condition(method, other);
         std::string_view values = param.onlyWhen.substr(eq + 1), first;
         while (!values.empty()) {
             const size_t bar = std::min(values.find('|'), values.size());
             const std::string_view value = values.substr(0, bar);
-            if (value == other.defaultValue) return "";
+            if (value == other.defaultValue) return before;
             if (first.empty() && std::count(other.choices.begin(), other.choices.end(), value)) first = value;
             values.remove_prefix(std::min(bar + 1, values.size()));
         }
-        return std::string(name) + "=" + std::string(first) + ",";
+        return before + std::string(name) + "=" + std::string(first) + ",";
     }
     return "";
 }
