@@ -1,5 +1,7 @@
 #include "methods/asaa.h"
 
+#include <utility>
+
 #include "image/error.h"
 #include "methods/asaa_kernels.h"
 #include "methods/temporal.h"
@@ -49,6 +51,10 @@ class Asaa : public Method {
         const auto phi = [](size_t q) { return glm::vec2(q & 2 ? 0.25f : -0.25f, q & 1 ? 0.25f : -0.25f); };
         AsaaArgs args{};
         args.in = temporal::frameView(frame, frame.colorEncoded);
+        if (params_.flag("unjitter")) {  // to where the quadrant's buffer has its samples
+            temporal::unjitter(frame.colorEncoded, frame.jitterPx - glm::dvec2(phi(quadrant)), exec, unjittered_);
+            args.in.color = view(std::as_const(unjittered_));
+        }
         args.in.out = view(out);
         args.in.next = spare_.row(0);
         args.lastFrame = cameraPath(frame, frame.previousCamera);
@@ -78,7 +84,7 @@ class Asaa : public Method {
         count_[0].fillBorder();
         started_ = true;
     }
-    size_t stateBytes() const override { return 5 * spare_.bytes() + 2 * count_[0].bytes(); }
+    size_t stateBytes() const override { return 5 * spare_.bytes() + 2 * count_[0].bytes() + unjittered_.bytes(); }
     const PlaneF* rejection() const override { return debug_.rejection(); }
     std::vector<DebugLayer> debugLayers() const override {
         std::vector<DebugLayer> layers = debug_.layers();
@@ -97,6 +103,7 @@ class Asaa : public Method {
     Buffer buffers_[4];
     RgbaPlane spare_;
     PlaneF count_[2];
+    Rgb unjittered_;
     bool started_ = false;
     TemporalDebugLayers debug_;
 };
@@ -112,7 +119,8 @@ MethodDescriptor asaaDescriptor() {
             .input = Space::encoded,
             .output = Space::encoded,
             .temporal = true,
-            .params = {choiceParam("blurMode", "thesis", {"thesis", "eq331"},
+            .params = {temporal::unjitterParam(false, "methods/06 B0: by the normally distributed part of the jitter"),
+                       choiceParam("blurMode", "thesis", {"thesis", "eq331"},
                                    "limit of blur in motion: 4 samples, or eq 3.31 with the threshold 0.12 above the "
                                    "filter's variance and the sample count of eq 3.29",
                                    "methods/11 nr 23"),

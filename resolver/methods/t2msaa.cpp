@@ -1,5 +1,7 @@
 #include "methods/t2msaa.h"
 
+#include <utility>
+
 #include "image/error.h"
 #include "methods/t2msaa_kernels.h"
 #include "methods/temporal.h"
@@ -22,7 +24,13 @@ class T2msaa : public Method {
             const SubSample& s = frame.subSamples[pair[i]];
             args.sample[i] = view(s.colorLinear);
             args.sampleDepth[i] = s.depthView.row(0);
+            if (!p.flag("unjitter")) continue;
+            temporal::unjitter(s.colorLinear, frame.jitterPx, exec, unjittered_[i]);
+            args.sample[i] = view(std::as_const(unjittered_[i]));
+            const glm::ivec2 texel = temporal::unjitteredTexel(frame);
+            args.sampleDepth[i] += ptrdiff_t(texel.y) * args.in.stride + texel.x;
         }
+        if (p.flag("unjitter")) temporal::unjitter(frame, args.in);
         for (auto& c : count_)
             if (c.width() != frame.width || c.height() != frame.height) c = PlaneF(frame.width, frame.height);
         args.previousCount = count_[0].row(0);
@@ -38,7 +46,10 @@ class T2msaa : public Method {
         std::swap(count_[0], count_[1]);
         count_[0].fillBorder();
     }
-    size_t stateBytes() const override { return history_.bytes() + count_[0].bytes() + count_[1].bytes(); }
+    size_t stateBytes() const override {
+        return history_.bytes() + count_[0].bytes() + count_[1].bytes() + unjittered_[0].bytes() +
+               unjittered_[1].bytes();
+    }
     const PlaneF* rejection() const override { return debug_.rejection(); }
     std::vector<DebugLayer> debugLayers() const override {
         std::vector<DebugLayer> layers = debug_.layers();
@@ -68,6 +79,7 @@ class T2msaa : public Method {
     double offsetPx_;
     ColourHistory history_;
     PlaneF count_[2];
+    Rgb unjittered_[2];
     TemporalDebugLayers debug_;
 };
 
@@ -83,6 +95,7 @@ MethodDescriptor t2msaa() {
     d.outputSpace = [](const Params& p) { return p.choice("space") == "encoded" ? Space::encoded : Space::linear; };
     d.temporal = true;
     d.params = {
+        temporal::unjitterParam(false, "methods/06 B0; the shift between frames is the filter"),
         realParam("offset", "0.25", 0.0625, 0.375,
                   "shift of the two samples between frames, px; the thesis has 0.25, 0.1875, 0.125; chooses among more "
                   "than two recorded sub-samples, where there are two the shot's jitter has shifted them",
