@@ -1,6 +1,10 @@
 #include "methods/smaa_areas.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <deque>
+#include <mutex>
 
 #include "kernels/dispatch.h"
 
@@ -43,14 +47,56 @@ double exactSide(Point p, Point q, Point corner) {
     }
     return twice / 2;
 }
+// Counts the points i, j of 30 x 30 with x[i] + y[j] > 0. Rounding keeps the order of the x and of the y, so with x
+// rising the points that are inside grow from the largest y on: 60 comparisons find the count that 900 would.
 double sampledSide(Point p, Point q, Point corner) {
+    constexpr size_t kPoints = 30;
     const double a = q[1] - p[1], b = p[0] - q[0], xm = (p[0] + q[0]) / 2, ym = (p[1] + q[1]) / 2;
     if (a == 0 && b == 0) return 1;
-    int inside = 0;
-    for (int i = 0; i < 30; i++)
-        for (int j = 0; j < 30; j++) inside += a * (corner[0] + i / 29.0 - xm) + b * (corner[1] + j / 29.0 - ym) > 0;
-    return inside / 900.0;
+    std::array<double, kPoints> rising, falling;
+    for (size_t k = 0; k < kPoints; k++) {
+        const double step = double(k) / 29.0;
+        rising[a < 0 ? kPoints - 1 - k : k] = a * (corner[0] + step - xm);
+        falling[b < 0 ? k : kPoints - 1 - k] = b * (corner[1] + step - ym);
+    }
+    size_t inside = 0, insideColumn = 0;
+    for (const double x : rising) {
+        while (insideColumn < kPoints && x + falling[insideColumn] > 0) insideColumn++;
+        inside += insideColumn;
+    }
+    return double(inside) / 900.0;
 }
+
+// The tables made last. They depend on their parameters alone, and every method of a run, every value of a sweep and
+// every test asks for the same few; without a period the jitter asks for ever new ones, so the number is bounded.
+class TableCache {
+  public:
+    // Compared bit for bit: -0 is not 0 here.
+    using Key = std::array<uint64_t, 2>;
+    static Key key(double first, double second) {
+        return {std::bit_cast<uint64_t>(first), std::bit_cast<uint64_t>(second)};
+    }
+    template <class Make>
+    std::vector<float> get(const Key& key, Make make) {
+        if (std::lock_guard lock(mutex_); const auto* known = find(key)) return *known;
+        std::vector<float> made = make();  // unlocked: whoever asks for another table need not wait
+        std::lock_guard lock(mutex_);
+        if (!find(key)) {
+            if (entries_.size() == kMost) entries_.pop_front();
+            entries_.emplace_back(key, made);
+        }
+        return made;
+    }
+
+  private:
+    static constexpr size_t kMost = 32;  // a jitter's period of 16 and two axes; 17 MB of the largest table
+    const std::vector<float>* find(const Key& key) const {
+        const auto it = std::find_if(entries_.begin(), entries_.end(), [&](const auto& e) { return e.first == key; });
+        return it == entries_.end() ? nullptr : &it->second;
+    }
+    std::mutex mutex_;
+    std::deque<std::pair<Key, std::vector<float>>> entries_;
+};
 
 // Start and end corners (relative to the end pixels) of the lines to average; methods/03 s.3.2.4.
 struct Ends {
@@ -105,7 +151,8 @@ std::vector<float> orthogonalTable(double offset) {
     return table;
 }
 
-std::vector<float> exactTable(double offset, int reachPx) {
+namespace {
+std::vector<float> makeExactTable(double offset, int reachPx) {
     static constexpr int kCodes[] = {0, 1, 3, 4};
     std::vector<SmaaAreaQuery> queries;
     for (const int e1 : kCodes)
@@ -121,7 +168,7 @@ std::vector<float> exactTable(double offset, int reachPx) {
     return table;
 }
 
-std::vector<float> diagonalTable(std::array<double, 2> offset, bool quantised) {
+std::vector<float> makeDiagonalTable(std::array<double, 2> offset, bool quantised) {
     std::vector<float> table;
     const auto integral = quantised ? DiagonalIntegral::sampled30 : DiagonalIntegral::exact;
     for (int c1 = 0; c1 < 4; c1++)
@@ -133,6 +180,19 @@ std::vector<float> diagonalTable(std::array<double, 2> offset, bool quantised) {
                     table.push_back(quantised ? quantise(a.opposite) : float(a.opposite));
                 }
     return table;
+}
+}  // namespace
+
+std::vector<float> exactTable(double offset, int reachPx) {
+    static TableCache cache;
+    return cache.get(TableCache::key(offset, reachPx), [&] { return makeExactTable(offset, reachPx); });
+}
+
+std::vector<float> diagonalTable(std::array<double, 2> offset, bool quantised) {
+    static TableCache published, exact;
+    return (quantised ? published : exact).get(TableCache::key(offset[0], offset[1]), [&] {
+        return makeDiagonalTable(offset, quantised);
+    });
 }
 
 }  // namespace aa

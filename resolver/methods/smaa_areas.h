@@ -18,6 +18,7 @@ enum class DiagonalIntegral { exact, sampled30 };  // sampled30: the published r
 // Codes 2 * horizontal + vertical crossing (methods/03 s.3.2.4), distances in px, sub-sample offset in px with y up.
 SmaaAreas diagonalArea(int code1, int code2, int d1, int d2, std::array<double, 2> offset, DiagonalIntegral integral);
 
+// The tables below may be asked for from any thread; the costly ones are kept, the last 32 of each kind.
 // 25 code pairs x 16 x 16 pairs of floor(255 a) / 255 at l = u^2, r = v^2: one orthogonal tile of the published
 // texture.
 std::vector<float> orthogonalTable(double offset);

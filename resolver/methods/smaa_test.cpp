@@ -1,6 +1,7 @@
 #include "methods/smaa.h"
 
 #include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
 
 #include <cmath>
 
@@ -76,6 +77,50 @@ TEST(SmaaAreas, TablesEqualTheirDefinitionToOneCode) {
     ASSERT_EQ(published.size(), 16u * kDiagonals * kDiagonals * 2);
     for (size_t k = 0; k < published.size(); k++)  // the 30 x 30 rule is within 8 codes of the exact area
         EXPECT_LE(std::abs(std::floor(255 * exact[k]) - 255 * published[k]), 8.001) << k;
+}
+// The table finds the count with 60 comparisons; here all 900 are made.
+TEST(SmaaAreas, PublishedDiagonalsAreTheCountOf900Points) {
+    const auto side = [](std::array<double, 2> p, std::array<double, 2> q, std::array<double, 2> corner) {
+        const double a = q[1] - p[1], b = p[0] - q[0], xm = (p[0] + q[0]) / 2, ym = (p[1] + q[1]) / 2;
+        int inside = 0;
+        for (int i = 0; i < 30; i++)
+            for (int j = 0; j < 30; j++)
+                inside += a * (corner[0] + i / 29.0 - xm) + b * (corner[1] + j / 29.0 - ym) > 0;
+        return inside / 900.0;
+    };
+    struct Line {  // the crossing codes that give one line, and its ends' y in their pixels
+        int code1, code2;
+        double startY, endY;
+    };
+    for (const Line& line : {Line{2, 1, 1, 1}, {1, 1, 0, 1}, {1, 2, 0, 0}, {2, 2, 1, 0}})
+        for (const std::array<double, 2> offset : {std::array{0.0, 0.0}, {0.25, -0.25}, {-0.11, 0.11}, {0.3, 0.2}})
+            for (int d1 = 0; d1 < kDiagonals; d1++)
+                for (int d2 = 0; d2 < kDiagonals; d2++) {
+                    const double d = d1 + d2 + 1;
+                    const std::array start{1 + offset[0], line.startY + offset[1]},
+                        end{1 + offset[0] + d, line.endY + offset[1] + d};
+                    const auto areas =
+                        diagonalArea(line.code1, line.code2, d1, d2, offset, DiagonalIntegral::sampled30);
+                    ASSERT_EQ(areas.own, 1 - side(start, end, {1.0 + d1, 0.0 + d1})) << d1 << " " << d2;
+                    ASSERT_EQ(areas.opposite, side(start, end, {1.0 + d1, 1.0 + d1})) << d1 << " " << d2;
+                }
+}
+// Kept tables are those that were made, at later calls, beside other threads and after more than are kept.
+TEST(SmaaAreas, KeptTablesAreTheSame) {
+    const auto published = diagonalTable({0.25, -0.25}, true), exact = diagonalTable({0.25, -0.25}, false);
+    EXPECT_NE(published, exact);
+    const auto orthogonal = exactTable(0.25, 8), other = exactTable(0.25, 9);
+    EXPECT_NE(orthogonal.size(), other.size());
+    tbb::parallel_for(0, 120, [&](int k) {
+        const double offset = k % 40 / 100.0;
+        diagonalTable({offset, -offset}, false);
+        if (k % 3) return;
+        EXPECT_EQ(diagonalTable({0.25, -0.25}, false), exact);
+        EXPECT_EQ(exactTable(0.25, 8), orthogonal);
+        EXPECT_EQ(exactTable(0.25, 9), other);
+    });
+    EXPECT_EQ(diagonalTable({0.25, -0.25}, true), published);
+    EXPECT_EQ(diagonalTable({0.25, -0.25}, false), exact);
 }
 TEST(SmaaAreas, MirroredLinesGiveMirroredAreas) {
     for (int e1 : {0, 1, 3, 4})

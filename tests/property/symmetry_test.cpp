@@ -2,6 +2,8 @@
 // descriptor.
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "frames.h"
 #include "methods/asymmetry.h"
 
