@@ -16,6 +16,7 @@
 #include "report/colour_map.h"
 #include "report/format.h"
 #include "report/gallery.h"
+#include "report/protocol.h"
 
 namespace aa {
 namespace {
@@ -60,7 +61,7 @@ std::string metricList() {
 }
 
 struct Options {
-    std::string a, b, map;
+    std::string a, b, map, display = "srgb";
     std::vector<std::string> metrics = {"mse", "psnr", "ssimLuma"}, thresholds;
     double exposure = 0;
     bool json = false, q8 = false;
@@ -141,10 +142,11 @@ Both loadBoth(const Pair& pair, const Options& o, const Exec& exec) {
         if (image.space == FileSpace::encoded) {
             encoded = std::move(image.rgb);
         } else {
-            encode(image.rgb, image.displayReferred ? DisplayChain{} : DisplayChain{float(o.exposure)}, exec, encoded);
+            const DisplayChain display{float(o.exposure), ToneMap::none, transferByName(o.display)};
+            encode(image.rgb, image.displayReferred ? display.transferOnly() : display, exec, encoded);
             linear = std::move(image.rgb);
         }
-        if (o.q8) encoded = quantised8(encoded);
+        if (o.q8) quantise8(encoded, exec);
     };
     prepare(a, both.encodedA, both.linearA);
     prepare(b, both.encodedB, both.linearB);
@@ -269,6 +271,9 @@ void addCompare(CLI::App& app, Context& context) {
     c->add_option("--fail-below", o->thresholds, "exit 1 when a pooled figure is below, for example psnr=40")
         ->delimiter(',');
     c->add_option("--exposure", o->exposure, "display exposure for linear images, EV")->check(CLI::Range(-20.0, 20.0));
+    c->add_option("--display", o->display,
+                  "of EXR files: srgb = encode, identity = the clamped values are compared as they are")
+        ->check(CLI::IsMember({"srgb", "identity"}));
     c->add_flag("--q8", o->q8, "round both to 8-bit codes first");
     c->add_flag("--json", o->json, "as JSON");
     addWorkOptions(*c, o->work);

@@ -4,17 +4,18 @@
 #include "image/error.h"
 #include "image/io.h"
 #include "methods/driver.h"
+#include "report/protocol.h"
 
 namespace aa {
 namespace {
 struct Options {
-    std::string method, in, out, debugLayers;
+    std::string method, in, out, debugLayers, display = "srgb";
     WorkOptions work;
 };
 bool isPng(const std::filesystem::path& p) { return p.extension() == ".png" || p.extension() == ".PNG"; }
 
 // One image is a static shot of one unjittered frame.
-Frame frameOf(const LoadedImage& image, const Exec& exec) {
+Frame frameOf(const LoadedImage& image, const DisplayChain& display, const Exec& exec) {
     Frame f;
     f.width = image.rgb.width();
     f.height = image.rgb.height();
@@ -22,10 +23,11 @@ Frame frameOf(const LoadedImage& image, const Exec& exec) {
     f.passes = Pass::color;
     if (image.space == FileSpace::encoded) {
         f.colorEncoded = image.rgb;
-        decode(image.rgb, exec, f.colorLinear);
+        decode(image.rgb, display, exec, f.colorLinear);
+        f.display = display;
     } else {
         f.colorLinear = image.rgb;
-        encode(image.rgb, {}, exec, f.colorEncoded);
+        encodeFrame(f, display, exec);
     }
     return f;
 }
@@ -42,18 +44,19 @@ void filter(const Options& o) {
         throw UsageError("filter: expected an output name ending in .png or .exr, found '" + o.out + "'");
     const Exec exec = o.work.exec();
     const LoadedImage image = readImage(o.in);
-    const Frame frame = frameOf(image, exec);
+    const DisplayChain display{.transfer = transferByName(o.display)};
+    const Frame frame = frameOf(image, display, exec);
     RunningMethod running(spec, {.width = frame.width, .height = frame.height, .isStatic = true});
     running.method->keepDebugLayers = !o.debugLayers.empty();
     double seconds = 0;
-    withThreads(o.work.threads, [&] { seconds = running.resolve(frame, {}, exec); });
+    withThreads(o.work.threads, [&] { seconds = running.resolve(frame, frame.display, exec); });
     if (isPng(o.out)) {
         writePng(o.out, running.outEncoded);
-    } else if (spec.outputSpace() == Space::linear) {
+    } else if (spec.outputSpace() == Space::linear && display.transfer != Transfer::identity) {
         writeExr(o.out, running.out, false);
     } else {
         Rgb linear;
-        decode(running.out, exec, linear);
+        decode(running.out, display, exec, linear);
         writeExr(o.out, linear, true);
     }
     if (!o.debugLayers.empty()) writeLayers(o.debugLayers, running.method->debugLayers());
@@ -70,6 +73,9 @@ void addFilter(CLI::App& app, Context&) {
     c->add_option("IN", o->in, "PNG or EXR")->required();
     c->add_option("OUT", o->out, "PNG or EXR")->required();
     c->add_option("--debug-layers", o->debugLayers, "also write the method's intermediate images to this EXR");
+    c->add_option("--display", o->display,
+                  "srgb = EXR values are linear light; identity = they are the displayed values, as the codes of a PNG")
+        ->check(CLI::IsMember({"srgb", "identity"}));
     addWorkOptions(*c, o->work);
     c->callback([o] { filter(*o); });
 }

@@ -47,6 +47,10 @@ void printTable(const RunResults& r) {
     else if (r.truthNoise)
         std::printf("truth: %d samples per half, error bar of the MSE %.4g (PSNR %.2f dB)\n", r.truthSamplesPerHalf,
                     *r.truthNoise, psnr(*r.truthNoise));
+    if (r.truthClipped)
+        std::printf("truth: %zu of %zu pixels (%.3g %%) exceed the display and are clipped\n", r.truthClipped->pixels,
+                    r.truthClipped->of, 100 * double(r.truthClipped->pixels) / double(r.truthClipped->of));
+    std::printf("figures: %s\n", inWords(r.protocol).c_str());
     for (const auto& [what, count] : r.sanitised)
         if (count > 0)
             std::printf("replaced input values: %s %llu\n", what.c_str(), static_cast<unsigned long long>(count));
@@ -102,7 +106,7 @@ void execute(const Options& o, Context& context) {
     const ShotReader shot = openShot(o.run, run);
     RunResults results;
     withThreads(o.run.work.threads, [&] {
-        Progress progress(shot.manifest().name, run.frames.size(), o.run.quiet);
+        Progress progress(shot.manifest().name, stepsOf(run, shot.manifest()), o.run.quiet);
         results = aa::run(shot, run, progress);
         if (progress.interrupted()) context.exitCode = 130;
     });

@@ -1,5 +1,7 @@
 #include "cli/run_arguments.h"
 
+#include <cstdio>
+
 #include "image/error.h"
 
 namespace aa {
@@ -14,6 +16,17 @@ void addRunArguments(CLI::App& c, RunArguments& a) {
         ->check(CLI::IsMember({"truth", "all"}));
     c.add_option("--exposure", a.exposure, "display exposure, EV")->check(CLI::Range(-20.0, 20.0));
     c.add_option("--tone-map", a.toneMap, "display tone map")->check(CLI::IsMember({"none", "reinhard", "aces"}));
+    c.add_option("--display", a.display,
+                 "srgb = encode for the display; identity = the clamped values are the displayed ones, one space for "
+                 "truth, methods and figures (no gamma anywhere)")
+        ->check(CLI::IsMember({"srgb", "identity"}));
+    c.add_option("--history", a.history,
+                 "history at the first judged frame: first = none, ramp = none, with warmup=ramp, full = a static "
+                 "shot's frames ran for 10 jitter periods before")
+        ->check(CLI::IsMember({"first", "ramp", "full"}));
+    c.add_option("--quantise", a.quantise,
+                 "8 = round the compared images, truth included, to 8-bit codes; written EXR files are not rounded")
+        ->check(CLI::IsMember({8}));
     c.add_option("--input", a.input, "NaN and Inf in the input: sanitise = replace and count, strict = refuse")
         ->check(CLI::IsMember({"sanitise", "strict"}));
     c.add_flag("--json", a.json, "print results.json instead of the table");
@@ -24,9 +37,9 @@ void addRunArguments(CLI::App& c, RunArguments& a) {
 ShotReader openShot(const RunArguments& a, RunOptions& run) {
     run.exec = a.work.exec();
     run.threads = a.work.threads;
-    run.display = {float(a.exposure), a.toneMap == "aces"       ? ToneMap::aces
-                                      : a.toneMap == "reinhard" ? ToneMap::reinhard
-                                                                : ToneMap::none};
+    run.protocol = {.display = {float(a.exposure), toneMapByName(a.toneMap), transferByName(a.display)},
+                    .history = historyByName(a.history),
+                    .eightBit = a.quantise == 8};
     run.out = a.out;
     run.writeExr = a.write.find("exr") != std::string::npos;
     run.writePng = a.write.find("png") != std::string::npos;
@@ -35,6 +48,9 @@ ShotReader openShot(const RunArguments& a, RunOptions& run) {
     run.writeAllFrames = a.writeFrames == "all";
     ShotReader shot(a.shot, a.input == "strict" ? InputPolicy::strict : InputPolicy::sanitise);
     run.frames = selectFrames(shot.manifest(), a.frames);
+    std::string without;
+    for (const auto& method : applyHistory(run, shot.manifest())) without += (without.empty() ? "" : ", ") + method;
+    if (!without.empty()) std::fprintf(stderr, "--history ramp: no ramp in %s; run as they are\n", without.c_str());
     return shot;
 }
 

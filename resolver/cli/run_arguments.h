@@ -8,13 +8,16 @@
 namespace aa {
 
 struct RunArguments {
-    std::string shot, out, frames, write = "exr", writeFrames = "truth", toneMap = "none", input = "sanitise";
+    std::string shot, out, frames, write = "exr", writeFrames = "truth", toneMap = "none", display = "srgb",
+                                   history = "first", input = "sanitise";
     double exposure = 0;
+    int quantise = 0;  // 0: off
     bool json = false, quiet = false;
     WorkOptions work;
 };
 void addRunArguments(CLI::App& command, RunArguments& arguments);
-// Opens the shot and fills everything in `options` but the methods. Throws UsageError, InputError.
+// Opens the shot and fills everything in `options` but the methods, which must be there already: they are made to fit
+// the history. Throws UsageError, InputError.
 ShotReader openShot(const RunArguments& arguments, RunOptions& options);
 // Methods by PSNR, the truth's error bar, what the sanitiser replaced.
 void printTable(const RunResults& results);

@@ -54,7 +54,7 @@ RunResults describeRun(const Manifest& m, const RunOptions& o) {
     r.machine = machineName();
     r.threads =
         o.exec.parallel ? int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)) : 1;
-    r.display = o.display;
+    r.protocol = o.protocol;
     std::map<std::string, int> counted;
     for (const auto& f : m.frames)
         for (const auto& [group, seconds] : f.renderSeconds) r.renderSeconds[group] += seconds, counted[group]++;
@@ -113,11 +113,12 @@ std::string writeImage(const RunningMethod& m, int frame, const RunOptions& o) {
     }
     if (o.writeExr) {
         written = (folder / frameName(frame, ".exr")).string();
-        if (m.spec.outputSpace() == Space::linear) {
+        const DisplayChain& display = o.protocol.display;
+        if (m.spec.outputSpace() == Space::linear && display.transfer != Transfer::identity) {
             writeExr(o.out / written, m.out, false);
         } else {
             Rgb linear;
-            decode(m.out, o.exec, linear);
+            decode(m.out, display, o.exec, linear);
             writeExr(o.out / written, linear, true);
         }
     }
@@ -127,7 +128,75 @@ std::string writeImage(const RunningMethod& m, int frame, const RunOptions& o) {
     return written;
 }
 
+// ---- a full history ----
+constexpr size_t kHistoryPeriods = 10;  // methods/11 nr 13
+
+std::vector<MethodSpec> withHistory(const std::vector<MethodSpec>& methods) {
+    std::vector<MethodSpec> chosen;
+    for (const auto& m : methods)
+        if (m.method->wantsHistory()) chosen.push_back(m);
+    return chosen;
+}
+// Whole passes over the frames before the judged one.
+size_t warmUpPasses(const RunOptions& o, const Manifest& m) {
+    if (o.protocol.history != History::full || o.frames.empty() || withHistory(o.methods).empty()) return 0;
+    const size_t frames = kHistoryPeriods * size_t(std::max(m.jitterPeriod, 1));
+    return (frames + o.frames.size() - 1) / o.frames.size();
+}
+// Frames of an earlier pass keep their parity, which tells methods with two sets of sub-samples apart, and get numbers
+// that no frame of another pass has: they seed noise.
+int numberInPass(int number, size_t passesLeft, const RunOptions& o, const Manifest& m) {
+    const int count = m.frames[o.frames.back()].frame - m.frames[o.frames.front()].frame + 1;
+    return number + int(passesLeft) * (count + count % 2);
+}
+// Runs the methods that accumulate over the frames again and again, without a judge. Returns the camera of the last
+// frame.
+std::optional<Camera> warmUp(const ShotReader& shot, const RunOptions& o, std::vector<RunningMethod>& methods,
+                             size_t passes, Progress& progress) {
+    std::vector<size_t> frames;
+    for (size_t pass = 0; pass < passes; pass++) frames.insert(frames.end(), o.frames.begin(), o.frames.end());
+    FrameStream stream(shot, frames, passesOf(withHistory(o.methods)));
+    std::optional<Camera> before;
+    for (size_t i = 0; auto frame = stream.next(); i++) {
+        const size_t pass = i / o.frames.size();
+        const int number = frame->number;
+        if (i % o.frames.size() == 0) {
+            frame->reset = pass == 0;
+            if (pass > 0) frame->previousCamera = before;
+        }
+        frame->number = numberInPass(number, passes - pass, o, shot.manifest());
+        before = frame->camera;
+        prepareFrame(*frame, methods, o.protocol.display, o.exec);
+        for (auto& m : methods)
+            if (m.spec.method->wantsHistory()) m.resolve(*frame, frame->display, o.exec);
+        progress.step("warm-up " + std::to_string(pass + 1) + "/" + std::to_string(passes) + " frame " +
+                      std::to_string(number));
+        if (progress.interrupted()) break;
+    }
+    return before;
+}
+
 }  // namespace
+
+std::vector<std::string> applyHistory(RunOptions& o, const Manifest& manifest) {
+    if (o.protocol.history == History::full && !manifest.isStatic)
+        throw UsageError("--history full: '" + manifest.name +
+                         "' moves, and only the frames of a static shot can be repeated; choose first or ramp");
+    std::vector<std::string> without;
+    if (o.protocol.history != History::ramp) return without;
+    for (auto& spec : o.methods) {
+        const auto& table = spec.method->params;
+        const auto named = [](const auto& p) { return p.first == "warmup"; };
+        if (std::none_of(table.begin(), table.end(), [](const auto& p) { return p.name == "warmup"; })) {
+            if (spec.method->temporal) without.push_back(spec.text);
+        } else if (std::none_of(spec.given.begin(), spec.given.end(), named)) {
+            spec.given.emplace_back("warmup", "ramp");
+        }
+    }
+    return without;
+}
+
+size_t stepsOf(const RunOptions& o, const Manifest& m) { return o.frames.size() * (1 + warmUpPasses(o, m)); }
 
 void requirePasses(const ShotReader& shot, const std::vector<MethodSpec>& methods) {
     const PassSet jittered = shot.offered();
@@ -213,23 +282,40 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, Progress& pro
     // A sequence is also judged over time, along the motion where the shot knows it.
     const bool judgeTime = o.frames.size() > 1 && !passesOf(o.methods, Sampling::jittered).empty();
     if (judgeTime && !manifest.isStatic) wanted |= passesThatAreThere(temporalMetricPasses(), shot.offered());
-    TemporalScene scene(manifest.isStatic, o.display);
+    TemporalScene scene(manifest.isStatic);
     std::vector<TemporalJudge> judges(methods.size(), TemporalJudge(temporalWarmup(o.frames.size())));
+    const size_t passes = warmUpPasses(o, manifest);
+    std::optional<Camera> before;
+    if (passes > 0) before = warmUp(shot, o, methods, passes, progress);
+    results.warmUpFrames = passes * o.frames.size();
+    if (progress.interrupted()) return results;
     FrameStream stream(shot, o.frames, wanted, /*withTruth=*/true, wantedOfCentre);
+    const DisplayChain& display = o.protocol.display;
+    std::shared_ptr<Frame> centreFrame;  // of the last frame; shared by those of a static shot, and prepared once
     for (size_t i = 0; auto frame = stream.next(); i++) {
-        if (i == 0) frame->reset = true;  // a sequence may start in the middle
-        if (!wanted.empty()) prepareFrame(*frame, methods, o.display, o.exec);
-        if (stream.centre() && stream.centre()->colorEncoded.empty())
-            prepareFrame(*stream.centre(), methods, o.display, o.exec);
+        if (i == 0) {
+            frame->reset = passes == 0;  // a sequence may start in the middle
+            if (passes > 0) frame->previousCamera = before;
+        }
+        prepareFrame(*frame, methods, display, o.exec);
+        if (stream.centre() && stream.centre() != centreFrame) prepareFrame(*stream.centre(), methods, display, o.exec);
+        centreFrame = stream.centre();
         if (stream.truth() != truth) {
             truth = stream.truth();
             reference.reset();
-            if (truth) reference = makeReference(truth->a, truth->b, o.display, o.exec);
+            if (truth) {
+                reference = makeReference(truth->a, truth->b, display, o.exec, o.protocol.eightBit);
+                if (display.transfer == Transfer::identity) {
+                    auto& clipped = results.truthClipped ? *results.truthClipped : results.truthClipped.emplace();
+                    clipped.pixels += reference->clippedPixels;
+                    clipped.of += size_t(manifest.width) * size_t(manifest.height);
+                }
+            }
         }
         const bool write = o.writeAllFrames || (reference && (!manifest.isStatic || i + 1 == o.frames.size()));
         if (write && reference) {
             const std::string file = (fs::path("truth") / frameName(frame->number, ".exr")).string();
-            writeExr(o.out / file, reference->linear, false);
+            writeExr(o.out / file, reference->linear, display.transfer == Transfer::identity);
             results.truthImages[frame->number] = file;
         }
         if (reference) noise += reference->noise, withTruth++;
@@ -240,7 +326,9 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, Progress& pro
             FrameResult result;
             result.frame = frame->number;
             const bool centre = split && methods[k].spec.method->sampling() == Sampling::centre;
-            result.seconds = methods[k].resolve(centre ? *stream.centre() : *frame, o.display, o.exec);
+            const Frame& input = centre ? *stream.centre() : *frame;
+            result.seconds = methods[k].resolve(input, input.display, o.exec);
+            if (o.protocol.eightBit) quantise8(methods[k].outEncoded, o.exec);
             if (reference) {
                 const bool linear = methods[k].spec.outputSpace() == Space::linear;
                 result.metrics = measure(methods[k].outEncoded, linear ? &methods[k].out : nullptr, *reference,
@@ -269,7 +357,10 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, Progress& pro
             {"colourNan", n.colourNan}, {"colourInf", n.colourInf}, {"colourNegative", n.colourNegative},
             {"depth", n.depth},         {"normal", n.normal},       {"motion", n.motion},
             {"edges", n.edges},         {"segments", n.segments}};
-    for (size_t k = 0; judgeTime && k < methods.size(); k++) results.methods[k].temporal = judges[k].result();
+    for (size_t k = 0; judgeTime && k < methods.size(); k++) {
+        results.methods[k].temporal = judges[k].result();
+        if (passes > 0) results.methods[k].temporal->convergence.reset();  // it counts from the start of the history
+    }
     return results;
 }
 

@@ -98,8 +98,8 @@ size_t bytesOf(const MethodSpec& spec, const ShotReader& shot, const RunOptions&
         const bool centre = shot.hasCentreFrames() && spec.method->sampling() == Sampling::centre;
         Frame frame = centre ? shot.readCentre(o.frames[i], spec.passes()) : shot.read(o.frames[i], spec.passes());
         frame.reset = frame.reset || i == 0;
-        prepareFrame(frame, probe, o.display, o.exec);
-        probe[0].resolve(frame, o.display, o.exec);
+        prepareFrame(frame, probe, o.protocol.display, o.exec);
+        probe[0].resolve(frame, frame.display, o.exec);
         bytes = std::max(bytes, probe[0].method->stateBytes());
     }
     constexpr size_t kJudgePlanes = 2;  // metrics/temporal.h keeps a mean and a spread, or the last luma
@@ -108,13 +108,13 @@ size_t bytesOf(const MethodSpec& spec, const ShotReader& shot, const RunOptions&
 
 void sweep(const Options& o, Context& context) {
     RunOptions run;
-    const std::vector<MethodSpec> variants = variantsOf(o);
+    run.methods = variantsOf(o);
     const ShotReader shot = openShot(o.run, run);
+    const std::vector<MethodSpec> variants = run.methods;
     RunResults all;
     std::vector<TileErrors> errors;
     size_t passes = 0;
     withThreads(o.run.work.threads, [&] {
-        run.methods = variants;
         requirePasses(shot, run.methods);
         // Measured on the first and the last variant: where memory depends on a parameter, the values mostly ascend.
         const auto compared =
@@ -123,16 +123,24 @@ void sweep(const Options& o, Context& context) {
         const size_t perPass =
             std::clamp<size_t>(size_t(o.memoryMb * (1 << 20)) / std::max<size_t>(each, 1), 1, variants.size());
         passes = (variants.size() + perPass - 1) / perPass;
-        Progress progress("sweep", run.frames.size() * passes, o.run.quiet);
-        for (size_t first = 0; first < variants.size() && !progress.interrupted(); first += perPass) {
-            run.methods.assign(variants.begin() + ptrdiff_t(first),
+        std::vector<std::vector<MethodSpec>> parts;
+        size_t steps = 0;
+        for (size_t first = 0; first < variants.size(); first += perPass) {
+            parts.emplace_back(variants.begin() + ptrdiff_t(first),
                                variants.begin() + ptrdiff_t(std::min(first + perPass, variants.size())));
+            run.methods = parts.back();
+            steps += stepsOf(run, shot.manifest());
+        }
+        Progress progress("sweep", steps, o.run.quiet);
+        for (size_t first = 0; first < parts.size() && !progress.interrupted(); first++) {
+            run.methods = parts[first];
             std::vector<TileErrors> some;
             RunResults part = runMethods(shot, run, progress, some);
             if (first == 0) {
                 all = std::move(part);
                 errors = std::move(some);
             } else if (!progress.interrupted()) {  // variants that saw fewer frames cannot be compared with the others
+                all.warmUpFrames = std::max(all.warmUpFrames, part.warmUpFrames);
                 std::move(part.methods.begin(), part.methods.end(), std::back_inserter(all.methods));
                 std::move(some.begin(), some.end(), std::back_inserter(errors));
             }

@@ -1,4 +1,5 @@
 #pragma once
+#include "kernels/display_args.h"
 #include "kernels/table.h"
 
 namespace aa {
@@ -6,8 +7,7 @@ struct ColourArgs {
     RgbIn in;
     RgbOut out;
     int stride, width;
-    float scale;  // 2^exposure
-    int toneMap;  // ToneMap as an integer
+    DisplayArgs display;
 };
 struct ColourKernels {
     RowKernel<ColourArgs> encode, decode;

@@ -41,26 +41,24 @@ class Accum : public Method {
 }  // namespace
 
 MethodDescriptor accumDescriptor() {
-    return {
-        .id = "accum",
-        .title = "Accumulation buffer",
-        .family = "reference",
-        .summary = "Mean of the jittered frames of a static scene.",
-        .source = "Haeberli & Akeley 1990; methods/01 s.1.3",
-        .passes = Pass::color,
-        .temporal = true,
-        .params = {intParam("samples", "128", 1, 100000, "frames averaged; later frames leave the mean as it is",
-                            "seed 000 s.4.1.3"),
-                   choiceParam("space", "linear", {"linear", "encoded"},
-                               "values that are averaged: light, or display values as a GL accumulation buffer held",
-                               "methods/01 s.1.3 (accumEncoded)")},
-        .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
-            if (!shot.isStatic)
-                throw InputError(
-                    "accum: averages the frames of a static shot, and this shot moves; use accumReject, or "
-                    "ssaa on sub-sample colours");
-            return std::make_unique<Accum>(p.integer("samples"), p.choice("space") == "encoded");
-        },
-        .outputSpace = [](const Params& p) { return p.choice("space") == "encoded" ? Space::encoded : Space::linear; }};
+    return {.id = "accum",
+            .title = "Accumulation buffer",
+            .family = "reference",
+            .summary = "Mean of the jittered frames of a static scene.",
+            .source = "Haeberli & Akeley 1990; methods/01 s.1.3",
+            .passes = Pass::color,
+            .temporal = true,
+            .fixedSet = true,
+            .params = {intParam("samples", "128", 1, 100000, "frames averaged; later frames leave the mean as it is",
+                                "seed 000 s.4.1.3"),
+                       averagedSpaceParam()},
+            .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
+                if (!shot.isStatic)
+                    throw InputError(
+                        "accum: averages the frames of a static shot, and this shot moves; use accumReject, or "
+                        "ssaa on sub-sample colours");
+                return std::make_unique<Accum>(p.integer("samples"), p.choice("space") == "encoded");
+            },
+            .outputSpace = averagedSpace};
 }
 }  // namespace aa

@@ -56,7 +56,7 @@ class Cmaa2 : public Method {
 
   private:
     void findEdges(const Frame& frame, const Exec& exec) {
-        lumaPlane(frame.colorLinear, LumaKind::linearOfSqrt, exec, luma_);
+        lumaPlane(frame.colorLinear, shownLuma(LumaKind::linearOfSqrt, frame.display), exec, luma_);
         edges_.resize(width_, height_, 4);
         all_.resize(width_, height_, 4);
         const auto& kernels = cmaa2KernelsFor(exec.isa);

@@ -1,5 +1,6 @@
 #include "methods/driver.h"
 
+#include <algorithm>
 #include <chrono>
 
 namespace aa {
@@ -28,15 +29,35 @@ ShotInfo shotInfo(const Manifest& m) {
             .subSamplePositionsPx = m.subsamplePositionsPx};
 }
 
+namespace {
+// Linear and displayed become one: what a method calls linear is what is shown.
+void useOneSpace(Frame& frame, const DisplayChain& chain, const Exec& exec) {
+    if (!frame.colorLinear.empty()) encode(frame.colorLinear, chain, exec, frame.colorLinear);
+    if (!frame.albedoLinear.empty()) encode(frame.albedoLinear, chain.transferOnly(), exec, frame.albedoLinear);
+    for (SubSample& s : frame.subSamples)
+        if (!s.colorLinear.empty()) encode(s.colorLinear, chain, exec, s.colorLinear);
+}
+void setDisplay(Frame& frame, const DisplayChain& chain, const Exec& exec) {
+    if (chain.transfer == Transfer::identity) useOneSpace(frame, chain, exec);
+    frame.display = chain.transfer == Transfer::identity ? chain.transferOnly() : chain;
+}
+void fillEncoded(Frame& frame, const Exec& exec) {
+    if (!frame.colorLinear.empty()) encode(frame.colorLinear, frame.display, exec, frame.colorEncoded);
+    if (!frame.albedoLinear.empty())
+        encode(frame.albedoLinear, frame.display.transferOnly(), exec, frame.albedoEncoded);
+}
+}  // namespace
+
 void encodeFrame(Frame& frame, const DisplayChain& chain, const Exec& exec) {
-    encode(frame.colorLinear, chain, exec, frame.colorEncoded);
-    if (!frame.albedoLinear.empty()) encode(frame.albedoLinear, {}, exec, frame.albedoEncoded);
+    setDisplay(frame, chain, exec);
+    fillEncoded(frame, exec);
 }
 
 void prepareFrame(Frame& frame, const std::vector<RunningMethod>& methods, const DisplayChain& chain,
                   const Exec& exec) {
-    for (const auto& m : methods)
-        if (m.spec.readsEncoded()) return encodeFrame(frame, chain, exec);
+    setDisplay(frame, chain, exec);
+    if (std::any_of(methods.begin(), methods.end(), [](const auto& m) { return m.spec.readsEncoded(); }))
+        fillEncoded(frame, exec);
 }
 
 }  // namespace aa

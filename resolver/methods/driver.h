@@ -12,14 +12,17 @@ struct RunningMethod {
     Rgb out;         // in the method's output space
     Rgb outEncoded;  // display-encoded, what the metrics see
     RunningMethod(MethodSpec spec, const ShotInfo& shot);
-    // Resolves one frame; returns the seconds that the method took, conversions not counted.
+    // Resolves one frame; returns the seconds that the method took, conversions not counted. `chain` is frame.display
+    // of a frame that was prepared.
     double resolve(const Frame& frame, const DisplayChain& chain, const Exec& exec);
 };
 
 ShotInfo shotInfo(const Manifest& manifest);
-// Fills frame.colorEncoded, and frame.albedoEncoded where there is albedo.
+// Sets frame.display; fills frame.colorEncoded, and frame.albedoEncoded where there is albedo. With the identity
+// transfer everything happens in one space: all linear colours, sub-samples included, become displayed values, too.
+// Once a frame.
 void encodeFrame(Frame& frame, const DisplayChain& chain, const Exec& exec);
-// The same, when one of the methods reads encoded colour.
+// The same, with encoded colours only when one of the methods reads them.
 void prepareFrame(Frame& frame, const std::vector<RunningMethod>& methods, const DisplayChain& chain, const Exec& exec);
 
 }  // namespace aa

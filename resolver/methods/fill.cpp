@@ -19,9 +19,9 @@ class FillStage : public Stage {
         if (space_ != space) {
             fill_.fillBorder();
             if (space == Space::encoded)
-                encode(fill_, {}, exec, converted_);
+                encode(fill_, frame.display, exec, converted_);
             else
-                decode(fill_, exec, converted_);
+                decode(fill_, frame.display, exec, converted_);
             std::swap(fill_, converted_);
         }
         forRows(exec, frame.height, [&](int y0, int y1) {

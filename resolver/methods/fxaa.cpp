@@ -40,7 +40,7 @@ class Fxaa311 : public FxaaMethod {
     }
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         const bool lumaOfLinear = lumaKind_ == LumaKind::sqrtLinear;
-        findLuma(lumaOfLinear ? frame.colorLinear : frame.colorEncoded, lumaKind_, exec);
+        findLuma(lumaOfLinear ? frame.colorLinear : frame.colorEncoded, shownLuma(lumaKind_, frame.display), exec);
         transposeLuma(frame.width, frame.height, exec);
         prepare(args_, linear_ ? frame.colorLinear : frame.colorEncoded, out);
         runKernel(fxaaKernelsFor(exec.isa).fxaa311, exec, args_, frame.height);

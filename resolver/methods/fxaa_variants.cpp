@@ -50,7 +50,7 @@ class FxaaCs : public FxaaMethod {
             setDistances(args_, {1, 1, 1, 1, 1, 1.5, 2, 2, 2, 2, 4, p.choice("longest") == "36.5" ? 18.0 : 8.0});
     }
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
-        findLuma(frame.colorLinear, LumaKind::log2Linear, exec);
+        findLuma(frame.colorLinear, shownLuma(LumaKind::log2Linear, frame.display), exec);
         transposeLuma(frame.width, frame.height, exec);
         prepare(args_, linear_ ? frame.colorLinear : frame.colorEncoded, out);
         runKernel(fxaaVariantKernelsFor(exec.isa).fxaaCs, exec, args_, frame.height);

@@ -18,6 +18,13 @@ const MethodDescriptor& findMethod(std::string_view id) {
                      (near.empty() ? "; `aaresolve list` shows all" : "; did you mean '" + near + "'?"));
 }
 
+ParamSpec averagedSpaceParam() {
+    return choiceParam("space", "linear", {"linear", "encoded"},
+                       "values that are averaged: light, or display values as a GL accumulation buffer held",
+                       "methods/00 s.4, 01 s.1.3");
+}
+Space averagedSpace(const Params& p) { return p.choice("space") == "encoded" ? Space::encoded : Space::linear; }
+
 namespace {
 // The next '+' that a letter follows ("1e+3" is a number), or the length of the text.
 size_t startOfStage(std::string_view text, size_t from = 0) {

@@ -52,6 +52,11 @@ struct MethodDescriptor {
     PassSet passes = {};
     Space input = Space::linear, output = Space::linear;
     bool temporal = false;  // accumulates frames: keeps state between them and reads jittered ones
+    // The mean of a fixed set of frames, which a history longer than the shot would only weigh unevenly: run without
+    // one
+    // (--history full).
+    bool fixedSet = false;
+    bool wantsHistory() const { return temporal && !fixedSet; }
     Sampling sampling() const { return temporal ? Sampling::jittered : Sampling::centre; }
     std::vector<ParamSpec> params = {};
     // Throws UsageError/InputError when the shot cannot serve the method (a static-only method on a moving shot).
@@ -65,6 +70,11 @@ struct MethodDescriptor {
     // Sub-sample patterns (shot/patterns.h) that serve the method, the best first; empty: any.
     std::vector<std::string_view> patterns = {};
 };
+
+// Parameter `space` of the methods that average samples (methods/00 s.4, "display-space resolve"), and what it makes
+// the output.
+ParamSpec averagedSpaceParam();
+Space averagedSpace(const Params& params);
 
 // All methods, in the order of the documentation.
 const std::vector<MethodDescriptor>& registry();

@@ -43,6 +43,7 @@ class MsaaMethod : public Method {
           slots_(slots),
           byGeometry_(p.choice("key") == "surface"),
           centroid_(p.choice("shadingPosition") == "centroid"),
+          encoded_(averagedSpace(p) == Space::encoded),
           inverseLuminance_(p.choice("resolve") == "inverseLuminance"),
           order_(positionsPx.size()) {
         const auto position = [&](int k) { return positionsPx[size_t(slotsFirst_[size_t(k)])]; };
@@ -72,6 +73,7 @@ class MsaaMethod : public Method {
         for (const int k : slotsFirst_) samples.push_back(geometry.args().sample[k]);
         permuted.sample = samples.data();
         MsaaArgs a{.color = view(frame.colorLinear),
+                   .copied = view(encoded_ ? frame.colorEncoded : frame.colorLinear),
                    .out = view(out),
                    .geometry = &permuted,
                    .rule = kSameSurface,
@@ -80,6 +82,8 @@ class MsaaMethod : public Method {
                    .nearestSlot = nearestSlot_.data(),
                    .byGeometry = byGeometry_,
                    .centroid = centroid_,
+                   .encoded = encoded_,
+                   .display = displayArgs(frame.display),
                    .inverseLuminance = inverseLuminance_,
                    .sampleColors = nullptr,
                    .surfacesLayer = nullptr,
@@ -126,12 +130,21 @@ class MsaaMethod : public Method {
                                .stride = out.stride(),
                                .width = out.width()};
         runKernel(resolveKernelsFor(exec.isa).resolve, exec, args, out.height());
+        if (encoded_) clampToDisplay(exec, out);
+    }
+    // Filters with negative weights leave the range of displayed values.
+    static void clampToDisplay(const Exec& exec, Rgb& out) {
+        forRows(exec, out.height(), [&](int y0, int y1) {
+            for (auto& channel : out.c)
+                for (int y = y0; y < y1; y++)
+                    for (int x = 0; x < out.width(); x++) channel.at(x, y) = std::clamp(channel.at(x, y), 0.0f, 1.0f);
+        });
     }
 
     std::string id_;
     std::vector<int> slotsFirst_;
     int slots_;
-    bool byGeometry_, centroid_, inverseLuminance_;
+    bool byGeometry_, centroid_, encoded_, inverseLuminance_;
     std::vector<int> order_, nearestSlot_;
     std::vector<ResolveTap> taps_;   // of another filter than the box over the pixel
     std::vector<Rgb> sampleColors_;  // what it filters: the colour of every sub-sample's surface
@@ -147,7 +160,8 @@ std::vector<ParamSpec> surfaceParams() {
             realParam("diameter", "0", 0, 8, "of the filter, px; 0: its own (lanczos 4, others 2)", "MSAAFilter",
                       "filter=tent|gaussian|smoothstep|bspline|mitchell|catmullRom|cubic|blackmanHarris|sinc|lanczos"),
             choiceParam("resolve", "linear", {"linear", "inverseLuminance"},
-                        "weights of the colours: 1, or 1 / (1 + luminance)", "methods/01 s.1.4", "filter=box")};
+                        "weights of the colours: 1, or 1 / (1 + luminance)", "methods/01 s.1.4", "filter=box"),
+            averagedSpaceParam()};
 }
 PassSet surfacePasses(const Params& p) { return p.choice("key") == "surface" ? Pass::depth | Pass::normal : PassSet{}; }
 
@@ -169,6 +183,7 @@ MethodDescriptor msaaDescriptor() {
                                                     positionsPx);
             },
             .morePasses = surfacePasses,
+            .outputSpace = averagedSpace,
             .reachPx = 5};  // the widest filter's radius and a pixel
 }
 

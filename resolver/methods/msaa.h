@@ -1,9 +1,10 @@
 // msaa, csaa: multisampling and coverage sampling, emulated from sub-sample geometry.
 //
-// Source: Akeley 1993, Young 2006; methods/01 s.1.4, 1.5. Linear light. Every surface in a pixel is shaded once: the
-// centre sample's surface has the pixel's colour, any other the colour of its sub-sample nearest to the pixel centre
-// (a renderer would shade it at its centroid). out = sum of coverage x colour. A pixel of one surface keeps its colour:
-// multisampling does not touch shading aliasing.
+// Source: Akeley 1993, Young 2006; methods/01 s.1.4, 1.5. Linear light, or displayed values
+// (`space=encoded`: the colours go through the display chain before they are averaged, methods/00 s.4). Every surface
+// in a pixel is shaded once: the centre sample's surface has the pixel's colour, any other the colour of its sub-sample
+// nearest to the pixel centre (a renderer would shade it at its centroid). out = sum of coverage x colour. A pixel of
+// one surface keeps its colour: multisampling does not touch shading aliasing.
 //
 // Surface key: no triangle ids are exported, so samples share a surface when they share the object, their normals agree
 // and they lie in one tangent plane (key=surface, the limits of SBAA); key=object takes whole objects.

@@ -1,4 +1,4 @@
-#include "kernels/lanes.h"
+#include "kernels/display.h"
 #include "kernels/surfaces.h"
 #include "methods/msaa_kernels.h"
 
@@ -49,7 +49,8 @@ struct Msaa {
             }
             if (!covered) return;
             const bool atCentre = seed < 0 && !(m.a.centroid && covered < m.a.slots);
-            surfaces[count++] = {seed, covered, load3<T>(atCentre ? m.a.color : m.g.sample[nearest].color, pixel.at())};
+            const vec3<T> color = load3<T>(atCentre ? m.a.color : m.g.sample[nearest].color, pixel.at());
+            surfaces[count++] = {seed, covered, m.a.encoded && is_finite(color) ? display(m.a.display, color) : color};
         }
         // A coverage-only sample counts for a stored surface that it lies on, else for that of the nearest slot.
         AA_INLINE void cover(int k) {
@@ -108,9 +109,9 @@ struct Msaa {
                 const long o = long(y) * g.stride + x0;
                 Marks<R> marks;
                 markEdges(x0, y, marks);
-                copy_chunk<R>(a.color, a.out, g.width - x0, o);
+                copy_chunk<R>(a.copied, a.out, g.width - x0, o);
                 for (int k = 0; a.sampleColors && k < g.samples; k++)
-                    copy_chunk<R>(a.color, a.sampleColors[k], g.width - x0, o);
+                    copy_chunk<R>(a.copied, a.sampleColors[k], g.width - x0, o);
                 if (a.surfacesLayer) {
                     fill_chunk<R>(1, a.surfacesLayer + o, g.width - x0);
                     fill_chunk<R>(1, a.coverageLayer + o, g.width - x0);

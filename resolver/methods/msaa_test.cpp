@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "image/error.h"
+#include "methods/driver.h"
 #include "methods/geometry_test_frames.h"
 #include "shot/patterns.h"
 
@@ -56,6 +57,36 @@ Frame halves() {
     f.colorLinear.c[0].at(0, 0) = 100;
     for (size_t k = 0; k < 8; k++) f.subSamples[k].colorLinear.c[0].at(0, 0) = float(k + 1);
     return f;
+}
+// Display-space resolve (methods/00 s.4): every colour goes through the chain before the mean is taken.
+TEST(Msaa, EncodedSpaceAveragesDisplayedValues) {
+    Frame f = renderPlanes(parallelPlanes(kLine), 48, 31, d3dPattern(8));
+    std::vector<Rgb*> colours = {&f.colorLinear};
+    for (auto& s : f.subSamples) colours.push_back(&s.colorLinear);
+    for (Rgb* colour : colours)
+        for (auto& channel : colour->c)
+            for (int y = 0; y < 31; y++)
+                for (int x = 0; x < 48; x++) channel.at(x, y) = 0.1f + 0.4f * channel.at(x, y);
+    for (const DisplayChain chain : {DisplayChain{}, DisplayChain{1.0f, ToneMap::reinhard}}) {
+        encodeFrame(f, chain, {});
+        Frame shown = f;
+        for (auto& s : shown.subSamples) encode(s.colorLinear, chain, {}, s.colorLinear);
+        shown.colorLinear = f.colorEncoded;
+        for (const char* method : {"msaa", "csaa:slots=4", "ssaa", "msaa:filter=tent"}) {
+            const std::string space = std::string(method).find(':') == std::string::npos ? ":space=" : ",space=";
+            const Rgb a = resolved(method + space + "encoded", f), b = resolved(method + space + "linear", shown);
+            EXPECT_FALSE(resolved(method + space + "linear", f).samePixels(a))
+                << method << ": the test must be able to fail";
+            for (int y = 0; y < 31; y++)
+                for (int x = 0; x < 48; x++) ASSERT_NEAR(a.c[0].at(x, y), b.c[0].at(x, y), 1e-6) << method;
+        }
+    }
+    const Rgb ringing = resolved("msaa:filter=lanczos,space=encoded", f);
+    for (int y = 0; y < 31; y++)
+        for (int x = 0; x < 48; x++) {
+            EXPECT_GE(ringing.c[0].at(x, y), 0.0f);
+            EXPECT_LE(ringing.c[0].at(x, y), 1.0f);
+        }
 }
 TEST(Msaa, ShadesAtTheCentreOrAtTheNearestCoveredSample) {
     const Frame f = halves();

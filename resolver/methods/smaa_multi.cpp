@@ -43,7 +43,7 @@ class TwoSamples {
         smaa_.keepDebugLayers = debug;
         for (size_t k = 0; k < 2; k++) {
             const Rgb& color = frame.subSamples[samples[k]].colorLinear;
-            encode(color, {}, exec, encoded_);
+            encode(color, frame.display, exec, encoded_);
             smaa_.findEdges(frame, encoded_, frame.jitterPx + shot.subSamplePositionsPx[samples[k]], exec);
             blend(frame, linear_ ? color : encoded_, k == 0 ? out : sized(second_, frame),
                   !velocity ? nullptr

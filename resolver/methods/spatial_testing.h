@@ -55,7 +55,7 @@ inline Frame frameOf(const Rgb& encoded) {
     f.passes = Pass::color;
     f.colorEncoded = encoded;
     f.colorEncoded.fillBorder();
-    decode(f.colorEncoded, {}, f.colorLinear);
+    decode(f.colorEncoded, {}, {}, f.colorLinear);
     return f;
 }
 inline Exec execOf(Precision precision, Isa isa = bestIsa()) {

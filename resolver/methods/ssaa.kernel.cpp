@@ -1,4 +1,4 @@
-#include "kernels/lanes.h"
+#include "kernels/display.h"
 #include "methods/ssaa_kernels.h"
 
 namespace AA_ARCH {
@@ -13,8 +13,8 @@ AA_INLINE Mask<R> finite(vec3<R> c) {
 
 // One sub-sample at a time over a chunk of a row, while the next one's is fetched (see kernels/subsamples.h).
 inline constexpr int kSumChunk = 128;  // pixels; the sums stay in the first-level cache
-template <class R>
-__attribute__((flatten)) void ssaaRows(const SsaaArgs& a, int y0, int y1) {
+template <class R, bool encoded>
+__attribute__((flatten)) void ssaaRowsOf(const SsaaArgs& a, int y0, int y1) {
     const R zero(Elem<R>(0)), one(Elem<R>(1));
     vec3<R> sum[kSumChunk / N<R>];
     R count[kSumChunk / N<R>];
@@ -32,7 +32,7 @@ __attribute__((flatten)) void ssaaRows(const SsaaArgs& a, int y0, int y1) {
                     for (int c = 0; c < 3; c++) __builtin_prefetch(next.c[c] + o + ahead);
                     const vec3<R> c{load<R>(s.c[0] + o), load<R>(s.c[1] + o), load<R>(s.c[2] + o)};
                     const auto counts = finite(c);
-                    sum[i] = sum[i] + select(counts, c, vec3<R>(zero));
+                    sum[i] = sum[i] + select(counts, encoded ? display(a.display, c) : c, vec3<R>(zero));
                     count[i] = count[i] + select(counts, one, zero);
                 }
             }
@@ -45,10 +45,11 @@ __attribute__((flatten)) void ssaaRows(const SsaaArgs& a, int y0, int y1) {
             }
         }
 }
-}  // namespace AA_ARCH
-
-namespace AA_ARCH {
-using SumLanes = Lanes<double, AA_LANES / 2>;  // sums are double in every precision: half as many lanes, twice as wide
+template <class R>
+void ssaaRows(const SsaaArgs& a, int y0, int y1) {
+    a.encoded ? ssaaRowsOf<R, true>(a, y0, y1) : ssaaRowsOf<R, false>(a, y0, y1);
 }
+using SumLanes = Lanes<double, AA_LANES / 2>;  // sums are double in every precision: half as many lanes, twice as wide
+}  // namespace AA_ARCH
 AA_DEFINE_TABLE(aa::SsaaKernels, ssaaKernels) = {
     .mean = {AA_ARCH::ssaaRows<AA_ARCH::SumLanes>, AA_ARCH::ssaaRows<double>, AA_ARCH::ssaaRows<double>}};

@@ -1,4 +1,5 @@
 #pragma once
+#include "kernels/display_args.h"
 #include "kernels/table.h"
 
 namespace aa {
@@ -7,6 +8,8 @@ struct SsaaArgs {
     int count;
     RgbOut out;
     int stride, width;
+    bool encoded;         // mean of displayed values
+    DisplayArgs display;  // what makes them
 };
 struct SsaaKernels {
     RowKernel<SsaaArgs> mean;

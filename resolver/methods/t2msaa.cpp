@@ -37,6 +37,7 @@ class T2msaa : public Method {
         args.nextCount = count_[1].row(0);
         args.expected = expectedDepth(frame);
         args.encoded = p.choice("space") == "encoded";
+        args.display = displayArgs(frame.display);
         args.fractionalVelocity = p.choice("velocity") == "fractional";
         args.countAtPixel = temporal::countAtPixel(p);
         args.rejection = temporal::rejectionTest(p);

@@ -1,4 +1,4 @@
-#include "kernels/srgb.h"
+#include "kernels/display.h"
 #include "methods/rejection.kernel.h"
 #include "methods/t2msaa_kernels.h"
 
@@ -18,10 +18,7 @@ AA_INLINE R fraction(R v) {
 template <class R>
 AA_INLINE vec3<R> sampleColour(const T2msaaArgs& a, int i, long o) {
     const vec3<R> c = load3<R>(a.sample[i].c, o);
-    if (!a.encoded) return c;
-    const R zero(Elem<R>(0)), one(Elem<R>(1));  // max(0, NaN) == 0
-    return {srgb_encode(min(max(zero, c.x), one)), srgb_encode(min(max(zero, c.y), one)),
-            srgb_encode(min(max(zero, c.z), one))};
+    return a.encoded ? display(a.display, c) : c;
 }
 template <class R>
 AA_INLINE void t2msaaPixel(const T2msaaArgs& a, int x, int y) {

@@ -1,4 +1,5 @@
 #pragma once
+#include "kernels/display_args.h"
 #include "methods/temporal_kernels.h"
 
 namespace aa {
@@ -9,7 +10,8 @@ struct T2msaaArgs {
     const float* previousCount;
     float* nextCount;
     ExpectedDepth expected;
-    bool encoded;  // blend display-encoded colours
+    bool encoded;         // blend display-encoded colours
+    DisplayArgs display;  // what encodes them
     bool fractionalVelocity;
     bool countAtPixel;  // the sample count is read at the pixel itself, not where its surface was
     RejectionTest rejection;

@@ -45,6 +45,21 @@ TEST(ErrorBar, ReferenceIsTheMeanOfTheHalves) {
     const double e1 = 1.055 * std::pow(0.25, 1 / 2.4) - 0.055, e2 = 1.055 * std::pow(0.75, 1 / 2.4) - 0.055;
     EXPECT_NEAR(r.noise, (e1 - e2) * (e1 - e2) / 4, 1e-6);
     EXPECT_EQ(makeReference(Rgb(5, 4, 0.5f), Rgb(5, 4, 0.5f), {}, {}).noise, 0.0);
+    // In one space the mean is displayed as it is, clamped once, and the count of what was clamped is kept.
+    const DisplayChain identity{.transfer = Transfer::identity};
+    const Reference shown = makeReference(Rgb(5, 4, 0.25f), Rgb(5, 4, 0.75f), identity, {});
+    EXPECT_EQ(shown.encoded.c[0].at(2, 2), 0.5f);
+    EXPECT_TRUE(shown.linear.samePixels(shown.encoded));
+    EXPECT_EQ(shown.clippedPixels, 0u);
+    EXPECT_EQ(shown.noise, 0.25 / 4);
+    const Reference bright = makeReference(Rgb(5, 4, 0.5f), Rgb(5, 4, 2.0f), identity, {});
+    EXPECT_EQ(bright.encoded.c[0].at(2, 2), 1.0f);
+    EXPECT_EQ(bright.clippedPixels, 20u);
+    // Rounded, the displayed truth is a code; its noise is that of the halves, not of the rounding.
+    const Reference eightBit = makeReference(Rgb(5, 4, 0.25f), Rgb(5, 4, 0.75f), identity, {}, true);
+    EXPECT_EQ(eightBit.encoded.c[0].at(2, 2), 128.0f / 255);
+    EXPECT_EQ(eightBit.linear.c[0].at(2, 2), 0.5f);
+    EXPECT_EQ(eightBit.noise, shown.noise);
 }
 
 TEST(ErrorBar, ClearDifferenceIsResolved) {

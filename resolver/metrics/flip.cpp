@@ -16,8 +16,8 @@ double flip(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map
     constexpr int kRowsPerBlock = 128;  // each block repeats 20 rows of the pass along x
     const int w = test.width(), h = test.height();
     Rgb linearTest, linearReference;
-    decode(test, exec, linearTest);
-    decode(reference, exec, linearReference);
+    decode(test, {}, exec, linearTest);
+    decode(reference, {}, exec, linearReference);
     if (map && (map->width() != w || map->height() != h)) *map = PlaneF(w, h);
     std::vector<double> rows(size_t(h) * kSumStrands);
     const FlipArgs args{view(std::as_const(linearTest)),

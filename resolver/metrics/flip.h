@@ -12,8 +12,9 @@
 
 namespace aa {
 
-// Encoded images in [0,1]; values outside count as 0 or 1, NaN as 0. Mean over the pixels, in [0,1]; the map when `map`
-// is given.
+// Encoded images in [0,1]; values outside count as 0 or 1, NaN as 0. They are taken as sRGB codes whatever the transfer
+// of the run: with the identity transfer, too, a screen gets the displayed values as its codes. Mean over the pixels,
+// in [0,1]; the map when `map` is given.
 double flip(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr);
 
 // Pooled values of a map: quartiles weighted by the error itself, as the reference implementation prints them.

@@ -5,7 +5,8 @@
 
 namespace aa {
 
-Reference makeReference(const Rgb& halfA, const Rgb& halfB, const DisplayChain& display, const Exec& exec) {
+Reference makeReference(const Rgb& halfA, const Rgb& halfB, const DisplayChain& display, const Exec& exec,
+                        bool eightBit) {
     const int w = halfA.width(), h = halfA.height();
     Reference r{Rgb(w, h), {}};
     for (size_t c = 0; c < 3; c++)
@@ -16,6 +17,11 @@ Reference makeReference(const Rgb& halfA, const Rgb& halfB, const DisplayChain& 
         }
     r.linear.fillBorder();
     encode(r.linear, display, exec, r.encoded);
+    if (display.transfer == Transfer::identity) {
+        r.clippedPixels = clippedPixels(r.linear, display);
+        r.linear = r.encoded;
+    }
+    if (eightBit) quantise8(r.encoded, exec);
     Rgb encodedA, encodedB;
     encode(halfA, display, exec, encodedA);
     encode(halfB, display, exec, encodedB);

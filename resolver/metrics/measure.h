@@ -18,10 +18,13 @@ struct FrameMetrics {
 
 // The ground truth of one frame, prepared once for all methods.
 struct Reference {
-    Rgb linear, encoded;  // mean of the halves, and its display encoding
-    double noise = 0;     // MSE(encoded a, encoded b) / 4
+    Rgb linear, encoded;  // mean of the halves, and its display encoding; one and the same with the identity transfer
+    double noise = 0;     // MSE(encoded a, encoded b) / 4, not rounded
+    size_t clippedPixels = 0;  // of which the mean exceeds what the display shows (counted with the identity transfer)
 };
-Reference makeReference(const Rgb& halfA, const Rgb& halfB, const DisplayChain& display, const Exec& exec);
+// Rounded to 8-bit codes: `encoded` alone.
+Reference makeReference(const Rgb& halfA, const Rgb& halfB, const DisplayChain& display, const Exec& exec,
+                        bool eightBit = false);
 
 struct MeasureOptions {
     bool ssimRgb = false, flip = false;

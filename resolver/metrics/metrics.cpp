@@ -105,16 +105,18 @@ double ssimMatlab3D(const Rgb& test, const Rgb& reference, const Exec& exec, Pla
     return ssim(test, reference, exec, SsimSignal::volume, map);
 }
 
-Rgb quantised8(const Rgb& encoded) {
-    Rgb q(encoded.width(), encoded.height());
-    for (size_t c = 0; c < 3; c++)
-        for (int y = 0; y < q.height(); y++)
-            for (int x = 0; x < q.width(); x++) {
-                const float v = encoded.c[c].at(x, y);
-                q.c[c].at(x, y) = std::floor(255.0f * (v > 0 ? (v < 1 ? v : 1.0f) : 0.0f) + 0.5f) / 255.0f;
+void quantise8(Rgb& encoded, const Exec& exec) {
+    forRows(exec, encoded.height(), [&](int y0, int y1) {
+        for (auto& channel : encoded.c)
+            for (int y = y0; y < y1; y++) {
+                float* row = channel.row(y);
+                for (int x = 0; x < encoded.width(); x++) {
+                    const float v = row[x];
+                    row[x] = std::floor(255.0f * (v > 0 ? (v < 1 ? v : 1.0f) : 0.0f) + 0.5f) / 255.0f;
+                }
             }
-    q.fillBorder();
-    return q;
+    });
+    encoded.fillBorder();
 }
 
 }  // namespace aa

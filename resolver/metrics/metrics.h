@@ -46,6 +46,6 @@ double ssimRgb(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* 
 double ssimMatlab3D(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr);
 
 // floor(255 x + 0.5) / 255: what an 8-bit image file keeps (option `q8` of methods/07). Border filled.
-Rgb quantised8(const Rgb& encoded);
+void quantise8(Rgb& encoded, const Exec& exec);
 
 }  // namespace aa

@@ -212,7 +212,8 @@ TEST(Metrics, EightBitCodes) {
     Rgb a(4, 1);
     const float values[] = {0.5f, 127.4f / 255, 2.0f, -1.0f};
     for (int x = 0; x < 4; x++) a.c[0].at(x, 0) = values[x];
-    const Rgb q = quantised8(a);
+    Rgb q = a;
+    quantise8(q, {});
     EXPECT_EQ(q.c[0].at(0, 0), 128.0f / 255);
     EXPECT_EQ(q.c[0].at(1, 0), 127.0f / 255);
     EXPECT_EQ(q.c[0].at(2, 0), 1.0f);

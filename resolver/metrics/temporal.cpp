@@ -109,7 +109,7 @@ void TemporalScene::advance(const Frame& frame, const Rgb* truthEncoded, const E
     if (truth_)
         previousPicture_ = *truth_;
     else if (!frame.colorLinear.empty())
-        encode(frame.colorLinear, display_, exec, previousPicture_);
+        encode(frame.colorLinear, frame.display, exec, previousPicture_);
     else
         previousPicture_ = Rgb();
 }

@@ -36,7 +36,7 @@ inline PassSet temporalMetricPasses() { return Pass::motion | Pass::depth | Pass
 // What all methods are measured against, computed once per frame.
 class TemporalScene {
   public:
-    explicit TemporalScene(bool isStatic, const DisplayChain& display = {}) : static_(isStatic), display_(display) {}
+    explicit TemporalScene(bool isStatic) : static_(isStatic) {}
     // `truthEncoded` is null for a frame without ground truth. The frame needs the passes above unless it is static.
     void advance(const Frame& frame, const Rgb* truthEncoded, const Exec& exec);
 
@@ -57,7 +57,6 @@ class TemporalScene {
     void followSurfaces(const Frame& frame, const Exec& exec);
 
     bool static_;
-    DisplayChain display_;  // of the sampled colours that stand in for a missing truth
     int width_ = 0, height_ = 0, frames_ = -1;
     bool alongMotion_ = false, truthStep_ = false;
     const Rgb* truth_ = nullptr;

@@ -131,7 +131,7 @@ PlaneF shrunk(const PlaneF& plane, int width, int height) {
 Rgb shrunk(const Rgb& encodedImage, int width, int height, const Exec& exec) {
     if (width == encodedImage.width() && height == encodedImage.height()) return encodedImage;
     Rgb linear, small, out;
-    decode(encodedImage, exec, linear);
+    decode(encodedImage, {}, exec, linear);
     for (size_t c = 0; c < 3; c++) small.c[c] = shrunk(linear.c[c], width, height);
     small.fillBorder();
     encode(small, {}, exec, out);

@@ -22,9 +22,13 @@ Rgb loadEncoded(const fs::path& file, const RunResults& run, const Exec& exec) {
         throw InputError(file.string() + ": expected " + std::to_string(run.width) + "x" + std::to_string(run.height) +
                          " as results.json says, found " + std::to_string(image.rgb.width()) + "x" +
                          std::to_string(image.rgb.height()) + "; run the shot again");
-    if (image.space == FileSpace::encoded) return std::move(image.rgb);
+    const Protocol& p = run.protocol;
     Rgb encoded;
-    encode(image.rgb, image.displayReferred ? DisplayChain{} : run.display, exec, encoded);
+    if (image.space == FileSpace::encoded)
+        encoded = std::move(image.rgb);
+    else
+        encode(image.rgb, image.displayReferred ? p.display.transferOnly() : p.display, exec, encoded);
+    if (p.eightBit) quantise8(encoded, exec);
     return encoded;
 }
 

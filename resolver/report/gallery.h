@@ -6,7 +6,7 @@
 
 namespace aa {
 
-// One frame of all methods, display-encoded.
+// One frame of all methods as the run compared them: displayed by its chain and rounded by its protocol.
 struct Pictures {
     int frame = 0;
     Rgb truth;                 // empty when this frame has none

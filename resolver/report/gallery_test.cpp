@@ -159,6 +159,19 @@ TEST(Sheet, ShowsThePixelsAndTheirErrors) {
     EXPECT_GE(found, 36);
     EXPECT_LE(found, 36 + 60);  // and a column or two of the colour bar
 }
+TEST(Sheet, PicturesAreDisplayedAsTheRunCompared) {
+    RunOnDisk r("aaresolve_sheet_display", 20, 20, 2, true);
+    EXPECT_GT(loadPictures(r.run, r.folder, 3, {}).truth.c[0].at(3, 3), 0.5f);  // sRGB of 0.25
+    r.run.protocol.display.transfer = Transfer::identity;
+    EXPECT_EQ(loadPictures(r.run, r.folder, 3, {}).truth.c[0].at(3, 3), 0.25f);
+    r.run.protocol.eightBit = true;
+    EXPECT_EQ(loadPictures(r.run, r.folder, 3, {}).truth.c[0].at(3, 3), 64.0f / 255);
+    r.run.protocol.eightBit = false;
+    r.run.protocol.display.exposure = 1;
+    EXPECT_EQ(loadPictures(r.run, r.folder, 3, {}).truth.c[0].at(3, 3), 0.5f);
+    writeExr(r.folder / "truth/000003.exr", Rgb(20, 20, 0.25f), true);  // displayed already: no exposure again
+    EXPECT_EQ(loadPictures(r.run, r.folder, 3, {}).truth.c[0].at(3, 3), 0.25f);
+}
 TEST(Sheet, MissingPicturesAreNamed) {
     RunOnDisk r("aaresolve_sheet_missing", 20, 20, 2, true);
     EXPECT_EQ(framesWithPictures(r.run), std::vector<int>{3});

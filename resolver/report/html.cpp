@@ -126,6 +126,8 @@ std::string base64(const std::vector<unsigned char>& bytes) {
 
 std::string reportHtml(const RunResults& run, const std::vector<Pictures>& pictures, const std::string& angles) {
     json data = {{"run", json::parse(toJsonText(run))}, {"order", presentationOrder(run)}, {"words", captions(run)}};
+    data["protocol"] = inWords(run.protocol);
+    data["space"] = spaceInWords(run.protocol);
     for (auto& m : data["run"]["methods"]) m.erase("tileSquares");  // the page has no use for them
     data["errorScale"] = kErrorScale;
     constexpr int kColours = 256;

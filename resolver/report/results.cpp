@@ -52,12 +52,18 @@ std::string csvText(const std::string& s) {
     return quoted + '"';
 }
 
-constexpr const char* kToneMaps[] = {"none", "reinhard", "aces"};  // in the order of ToneMap
-const char* toneMapName(ToneMap map) { return kToneMaps[size_t(map)]; }
-ToneMap toneMapByName(const std::string& name) {
-    for (size_t i = 0; i < std::size(kToneMaps); i++)
-        if (name == kToneMaps[i]) return ToneMap(i);
-    throw std::runtime_error("unknown tone map '" + name + "'");
+json toJson(const DisplayChain& d) {
+    return {{"exposureEv", d.exposure}, {"toneMap", name(d.toneMap)}, {"transfer", name(d.transfer)}};
+}
+DisplayChain displayChain(const json& j) {
+    return {j.at("exposureEv").get<float>(), toneMapByName(j.at("toneMap").get<std::string>()),
+            transferByName(j.value("transfer", "srgb"))};
+}
+bool quantised(const json& run) {
+    const auto bits = run.find("quantiseBits");
+    if (bits == run.end() || bits->is_null()) return false;
+    if (bits->get<int>() != 8) throw std::runtime_error("quantiseBits: expected 8 or null");
+    return true;
 }
 
 // ---- metrics ----
@@ -300,13 +306,17 @@ std::string toJsonText(const RunResults& run) {
                   {"filterWidthPx", run.truthFilterWidthPx},
                   {"noiseMse", number(run.truthNoise)}};
     j["truth"]["images"] = json::object();
+    if (run.truthClipped) j["truth"]["clipped"] = {{"pixels", run.truthClipped->pixels}, {"of", run.truthClipped->of}};
     for (const auto& [frame, file] : run.truthImages) j["truth"]["images"][std::to_string(frame)] = file;
     j["run"] = {{"program", run.programVersion},
                 {"instructionSet", run.isa},
                 {"precision", run.precision},
                 {"threads", run.threads},
                 {"machine", run.machine},
-                {"display", {{"exposureEv", run.display.exposure}, {"toneMap", toneMapName(run.display.toneMap)}}},
+                {"display", toJson(run.protocol.display)},
+                {"history", name(run.protocol.history)},
+                {"warmUpFrames", run.warmUpFrames},
+                {"quantiseBits", run.protocol.eightBit ? json(8) : json(nullptr)},
                 {"sanitised", run.sanitised}};
     j["methods"] = json::array();
     for (const auto& m : run.methods) {
@@ -360,7 +370,8 @@ std::string toJsonText(const RunResults& run) {
 
 std::string toCsvText(const RunResults& run) {
     std::ostringstream out;
-    out << "method,frame,mse,psnr,snr,ssimLuma,relMse,ssimRgb,flip,seconds\n";
+    const std::string protocol = csvText(inOneField(run.protocol));
+    out << "method,frame,mse,psnr,snr,ssimLuma,relMse,ssimRgb,flip,seconds,protocol\n";
     const auto line = [&](const std::string& method, const std::string& frame, const FrameMetrics* m, double seconds) {
         out << csvText(method) << ',' << frame;
         if (m)
@@ -369,7 +380,7 @@ std::string toCsvText(const RunResults& run) {
                 << csvNumber(m->flip);
         else
             out << ",,,,,,,";
-        out << ',' << csvNumber(seconds) << '\n';
+        out << ',' << csvNumber(seconds) << ',' << protocol << '\n';
     };
     for (const auto& m : run.methods) {
         for (const auto& f : m.frames)
@@ -417,8 +428,14 @@ RunResults readResults(const fs::path& folder) {
         run.precision = made.at("precision").get<std::string>();
         run.threads = made.at("threads").get<int>();
         run.machine = made.at("machine").get<std::string>();
-        run.display.exposure = made.at("display").at("exposureEv").get<float>();
-        run.display.toneMap = toneMapByName(made.at("display").at("toneMap").get<std::string>());
+        // Runs before the protocol could be chosen have none of these but exposure and tone map.
+        run.protocol.display = displayChain(made.at("display"));
+        run.protocol.history = historyByName(made.value("history", "first"));
+        run.protocol.eightBit = quantised(made);
+        run.warmUpFrames = made.value("warmUpFrames", size_t(0));
+        if (truth.contains("clipped"))
+            run.truthClipped = {truth.at("clipped").at("pixels").get<size_t>(),
+                                truth.at("clipped").at("of").get<size_t>()};
         made.at("sanitised").get_to(run.sanitised);
         for (const json& q : j.at("methods")) {
             MethodResult m;

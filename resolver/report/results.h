@@ -11,6 +11,7 @@
 #include "metrics/error_bar.h"
 #include "metrics/measure.h"
 #include "metrics/temporal.h"
+#include "report/protocol.h"
 
 namespace aa {
 
@@ -76,10 +77,17 @@ struct RunResults {
     double truthFilterWidthPx = 1;
     std::optional<double> truthNoise;        // MSE(a, b) / 4, encoded, mean over the frames with truth
     std::map<int, std::string> truthImages;  // frame -> relative path
+    // Pixels in which the mean of the halves exceeds the display, so that it is clipped, of all truth pixels; only with
+    // the identity transfer. The protocol of seed 000 clamps every sample, which a mean cannot make up for.
+    struct Clipped {
+        size_t pixels = 0, of = 0;
+    };
+    std::optional<Clipped> truthClipped;
     // The run
     std::string programVersion, isa, precision, machine;
     int threads = 1;
-    DisplayChain display;
+    Protocol protocol;
+    size_t warmUpFrames = 0;                      // that ran before the first judged one, for a full history
     std::map<std::string, uint64_t> sanitised;    // replaced input values by kind; empty when none
     std::map<std::string, double> renderSeconds;  // mean per frame by pass group, as the shot records them
     std::vector<MethodResult> methods;

@@ -27,7 +27,7 @@ RunResults twoMethods() {
     run.truthSamplesPerHalf = 256, run.truthFilter = "box", run.truthNoise = 1e-5;
     run.truthImages[2] = "truth/000002.exr";
     run.programVersion = "0.1.0", run.isa = "x86-64-v3", run.precision = "fast", run.machine = "a processor";
-    run.display = {1.5f, ToneMap::aces};
+    run.protocol.display = {1.5f, ToneMap::aces};
     run.sanitised["colourNan"] = 3;
     MethodResult noaa, other;
     noaa.id = noaa.text = noaa.folder = "noaa";
@@ -93,11 +93,52 @@ TEST(Results, RoundTrip) {
     const RunResults back = readResults(folder);
     EXPECT_EQ(toJsonText(back), toJsonText(run));
     EXPECT_EQ(back.methods[1].frames[0].metrics->psnr, kInf);
-    EXPECT_EQ(back.display.toneMap, ToneMap::aces);
+    EXPECT_EQ(back.protocol.display.toneMap, ToneMap::aces);
     EXPECT_EQ(back.pairs.size(), 1u);
     EXPECT_TRUE(back.pairs[0].comparison.resolved);
     EXPECT_FALSE(back.jitterCentred());
     EXPECT_FALSE(fs::exists(folder / ".results.partial.json"));
+    fs::remove_all(folder);
+}
+TEST(Results, ProtocolIsKeptAndOldRunsHaveTheDefault) {
+    const fs::path folder = fs::temp_directory_path() / "aaresolve_results_protocol";
+    fs::remove_all(folder);
+    makeWritableFolder(folder);
+    RunResults run = twoMethods();
+    run.protocol = {{0.5f, ToneMap::none, Transfer::identity}, History::full, true};
+    run.warmUpFrames = 160;
+    run.truthClipped = {12, 5000};
+    writeResults(run, folder);
+    const RunResults back = readResults(folder);
+    EXPECT_EQ(back.protocol.display.transfer, Transfer::identity);
+    EXPECT_EQ(back.protocol.history, History::full);
+    EXPECT_TRUE(back.protocol.eightBit);
+    EXPECT_EQ(back.warmUpFrames, 160u);
+    EXPECT_EQ(back.truthClipped->pixels, 12u);
+    EXPECT_EQ(toJsonText(back), toJsonText(run));
+    EXPECT_EQ(inWords(back.protocol), "displayed values at +0.5 EV, full history, 8-bit");
+
+    auto old = nlohmann::json::parse(toJsonText(run));
+    for (const char* member : {"history", "warmUpFrames", "quantiseBits"}) old["run"].erase(member);
+    old["run"]["display"].erase("transfer");
+    old["truth"].erase("clipped");
+    writeText(folder / "results.json", old.dump());
+    const RunResults before = readResults(folder);
+    EXPECT_EQ(before.protocol.display.transfer, Transfer::srgb);
+    EXPECT_EQ(before.protocol.display.exposure, 0.5f);
+    EXPECT_EQ(before.protocol.history, History::first);
+    EXPECT_FALSE(before.protocol.eightBit);
+    EXPECT_EQ(before.warmUpFrames, 0u);
+    EXPECT_FALSE(before.truthClipped);
+    EXPECT_EQ(inWords(Protocol{}), "sRGB-encoded values, history from the first frame");
+
+    for (const auto& [member, wrong] :
+         {std::pair<const char*, nlohmann::json>{"history", "whole"}, {"quantiseBits", 7}, {"warmUpFrames", "many"}}) {
+        auto damaged = old;
+        damaged["run"][member] = wrong;
+        writeText(folder / "results.json", damaged.dump());
+        EXPECT_THROW(readResults(folder), InputError) << member;
+    }
     fs::remove_all(folder);
 }
 TEST(Results, InfinityIsAString) {
@@ -105,9 +146,11 @@ TEST(Results, InfinityIsAString) {
     finish(run, {});
     const auto j = nlohmann::json::parse(toJsonText(run));
     EXPECT_EQ(j["methods"][1]["frames"][0]["metrics"]["psnr"], "Inf");
-    EXPECT_NE(toCsvText(run).find("\"fxaa311:preset=12,subpix=0.5\",1,0,Inf,Inf,1,,,0,0.004\n"), std::string::npos)
+    EXPECT_NE(toCsvText(run).find(
+                  "\"fxaa311:preset=12,subpix=0.5\",1,0,Inf,Inf,1,,,0,0.004,display=srgb exposure=1.5 toneMap=aces "),
+              std::string::npos)
         << toCsvText(run);
-    EXPECT_NE(toCsvText(run).find("noaa,3,,,,,,,,0.002\n"), std::string::npos);
+    EXPECT_NE(toCsvText(run).find("noaa,3,,,,,,,,0.002,display=srgb "), std::string::npos);
 }
 TEST(Results, DamagedFilesAreNamed) {
     const fs::path folder = fs::temp_directory_path() / "aaresolve_results_damaged";

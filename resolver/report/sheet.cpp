@@ -182,7 +182,9 @@ class Sheet {
                          : i == kTicks ? Align::right
                                        : Align::centre);
         }
-        canvas_.text(barX, barY - 14, canvas_.fitted("error per pixel, encoded values 0 to 1", barWidth, 15), 15, kInk);
+        canvas_.text(barX, barY - 14,
+                     canvas_.fitted("error per pixel, " + spaceInWords(run_.protocol) + " 0 to 1", barWidth, 15), 15,
+                     kInk);
         canvas_.text(barX, barY + 76, canvas_.fitted("RMS over R, G, B; the same scale on every sheet", barWidth, 14),
                      14, kQuiet);
     }
@@ -242,7 +244,7 @@ class Sheet {
     }
     void footer(int y) {
         std::string text = "Best PSNR first, noaa last. Details: unfiltered pixels, where the methods differ most. ";
-        if (layout_.errors) text += "Figures and errors of display-encoded values. ";
+        if (layout_.errors) text += "Figures and errors: " + inWords(run_.protocol) + ". ";
         if (layout_.overTime)
             text += run_.isStatic
                         ? "Flicker: spread over time, 8-bit codes."

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "image/colour.h"
 #include "image/plane.h"
 #include "shot/edge_segment.h"
 #include "shot/manifest.h"
@@ -35,7 +36,10 @@ struct Frame {
     Rgb colorLinear;
     Rgb colorEncoded;  // D(colorLinear); filled by the driver when a method reads encoded colour
     Rgb albedoLinear;
-    Rgb albedoEncoded;  // sRGB of albedoLinear, whatever the display chain; filled with colorEncoded
+    Rgb albedoEncoded;  // the chain's transfer of albedoLinear, without its exposure; filled with colorEncoded
+    // From linear colours to displayed ones; set by the driver. With the identity transfer the driver has turned the
+    // linear colours into displayed ones already, and this only clamps.
+    DisplayChain display;
     PlaneF depthView;  // planar z > 0, background 1e10
     Rgb normalWorld;
     PlaneU objectId;              // 0 = background

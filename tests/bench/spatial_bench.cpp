@@ -55,7 +55,7 @@ const Frame& benchFrame() {
         Frame f;
         f.width = 1920, f.height = 1080;
         f.colorEncoded = scene(f.width, f.height);
-        decode(f.colorEncoded, {}, f.colorLinear);
+        decode(f.colorEncoded, {}, {}, f.colorLinear);
         f.passes = Pass::color;
         return f;
     }();

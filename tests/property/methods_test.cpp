@@ -40,6 +40,27 @@ TEST_P(EveryMethod, ConstantStaysConstant) {
     }
 }
 
+// With the identity transfer linear and displayed are one: a method that encodes or decodes by itself, whatever the
+// frame's chain says, shows another constant. Exposure is applied once, before.
+TEST_P(EveryMethod, DisplayedValuesAreOneSpace) {
+    const float tolerance = GetParam().find("dither=on") != std::string::npos ? 1e-5f : 2e-6f;
+    Subject s = makeSubject(GetParam(), 40, 24);
+    for (int n = 1; n <= 3; n++) {
+        Frame f = renderFrame(constantScene({0.125f, 0.25f, 0.0625f}), 40, 24, n, halton(n), {0.3, -0.6}, s.samples);
+        encodeFrame(f, {.exposure = 1, .transfer = Transfer::identity}, {});
+        s.running.resolve(f, f.display, {});
+        for (size_t c = 0; c < 3; c++)
+            for (int y = 0; y < 24; y++)
+                for (int x = 0; x < 40; x++)
+                    ASSERT_NEAR(s.running.outEncoded.c[c].at(x, y),
+                                c == 0   ? 0.25f
+                                : c == 1 ? 0.5f
+                                         : 0.125f,
+                                tolerance)
+                        << n << " " << x << "," << y;
+    }
+}
+
 TEST_P(EveryMethod, AnySizeWorksAndFiniteInGivesFiniteOut) {
     const std::pair<int, int> sizes[] = {{1, 1}, {1, 7}, {7, 1}, {2, 2}, {3, 3}, {17, 5}, {33, 19}};
     const double motions[] = {0.0, 0.37, -1e30, 17.0};

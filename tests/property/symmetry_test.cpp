@@ -61,7 +61,7 @@ Rgb filtered(const std::string& id, const Rgb& encoded) {
     f.passes = Pass::color;
     f.colorEncoded = encoded;
     f.colorEncoded.fillBorder();
-    decode(f.colorEncoded, {}, f.colorLinear);
+    decode(f.colorEncoded, {}, {}, f.colorLinear);
     s.running.resolve(f, {}, {});
     return s.running.outEncoded;
 }

@@ -1,7 +1,7 @@
 // The report's page: everything is drawn from the JSON in #data, which `aaresolve report` wrote. No network, no storage.
 "use strict";
 (() => {
-  const { run, order, words, pictures, errorScale, errorColours } = JSON.parse(document.getElementById("data").textContent);
+  const { run, order, words, protocol, space, pictures, errorScale, errorColours } = JSON.parse(document.getElementById("data").textContent);
   const $ = (id) => document.getElementById(id);
   const methods = run.methods;
   const measured = (m) => m.frames.filter((f) => f.metrics);
@@ -100,7 +100,7 @@
   sortableTable($("figures"), order, columns);
   const judgedFrames = methods.length && methods[0].pooled ? methods[0].pooled.frames : 0;
   $("figures-note").textContent = judgedFrames
-    ? `Figures of display-encoded values, pooled over ${judgedFrames} frame${judgedFrames > 1 ? "s" : ""} with ground truth: the mean squared error is averaged, never the decibels. ` +
+    ? `Figures of ${space}, pooled over ${judgedFrames} frame${judgedFrames > 1 ? "s" : ""} with ground truth: the mean squared error is averaged, never the decibels. ` +
       "“to” is the PSNR after the truth’s own noise is taken off. “Not resolved”: the difference is below that noise, or not consistent over the picture (95 % bootstrap over tiles of 32 × 32 px)."
     : "This run has no ground truth, so only times are known.";
 
@@ -372,7 +372,7 @@
       show();
     });
     $("scale").append("0", element("span", { class: "bar", style: `background: linear-gradient(to right, ${errorColours.map((c) => `rgb(${c})`).join(",")})` }),
-      "≥ " + errorScale, "error per pixel of encoded values 0 to 1, RMS over R, G, B");
+      "≥ " + errorScale, `error per pixel of ${space} 0 to 1, RMS over R, G, B`);
 
     // ---- crops ----
     const drawCrops = async () => {
@@ -406,7 +406,10 @@
         `, ${run.truth.filter} filter ${run.truth.filterWidthPx} px` +
         (run.truth.noiseMse > 0 ? `; its own noise is an MSE of ${short(run.truth.noiseMse)} (${fixed(psnr(run.truth.noiseMse), 2)} dB)` : "")
       : "none"],
-    ["Display", `exposure ${run.run.display.exposureEv} EV, tone map ${run.run.display.toneMap}, sRGB`],
+    ["Protocol", protocol + (run.run.warmUpFrames ? `; ${run.run.warmUpFrames} frames ran before the first judged one` : "")],
+    ["Display", `exposure ${run.run.display.exposureEv} EV, tone map ${run.run.display.toneMap}, ` +
+      (run.run.display.transfer === "identity" ? "clamped values shown as they are" : "sRGB")],
+    run.truth.clipped && ["Truth clipped", `${run.truth.clipped.pixels} of ${run.truth.clipped.of} pixels exceed the display`],
     ["Machine", `${run.run.machine}, ${run.run.instructionSet}, ${run.run.threads} thread${run.run.threads > 1 ? "s" : ""}, precision ${run.run.precision}`],
     ["Program", `AA Resolve ${run.run.program}`],
     ["Input repaired", Object.entries(run.run.sanitised).filter(([, n]) => n > 0).map(([what, n]) => `${what} ${n}`).join(", ") || "nothing"],

@@ -1,0 +1,31 @@
+// The display chain D of methods/00 s.4 in lanes: linear * 2^exposure -> tone map -> clamp [0,1] -> transfer. NaN gives
+// 0. Include from *.kernel.cpp only.
+#pragma once
+#include "kernels/display_args.h"
+#include "kernels/srgb.h"
+
+namespace AA_ARCH {
+
+template <class R>
+AA_INLINE R tone_map(R x, int kind) {
+    using T = Elem<R>;
+    const R one(T(1));
+    if (kind == 1) return x / (one + x);  // Reinhard
+    if (kind == 2)                        // ACES fit, Narkowicz 2015
+        return (x * (x * R(T(2.51)) + R(T(0.03)))) / (x * (x * R(T(2.43)) + R(T(0.59))) + R(T(0.14)));
+    return x;
+}
+template <class R>
+AA_INLINE R display(const aa::DisplayArgs& d, R c) {
+    using T = Elem<R>;
+    // max(0, NaN) == 0; the finite ceiling keeps Inf / Inf out of the tone maps (their value is 1 long before it).
+    const R x = min(max(R(T(0)), c * R(T(d.scale))), R(T(1e15)));
+    const R shown = min(max(R(T(0)), tone_map(x, d.toneMap)), R(T(1)));
+    return d.srgb ? srgb_encode(shown) : shown;
+}
+template <class R>
+AA_INLINE vec3<R> display(const aa::DisplayArgs& d, vec3<R> c) {
+    return {display(d, c.x), display(d, c.y), display(d, c.z)};
+}
+
+}  // namespace AA_ARCH
