@@ -98,7 +98,7 @@ class TemporalJudge {
     int warmup_;
     int seen_ = 0;
     TemporalFrame latest_;
-    double squaredError_ = 0, values_ = 0;
+    double squaredError_ = 0;
     int framesWithTruth_ = 0;
     // static: running mean and sum of squared deviations per pixel
     PlaneF mean_, spread_;
