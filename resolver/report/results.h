@@ -62,6 +62,12 @@ struct PairResult {
     std::optional<TimeComparison> ghost{}, flicker{}, rejected{};
 };
 
+// Pixels in which the mean of the halves exceeds the display, so that it is clipped, of all truth pixels. The protocol
+// of seed 000 clamps every sample, which a mean cannot make up for.
+struct ClippedPixels {
+    size_t pixels = 0, of = 0;
+};
+
 struct RunResults {
     // The shot
     std::string shot;  // its name
@@ -75,14 +81,9 @@ struct RunResults {
     int truthSamplesPerHalf = 0;
     std::string truthFilter;
     double truthFilterWidthPx = 1;
-    std::optional<double> truthNoise;        // MSE(a, b) / 4, encoded, mean over the frames with truth
-    std::map<int, std::string> truthImages;  // frame -> relative path
-    // Pixels in which the mean of the halves exceeds the display, so that it is clipped, of all truth pixels; only with
-    // the identity transfer. The protocol of seed 000 clamps every sample, which a mean cannot make up for.
-    struct Clipped {
-        size_t pixels = 0, of = 0;
-    };
-    std::optional<Clipped> truthClipped;
+    std::optional<double> truthNoise;           // MSE(a, b) / 4, encoded, mean over the frames with truth
+    std::map<int, std::string> truthImages;     // frame -> relative path
+    std::optional<ClippedPixels> truthClipped;  // only with the identity transfer
     // The run
     std::string programVersion, isa, precision, machine;
     int threads = 1;
