@@ -12,12 +12,18 @@ SPATIAL = (
 EDGES = "gbaa gpaa d2e"
 SUBSAMPLES = "msaa csaa:slots=4 dmsaa deaa sraa sraa:ids=always sbaa sbaa:ids=off"
 UNCHARTED = "uncharted unchartedNorm unchartedNoSharpen"
-# Each part of `master` switched off; its colour box open everywhere (minAlias=1); and a first frame that does not keep
-# its weight (warmup=ramp).
+# Each part of `master` switched off or read otherwise; its colour box open everywhere (minAlias=1); and a first frame
+# that does not keep its weight (warmup=ramp).
 ABLATIONS = (
-    "master master:model=off master:depth=off master:depthTemporal=off master:sobel=off master:sobelTemporal=off "
-    "master:sharpen=none master:sharpen=none,minAlias=1"
+    "master master:unjitter=off master:model=off master:depth=off master:depthTemporal=off master:sobel=off "
+    "master:sobelTemporal=off master:sharpen=none master:sharpen=none,minAlias=1"
 )
+READINGS = (
+    "master:minAlias=1 master:kmin=0.88,kmax=0.97 master:luminance=bt709 "
+    "master:depthUnit=world,pastDepth=reprojected master:historyBits=8"
+)
+# What the Oliveros thesis compares, in its own protocol: displayed values, full history, 8-bit images.
+THESIS = f"noaa fxaa1:preset=5 smaa1x:preset=ULTRA uncharted:unjitter=off unchartedNorm:unjitter=off {UNCHARTED} {ABLATIONS} {READINGS}"
 RAMPED = "unchartedNoSharpen:warmup=ramp master:sharpen=none,warmup=ramp"
 RAPTOR = "raptor raptor:lumaDiff=printed raptor:filterDomain=printed,lumaDiff=printed raptor:sharpen=0"
 BOXES = "inside karis salvi falcor donut"  # with `raptor`, `uncharted*` and `master`: history held by a box of colours
@@ -35,6 +41,15 @@ def _shots(*all_shots: Shot) -> dict[str, Shot]:
     return {shot.name: shot for shot in all_shots}
 
 
+T2MSAA = dict(
+    methods="noaa t2msaa t2msaa:space=linear",
+    pattern="d3d2",
+    truth_of="hard_edges",
+    period=2,
+    frames=8,
+    quick_frames=8,
+    thesis="noaa t2msaa",
+)
 STILL = dict(frames=1, quick_frames=1, jitter="none", period=1)  # centre samples alone
 MOVING = dict(
     methods=f"{SPATIAL} {TEMPORAL} dmsaa sraa rsaa accumReject+fill=rsaa",
@@ -48,10 +63,16 @@ SHOTS = _shots(
     Shot(
         "hard_edges", "hard_edges",
         f"{SPATIAL} {EDGES} {SUBSAMPLES} {RSAA} {TEMPORAL} {RAMPED} accum:samples=16",
-        pattern="d3d8", truth_samples=256, quick_truth_samples=64,
+        pattern="d3d8", truth_samples=256, quick_truth_samples=64, jitter="thesis", thesis=THESIS,
     ),
-    Shot("hard_edges.s2", "hard_edges", "noaa msaa smaaS2x", pattern="d3d2", truth_of="hard_edges", **STILL),
-    Shot("hard_edges.s4", "hard_edges", f"noaa {SUBSAMPLES} rsaa", pattern="d3d4", truth_of="hard_edges", **STILL),
+    Shot(
+        "hard_edges.s2", "hard_edges", "noaa msaa msaa:space=encoded smaaS2x", pattern="d3d2", truth_of="hard_edges",
+        thesis="noaa msaa", **STILL,
+    ),
+    Shot(
+        "hard_edges.s4", "hard_edges", f"noaa {SUBSAMPLES} msaa:space=encoded rsaa", pattern="d3d4",
+        truth_of="hard_edges", thesis="noaa msaa", **STILL,
+    ),
     Shot("hard_edges.s16", "hard_edges", f"noaa {SUBSAMPLES} rsaa", pattern="d3d16", truth_of="hard_edges", **STILL),
     Shot("hard_edges.grid2", "hard_edges", "noaa ssaa", pattern="grid2", truth_of="hard_edges", **STILL),
     Shot("hard_edges.grid4", "hard_edges", "noaa ssaa", pattern="grid4", truth_of="hard_edges", **STILL),
@@ -63,14 +84,10 @@ SHOTS = _shots(
         "hard_edges.4x", "hard_edges", "noaa smaa4x", pattern="d3d4", truth_of="hard_edges",
         jitter="none", period=1, frames=8, quick_frames=8,
     ),
-    Shot(  # as published: two sub-samples, frames moved by 0.25 px
-        "hard_edges.t2msaa2", "hard_edges", "noaa t2msaa", pattern="d3d2", truth_of="hard_edges",
-        jitter="t2msaa", period=2, frames=8, quick_frames=8,
-    ),
-    Shot(  # any offset: each frame takes the nearest of sixteen recorded sub-samples
-        "hard_edges.t2msaa", "hard_edges", "noaa t2msaa t2msaa:offset=0.1875 t2msaa:offset=0.125",
-        pattern="d3d16", truth_of="hard_edges", jitter="none", period=1, frames=8, quick_frames=8,
-    ),
+    # As published: two sub-samples, frames moved by 0.25, 0.1875 or 0.125 px.
+    Shot("hard_edges.t2msaa", "hard_edges", jitter="t2msaa", **T2MSAA),
+    Shot("hard_edges.t2msaa1875", "hard_edges", jitter="t2msaa1875", **T2MSAA),
+    Shot("hard_edges.t2msaa125", "hard_edges", jitter="t2msaa125", **T2MSAA),
     Shot("hard_edges.asaa", "hard_edges", "noaa asaa", truth_of="hard_edges", jitter="quadrantGaussian"),
     Shot(
         "hard_edges.accum128", "hard_edges", "noaa accum:samples=128", truth_of="hard_edges", period=128,
@@ -78,12 +95,18 @@ SHOTS = _shots(
     ),
     Shot(
         "hairball", "hairball", f"{SPATIAL} {SUBSAMPLES} {RSAA} {TEMPORAL} accum:samples=16", pattern="d3d8",
-        truth_samples=256, quick_truth_samples=32,
+        truth_samples=256, quick_truth_samples=32, jitter="thesis", thesis=THESIS,
     ),
     Shot("hairball.s4", "hairball", f"noaa {SUBSAMPLES} rsaa", pattern="d3d4", truth_of="hairball", **STILL),
     Shot("hairball.s16", "hairball", f"noaa {SUBSAMPLES} rsaa", pattern="d3d16", truth_of="hairball", **STILL),
-    Shot("hairball_unlit", "hairball", f"{SPATIAL} {TEMPORAL} accum:samples=16", variant=("--unlit",)),
-    Shot("flowers", "flowers", f"{SPATIAL} {TEMPORAL} msaa rsaa accum:samples=16", pattern="d3d8"),
+    Shot(
+        "hairball_unlit", "hairball", f"{SPATIAL} {TEMPORAL} accum:samples=16", variant=("--unlit",),
+        jitter="thesis", thesis=THESIS,
+    ),
+    Shot(
+        "flowers", "flowers", f"{SPATIAL} {TEMPORAL} msaa rsaa accum:samples=16", pattern="d3d8",
+        jitter="thesis", thesis=THESIS,
+    ),
     Shot("moving_sphere", "moving_sphere", frames=32, quick_frames=16, **MOVING),
     Shot("hairball_rotating", "hairball", variant=("--rotating",), frames=24, quick_frames=12, **MOVING),
     Shot("wires", "wires", frames=24, quick_frames=12, **MOVING),
@@ -96,6 +119,17 @@ SHOTS = _shots(
         passes="normal,object", size=(1920, 1080), truth=False,
     ),
 )  # fmt: skip
+
+# The thesis's protocol (methods/10), and what each of its steps does to these methods on hard_edges.
+THESIS_FLAGS = ("--display", "identity", "--history", "full", "--quantise", "8")
+STEPS = {
+    "linear light, from frame 0": (),
+    "linear light, full history": ("--history", "full"),
+    "displayed values, from frame 0": ("--display", "identity"),
+    "displayed values, full history": ("--display", "identity", "--history", "full"),
+    "the same as 8-bit images": THESIS_FLAGS,
+}
+STEP_METHODS = "noaa uncharted unchartedNorm master master:unjitter=off accum:samples=16"
 
 # Contact sheets beside the pages: name -> shot and methods.
 PICTURES = {

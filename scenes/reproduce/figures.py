@@ -105,6 +105,13 @@ def across(run_a: Run, a: str, run_b: Run, b: str) -> Difference:
     return Difference(in_db(tiles), low, high, apart and low * high > 0)
 
 
+def kendall_tau(first: list[float], second: list[float]) -> float:
+    """Agreement of two orders: pairs in the same order less pairs in the other, over all pairs; 1 = the same order."""
+    sign = lambda v: (v > 0) - (v < 0)  # noqa: E731
+    pairs = [(i, j) for i in range(len(first)) for j in range(i)]
+    return sum(sign(first[i] - first[j]) * sign(second[i] - second[j]) for i, j in pairs) / len(pairs)
+
+
 def verdict(difference: Difference | None, better: str = "better", worse: str = "worse") -> str:
     """The figures' answer to: is the first one better than the second?"""
     if difference is None:

@@ -17,7 +17,7 @@ import time
 from pathlib import Path
 
 import studies
-from catalogue import ANGLES, PICTURES, SHOTS
+from catalogue import ANGLES, PICTURES, SHOTS, STEP_METHODS, STEPS, THESIS_FLAGS
 from figures import Run
 from page import Page
 from shots import ROOT, Shot, Workshop, make
@@ -27,17 +27,17 @@ def methods_of(shot: Shot, shop: Workshop) -> list[str]:
     return [m for m in shot.methods.split() if shop.serves(m)]
 
 
-def run_methods(shot: Shot, folder: Path, shop: Workshop) -> Run:
-    """All methods on a shot; repeated only when shot, program or list have changed."""
-    out = folder.parent / f"{folder.name}.run"
-    methods = methods_of(shot, shop)
+def run_methods(folder: Path, what: str, methods: str, shop: Workshop, flags: tuple[str, ...] = ()) -> Run:
+    """Methods on a shot, in a protocol of `flags`; repeated only when shot, program or list have changed."""
+    out = folder.parent / f"{folder.name}.{what}"
+    texts = [m for m in methods.split() if shop.serves(m)]
     newest = max((folder / "shot.json").stat().st_mtime, shop.program.stat().st_mtime)
     results = out / "results.json"
-    if not results.exists() or results.stat().st_mtime < newest or list(Run(out).methods) != methods:
-        command: list[object] = [shop.program, "run", folder, "-o", out, "--write", "none", "-q"]
-        for m in methods:
+    if not results.exists() or results.stat().st_mtime < newest or list(Run(out).methods) != texts:
+        command: list[object] = [shop.program, "run", folder, "-o", out, "--write", "none", "-q", *flags]
+        for m in texts:
             command += ["-m", m]
-        shop.run(f"run.{shot.name}", command)
+        shop.run(f"{what}.{folder.name}", command)
     return Run(out)
 
 
@@ -91,13 +91,14 @@ def angles(shop: Workshop) -> Page | None:
     return studies.angles_page(json.loads(shop.run("angles", command)))
 
 
-def write_pages(runs: dict[str, Run], speed: Page | None, by_angle: Page | None, docs: Path) -> list[str]:
+def write_pages(study: studies.Study, speed: Page | None, by_angle: Page | None, docs: Path) -> list[str]:
     """Every page whose runs are there; returns the index's lines."""
+    runs = study.runs
     wanted = [
-        ("static.md", {"hard_edges"}, lambda: studies.static_page(runs), "the thesis's protocol, the sharpen filter's share, the parts of `master`"),
+        ("static.md", {"hard_edges"}, lambda: studies.static_page(study), "the thesis's protocol and ours, step by step; the parts of `master`"),
         ("motion.md", {"moving_sphere"}, lambda: studies.motion_page(runs), "ghosts, flicker, identity against colour boxes, hybrid fill, printed weights"),
         ("geometry.md", {"hard_edges"}, lambda: studies.geometry_page(runs), "RSAA's variants and numbers of sub-samples, against MSAA and MLAA"),
-        ("published.md", {"hard_edges"}, lambda: studies.published_page(runs), "the published gains beside ours"),
+        ("published.md", {"hard_edges"}, lambda: studies.published_page(study), "the published gains beside ours, in both protocols"),
         ("scenes.md", {"hard_edges"}, lambda: studies.scenes_page(runs), "every method on every static scene"),
     ]  # fmt: skip
     index = []
@@ -136,19 +137,30 @@ def main(argv: list[str]) -> int:
 
     sequences = (ROOT / "blender_addon/aa_resolve/jitter.py").read_text()
     runs: dict[str, Run] = {}
+    thesis: dict[str, Run] = {}  # the same shots in the protocol of the theses
     for name, shot in SHOTS.items():
         if f'"{shot.jitter}"' not in sequences:
             print(f"  shot {name}: left out, the exporter does not know the jitter {shot.jitter}", flush=True)
             continue
         if a.only and name not in a.only and SHOTS[name].name not in {SHOTS[o].truth_of for o in a.only}:
             continue
-        if shot.truth:
-            runs[name] = run_methods(shot, make(SHOTS, shot, shop), shop)
+        if not shot.truth:
+            continue
+        folder = make(SHOTS, shot, shop)
+        runs[name] = run_methods(folder, "run", shot.methods, shop)
+        if shot.thesis:
+            thesis[name] = run_methods(folder, "thesis", shot.thesis, shop, THESIS_FLAGS)
+    steps: dict[str, Run] = {}
+    if "hard_edges" in thesis:
+        folder = shop.folder(SHOTS["hard_edges"])
+        for i, (what, flags) in enumerate(STEPS.items()):
+            steps[what] = run_methods(folder, f"step{i}", STEP_METHODS, shop, flags)
+    study = studies.Study(runs, thesis, steps)
     for name, (shot_name, methods) in PICTURES.items():
         if shot_name in runs:
             picture(name, SHOTS[shot_name], [m for m in methods.split() if m in runs[shot_name]], a.docs, shop)
     speed = None if a.no_bench else bench(shop)
-    index = write_pages(runs, speed, angles(shop), a.docs)
+    index = write_pages(study, speed, angles(shop), a.docs)
     page = Page("Results")
     page.say(
         "Written by `make reproduce` from its own renders; every sentence follows from the figures.",
@@ -156,7 +168,7 @@ def main(argv: list[str]) -> int:
     )
     if runs:
         page.heading("In short")
-        page.points(studies.headlines(runs))
+        page.points(studies.headlines(study))
         page.heading("Pages")
     page.points(index)
     page.say(

@@ -13,7 +13,7 @@ import os
 import shutil
 import subprocess
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -37,6 +37,7 @@ class Shot:
     passes: str = ""  # of the jittered frames, beyond what the methods read
     truth_of: str = ""  # another shot of the same scene, variant and frames
     truth: bool = True
+    thesis: str = ""  # methods that are run once more in the thesis's protocol (catalogue.THESIS_FLAGS)
     size: tuple[int, int] = (480, 270)
 
 
@@ -136,13 +137,16 @@ def _ready(shot: Shot, stamp: Path, wish: str, started: float, what: str, folder
 
 def _identity(shot: Shot, shop: Workshop) -> str:
     """What decides the shot's content: its description and the sources of scene and exporter."""
-    digest = hashlib.sha256(f"{shot} {shop.quick} {sorted(shop.known)}".encode())
+    digest = hashlib.sha256(f"{replace(shot, methods='', thesis='')} {shop.quick}".encode())
     if shot.scene.startswith("synth:"):
         sources = [shop.program]
     else:
         sources = [ROOT / f"scenes/{shot.scene}.py", ROOT / "scenes/common.py"]
         sources += sorted((ROOT / "blender_addon/aa_resolve").glob("*.py"))
-        sources += [ROOT / "blender_addon/aa_resolve/methods.json"]
+        # Of the registry only what decides the passes: a better help text renders nothing anew.
+        registry = json.loads((ROOT / "blender_addon/aa_resolve/methods.json").read_text())["methods"]
+        ids = {m.split(":")[0].split("+")[0] for m in shot.methods.split()}
+        digest.update(repr([(m["id"], m["passes"]) for m in registry if m["id"] in ids]).encode())
     for path in sources:
         digest.update(path.read_bytes())
     return digest.hexdigest()

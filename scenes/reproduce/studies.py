@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import published
-from figures import Difference, Run, across, number, signed, verdict
+from figures import Difference, Run, across, kendall_tau, number, signed, verdict
 from page import Page, code
 
 
@@ -52,8 +53,18 @@ def _figure(value: float | None, digits: int = 3) -> str:
 # --- the index ---
 
 
-def headlines(runs: dict[str, Run]) -> list[str]:
+@dataclass
+class Study:
+    """Runs by shot: in our protocol, in that of the theses, and hard_edges in each step from one to the other."""
+
+    runs: dict[str, Run]
+    thesis: dict[str, Run]
+    steps: dict[str, Run]
+
+
+def headlines(study: Study) -> list[str]:
     """The main questions, each answered over all scenes."""
+    runs, thesis = study.runs, study.thesis
     moving = [n for n in ("moving_sphere", "hairball_rotating", "wires", "synth_moving", "synth_thin_motion") if n in runs]
     static = [n for n in ("hard_edges", "hairball", "hairball_unlit", "flowers") if n in runs]
     sampled = [n for n in ("hard_edges", "hairball") if n in runs]
@@ -61,9 +72,21 @@ def headlines(runs: dict[str, Run]) -> list[str]:
     gain = lambda a, b: lambda r: r.gain(a, b)  # noqa: E731
     box = lambda r: min((m for m in BOXES if m in r), key=lambda m: r.temporal(m, "ghostMse"))  # noqa: E731
     filled = lambda m: lambda r: r.over_time(f"accumReject+fill={m}", "accumReject", "rejected")  # noqa: E731
+    rest = [n for n in static if n in thesis]
+    headline = [
+        ("Is `master` better than no anti-aliasing (published: yes)?", gain("master", "noaa")),
+        ("Is `uncharted`, sharpened as published (published: no)?", gain("uncharted", "noaa")),
+        ("Is `master` better than FXAA (published: yes)?", gain("master", published.METHODS["FXAA"])),
+        ("Is `master` better than SMAA (published: yes)?", gain("master", published.METHODS["SMAA"])),
+        ("Is `master` better than `unchartedNorm`?", gain("master", "unchartedNorm")),
+        ("Does un-jittering help `master`?", gain("master", "master:unjitter=off")),
+    ]
+    answers = [
+        f"At rest, {which}: {question} {_over_scenes(rest, r, ask)}"
+        for which, r in (("the thesis's question", thesis), ("ours", runs))
+        for question, ask in headline
+    ]
     asked = [
-        ("Is `master` better than `unchartedNorm` at rest?", static, gain("master", "unchartedNorm")),
-        ("Does its own sharpen filter help the Uncharted baseline at rest?", static, gain("uncharted", "unchartedNoSharpen")),
         ("Does `master` ghost less than `unchartedNorm` (published: yes)?", moving, ghost("master", "unchartedNorm")),
         ("Does identity ghost less than the best colour box?", moving, lambda r: r.over_time("accumReject", box(r), "ghost")),
         ("Does a fill by SMAA help where history was rejected?", moving, filled("smaa1x")),
@@ -73,7 +96,7 @@ def headlines(runs: dict[str, Run]) -> list[str]:
         ("Is RSAA with 8 sub-samples better than MSAA with 8?", sampled, gain("rsaa", "msaa")),
         ("Is it better than MLAA?", sampled, gain("rsaa", "mlaa")),
     ]  # fmt: skip
-    return [f"{question} {_over_scenes(scenes, runs, ask)}" for question, scenes, ask in asked if scenes]
+    return answers + [f"{question} {_over_scenes(scenes, runs, ask)}" for question, scenes, ask in asked if scenes]
 
 
 def _over_scenes(scenes: list[str], runs: dict[str, Run], ask) -> str:
@@ -88,16 +111,85 @@ def _over_scenes(scenes: list[str], runs: dict[str, Run], ask) -> str:
 
 # --- 1: static protocol ---------------------------------------------------------------------------------------------
 
+THESIS_QUESTION = (
+    "**The thesis's question**: displayed values (no gamma anywhere: truth, methods and metrics work on the same values in [0,1]), a "
+    "full history (ten jitter periods before the judged frame), 8-bit images: `run --display identity --history full --quantise 8`."
+)
+OUR_QUESTION = (
+    "**Ours**, stricter: light is averaged before it is encoded, in the truth as in a camera, and the history begins with the first of "
+    "sixteen frames."
+)
 
-def static_page(runs: dict[str, Run]) -> Page:
-    run = runs["hard_edges"]
-    page = Page("Static protocol: sixteen frames of hard_edges")
+
+def static_page(study: Study) -> Page:
+    run, thesis = study.runs["hard_edges"], study.thesis["hard_edges"]
+    page = Page("At rest: sixteen frames of hard_edges, two questions")
     page.say(
-        "The protocol of the Oliveros thesis: sixteen jittered frames of a scene at rest, the last one is judged.",
-        _setup(run),
+        "The protocol of the Oliveros thesis: jittered frames of a scene at rest, the last one is judged.", _setup(run)
+    )
+    page.points([THESIS_QUESTION, OUR_QUESTION])
+    _, theirs = published.GAINS["hard_edges"]
+    page.heading("Gain over no anti-aliasing, dB")
+    page.table(
+        ["method", "published", "the thesis's question", "95 %", "ours", "95 %"],
+        [
+            [f"{name} ({code(text)})" if name else code(text), signed(theirs[name]) if name else "–",
+             signed(thesis.gain(text).db), _interval(thesis.gain(text)), signed(run.gain(text).db), _interval(run.gain(text))]
+            for name, text in [*published.METHODS.items(), ("", "unchartedNorm"), ("", "unchartedNoSharpen"), ("", "master:unjitter=off")]
+        ],
+    )  # fmt: skip
+    page.say("The thesis's question: " + " ".join(_order(thesis, theirs)))
+    page.say("Ours: " + " ".join(_order(run, theirs)))
+    page.heading("What each step of the protocol does")
+    page.say("Gain over no anti-aliasing in the same protocol, dB.")
+    methods = [m for m in next(iter(study.steps.values())).methods if m != "noaa"]
+    page.table(
+        ["protocol", *(code(m) for m in methods)],
+        [[what, *(_short(step.gain(m)) for m in methods)] for what, step in study.steps.items()],
     )
     page.heading("Questions")
-    answers = []
+    page.points(
+        answer
+        for which, r in (("the thesis's question", thesis), ("ours", run))
+        for answer in _static_answers(which, r)
+    )
+    page.points(
+        [
+            "Does the test of object ids serve `accumReject` at rest (ours)? "
+            + verdict(run.gain("accumReject", "accumReject:objectIds=off"))
+            + " A jittered sample beside a thin part shows another object now and then, and the history is dropped."
+            * (run.gain("accumReject", "accumReject:objectIds=off").db < 0),
+            "Is the first frame's lasting weight a large part of the error from frame 0 (ours)? Averaging the first frames evenly instead: "
+            + verdict(run.gain("unchartedNoSharpen:warmup=ramp", "unchartedNoSharpen")),
+        ]
+    )
+    page.heading("What each part of master does")
+    parts = [m for m in thesis.methods if m.startswith("master:")]
+    page.table(
+        ["variant", "the thesis's question: PSNR dB", "against `master`", "ours: PSNR dB", "against `master`"],
+        [[code("master"), f"{thesis.psnr('master'):.2f}", "", f"{run.psnr('master'):.2f}", ""]]
+        + [[code(m), f"{thesis.psnr(m):.2f}", str(thesis.gain(m, "master")),
+            *([f"{run.psnr(m):.2f}", str(run.gain(m, "master"))] if m in run else ["–", "–"])] for m in parts],
+    )  # fmt: skip
+    page.heading("All methods, our question")
+    page.table(*_ranking(run))
+    page.say(
+        "Flicker is the mean standard deviation of a pixel's brightness over the frames after the warm-up. Methods without",
+        "history read the same centre-sampled picture in every frame of a static shot, so theirs is 0.",
+    )
+    return page
+
+
+def _interval(d: Difference) -> str:
+    return f"{signed(d.low)} to {signed(d.high)}"
+
+
+def _short(d: Difference) -> str:
+    return signed(d.db) + ("" if d.resolved else " (n. r.)")
+
+
+def _static_answers(which: str, run: Run) -> list[str]:
+    """What the sharpen filter and un-jittering are worth, and whether master beats the baseline: of one protocol."""
     total = run.psnr("master") - run.psnr("uncharted")
     sharpen = run.psnr("unchartedNorm") - run.psnr("uncharted")
     paper = published.SHARPEN
@@ -106,52 +198,15 @@ def static_page(runs: dict[str, Run]) -> Page:
         f"{100 * sharpen / total:.0f} % ({sharpen:.2f} of {total:.2f} dB)" if total > 0
         else f"all of it and more: the normalised filter alone gains {sharpen:.2f} dB, `master` {total:.2f} dB"
     )  # fmt: skip
-    answers.append(
-        f"What share of `master`'s lead over `uncharted` is the sharpen filter? {share}. "
-        f"Published (table 5.1, another scene): {100 * paper_share:.0f} %."
-    )
-    answers.append("Is `master` better than the baseline with the same filter, `unchartedNorm`? " + verdict(run.gain("master", "unchartedNorm")))
-    answers.append(
-        "Is `master` better than the baseline when neither sharpens? "
-        + verdict(run.gain("master:sharpen=none", "unchartedNoSharpen"))
-    )
-    answers.append(
-        "Does the normalised sharpen filter help the baseline? " + verdict(run.gain("unchartedNorm", "unchartedNoSharpen"))
-    )
-    answers.append(
-        "Does the test of object ids serve `accumReject` at rest? "
-        + verdict(run.gain("accumReject", "accumReject:objectIds=off"))
-        + " A jittered sample beside a thin part shows another object now and then, and the history is dropped."
-        * (run.gain("accumReject", "accumReject:objectIds=off").db < 0)
-    )
-    answers.append(
-        "Is the first frame's lasting weight (0.15 to 0.63 after 16 frames, by its feedback) a large part of the error? Averaging the first "
-        "frames evenly instead: " + verdict(run.gain("unchartedNoSharpen:warmup=ramp", "unchartedNoSharpen"))
-    )
-    page.points(answers)
-    page.heading("Order against the published one")
-    _, theirs = published.GAINS["hard_edges"]
-    ours = {name: run.gain(text) for name, text in published.METHODS.items()}
-    page.table(
-        ["method", "published gain, dB", "ours, dB", "95 %"],
-        [[f"{name} ({code(published.METHODS[name])})", signed(theirs[name]), signed(ours[name].db),
-          f"{signed(ours[name].low)} to {signed(ours[name].high)}"] for name in published.METHODS],
-    )  # fmt: skip
-    page.say(*_order(run, theirs))
-    page.heading("What each part of master does")
-    parts = [m for m in run.methods if m.startswith("master:") and "ramp" not in m]
-    page.table(
-        ["variant", "PSNR dB", "against `master`"],
-        [[code("master"), f"{run.psnr('master'):.2f}", ""]]
-        + [[code(m), f"{run.psnr(m):.2f}", str(run.gain(m, "master"))] for m in parts],
-    )
-    page.heading("All methods")
-    page.table(*_ranking(run))
-    page.say(
-        "Flicker is the mean standard deviation of a pixel's brightness over the frames after the warm-up. Methods without",
-        "history read the same centre-sampled picture in every frame of a static shot, so theirs is 0.",
-    )
-    return page
+    return [
+        f"What share of `master`'s lead over `uncharted` is the sharpen filter ({which})? {share}. "
+        f"Published (table 5.1, another scene): {100 * paper_share:.0f} %.",
+        f"Is un-jittering the current frame worth it ({which})? {verdict(run.gain('master', 'master:unjitter=off'))}",
+        f"Is `master` better than the baseline with the same filter, `unchartedNorm` ({which})? "
+        + verdict(run.gain("master", "unchartedNorm")),
+        f"Does the normalised sharpen filter help the baseline ({which})? "
+        + verdict(run.gain("unchartedNorm", "unchartedNoSharpen")),
+    ]
 
 
 def _order(run: Run, theirs: dict[str, float]) -> list[str]:
@@ -167,7 +222,13 @@ def _order(run: Run, theirs: dict[str, float]) -> list[str]:
                 swapped.append(f"{first} before {second} (here {signed(d.db)} dB)")
             else:
                 agree += 1
-    sentences = [f"{agree} of {len(names) * (len(names) - 1) // 2} pairs keep the published order."]
+    tau = kendall_tau(
+        [0.0, *(theirs[n] for n in names)], [0.0, *(run.gain(published.METHODS[n]).db for n in names)]
+    )
+    sentences = [
+        f"Kendall's τ of the order, no anti-aliasing among them: {signed(tau)}; "
+        f"{agree} of {len(names) * (len(names) - 1) // 2} pairs of methods keep the published order."
+    ]
     if swapped:
         sentences.append("Published, but not here: " + "; ".join(swapped) + ".")
         if any(s.startswith("Master") for s in swapped):
@@ -183,6 +244,10 @@ def _why_master_falls_behind(run: Run) -> str:
         ("sharpening the output", "master:sharpen=none", "master"),
         ("the first frame's lasting weight", "master:sharpen=none,warmup=ramp", "master:sharpen=none"),
         ("a colour box that is closed where no edge is found", "master:sharpen=none,minAlias=1", "master:sharpen=none"),
+        ("un-jittering", "master:unjitter=off", "master"),
+        ("a feedback of .925 to .979 instead of INSIDE's", "master:kmin=0.88,kmax=0.97", "master"),
+        ("its test of depth over time", "master:depthTemporal=off", "master"),
+        ("depths in normalised units", "master:depthUnit=world,pastDepth=reprojected", "master"),
     ]  # fmt: skip
     gains = [(what, run.gain(a, b)) for what, a, b in candidates if a in run and b in run]
     reasons = sorted((g for g in gains if g[1].resolved and g[1].db > 0.1), key=lambda g: -g[1].db)
@@ -424,25 +489,28 @@ def speed_page(rows: list[dict], where: str, size: tuple[int, int]) -> Page:
     return page
 
 
-def published_page(runs: dict[str, Run]) -> Page:
+def published_page(study: Study) -> Page:
+    runs = study.runs
     page = Page("Published figures and ours")
     page.say(
         "The Oliveros thesis measured at 1600 × 900 in the Crytek Sponza and in scenes of its own; ours are rebuilt after its",
         "descriptions at 480 × 270, so that edges are a larger share of the picture and decibels differ. What can be compared",
-        "is the order. `unchartedNorm` is the baseline with the filter that `master` uses, which the thesis's tables lack.",
+        "is signs and order. `unchartedNorm` is the baseline with the filter that `master` uses, which the thesis's tables lack.",
     )
+    page.points([THESIS_QUESTION, OUR_QUESTION])
     names = list(published.METHODS)
     rows, notes = [], []
     for shot, (title, theirs) in published.GAINS.items():
-        if shot not in runs:
+        if shot not in study.thesis:
             continue
-        run = runs[shot]
-        rows.append([title, *(signed(theirs[n]) for n in names), ""])
-        ours = [run.gain(published.METHODS[n]) for n in names] + [run.gain("unchartedNorm")]
-        rows.append([f"ours: {shot}", *(signed(d.db) + ("" if d.resolved else " (n. r.)") for d in ours)])
-        notes.append(f"**{shot}**: " + " ".join(_order(run, theirs)))
+        rows.append([title, "published", *(signed(theirs[n]) for n in names), ""])
+        for which, run in (("the thesis's question", study.thesis[shot]), ("ours", runs[shot])):
+            gains = [run.gain(published.METHODS[n]) for n in names] + [run.gain("unchartedNorm")]
+            rows.append([shot, which, *(_short(d) for d in gains)])
+        notes.append(f"**{shot}**, the thesis's question: " + " ".join(_order(study.thesis[shot], theirs)))
+        notes.append(f"**{shot}**, ours: " + " ".join(_order(runs[shot], theirs)))
     page.heading("PSNR gain over no anti-aliasing, dB")
-    page.table(["scene", *(f"{n} ({code(published.METHODS[n])})" for n in names), code("unchartedNorm")], rows)
+    page.table(["scene", "question", *(f"{n} ({code(published.METHODS[n])})" for n in names), code("unchartedNorm")], rows)
     page.say("n. r.: not resolved from no anti-aliasing.")
     page.points(notes)
     page.heading("In motion: how much lower is the error of master than that of uncharted?")
@@ -454,16 +522,32 @@ def published_page(runs: dict[str, Run]) -> Page:
         db = 10 * math.log10(theirs["Uncharted"] / theirs["Master"])
         rows.append([f"{title} / {shot}", signed(db), str(run.gain("master", "uncharted")), str(run.gain("master", "unchartedNorm"))])
     page.table(["scene", "published, dB", "ours, dB", "ours, against `unchartedNorm`"], rows)
-    if {"hard_edges.t2msaa", "hard_edges.s2", "hard_edges.s4"} <= set(runs):
+    if {"hard_edges.t2msaa", "hard_edges.s2", "hard_edges.s4"} <= set(study.thesis):
         page.heading("T2MSAA lies between 2x and 4x MSAA (Linköping thesis)")
-        t2, s2, s4 = (runs[f"hard_edges.{n}"] for n in ("t2msaa", "s2", "s4"))
-        page.points(
-            f"{code(m)}: better than MSAA of 2? {verdict(across(t2, m, s2, 'msaa'))} Worse than MSAA of 4? "
-            f"{verdict(across(s4, 'msaa', t2, m), 'worse', 'better')}"
-            for m in t2.methods
-            if m != "noaa"
+        page.say(
+            "Its samples are those that it asks for: two per pixel, moved between frames by 0.25, 0.1875 or 0.125 px. The answer depends on",
+            "the space in which samples are averaged, so every space is shown; both sides of a pair in different spaces is no comparison.",
         )
+        page.points(_t2msaa_answers(study))
     return page
+
+
+def _t2msaa_answers(study: Study) -> list[str]:
+    spaces = [
+        ("one displayed space (samples, truth and metric)", study.thesis, "t2msaa", "msaa"),
+        ("linear light (samples and truth; the metric encodes)", study.runs, "t2msaa:space=linear", "msaa"),
+        ("encoded samples against a truth in linear light", study.runs, "t2msaa", "msaa:space=encoded"),
+        ("two different spaces: encoded T2MSAA, linear MSAA", study.runs, "t2msaa", "msaa"),
+    ]
+    answers = []
+    for space, runs, temporal, spatial in spaces:
+        for shot, offset in (("t2msaa", "0.25"), ("t2msaa1875", "0.1875"), ("t2msaa125", "0.125")):
+            t2, s2, s4 = (runs[f"hard_edges.{n}"] for n in (shot, "s2", "s4"))
+            answers.append(
+                f"In {space}, moved by {offset} px: better than MSAA of 2? {verdict(across(t2, temporal, s2, spatial))} "
+                f"Worse than MSAA of 4? {verdict(across(s4, spatial, t2, temporal), 'worse', 'better')}"
+            )
+    return answers
 
 
 def scenes_page(runs: dict[str, Run]) -> Page:

@@ -182,6 +182,23 @@ class Protocol(ProgramTest):
         self.assertIn("sRGB-encoded values, history from the first frame", (self.folder / "old.html").read_text())
         self.assertNotEqual((self.folder / "old.png").read_bytes(), (self.folder / "sheet.png").read_bytes())
 
+    def test_the_headline_of_the_thesis(self) -> None:
+        """Master beats no anti-aliasing at rest, its baseline with the published sharpening does not; un-jittering decides."""
+        least = {"half_planes": 2.5, "thin_lines": 0.5, "hairs": 3.5}
+        for scene, gain in least.items():
+            shot = self.folder / scene
+            size = ("--resolution", 256, 144, "--frames", 16, "--jitter", "thesis")
+            self.aaresolve("synth", scene, "-o", shot, "-q", *size)
+            methods = ("noaa", "master", "master:unjitter=off", "uncharted")
+            out = self.run_shot(
+                shot, *methods, options=("-q", "--display", "identity", "--history", "full", "--write", "none")
+            )
+            psnr_of = self.figures(out)
+            over = {m: psnr_of[m] - psnr_of["noaa"] for m in methods}
+            self.assertGreater(over["master"], gain, f"{scene}: {over}")
+            self.assertGreater(over["master"], over["master:unjitter=off"] + 2, f"{scene}: {over}")
+            self.assertLess(over["uncharted"], 0, f"{scene}: {over}")
+
     def test_filter_in_one_space(self) -> None:
         shot = self.synth("clutter", "shot", "--jitter", "none", frames=1)
         frame = next(shot.rglob("*.exr"))
