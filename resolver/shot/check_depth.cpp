@@ -259,7 +259,7 @@ void DepthCheck::judge(CheckReport& report) const {
     if (report.findings.size() == before) known = scale(subSampleScale_, "subsamples") || known;
     if (report.findings.size() == before) known = scale(parallaxScale_, "parallax") || known;
     if (!known)
-        report.notChecked.push_back(
+        report.notChecked.emplace_back(
             boundsSeen_
                 ? "scale of depth beyond near..far and depth_bounds: through a resting perspective camera a scaled "
                   "depth looks the same"
