@@ -9,7 +9,7 @@ namespace {
 using namespace testing;
 
 // A bright pixel appears in a static dark image. By hand, encoded: rounded box lo = 0.2, hi = 0.8; history 0.2 is
-// inside; d = (0.8 - 0.2) / 0.8 = 0.75; k = 0.88 + 0.09 / 16 = 0.885625.
+// inside; d = (0.8 - 0.2) / 0.8 = 0.75; k = 0.925 + 0.054 / 16 = 0.928375.
 TEST(Uncharted, OnePixelByHand) {
     Rgb linear;
     RunningMethod m = running("unchartedNoSharpen", 9, 9);
@@ -25,7 +25,7 @@ TEST(Uncharted, OnePixelByHand) {
     };
     m.resolve(frame(0, 0.2f), {}, {});
     m.resolve(frame(1, 0.8f), {}, {});
-    EXPECT_NEAR(m.out.c[0].at(4, 4), 0.2 + 0.6 * (1 - 0.885625), 1e-6);
+    EXPECT_NEAR(m.out.c[0].at(4, 4), 0.2 + 0.6 * (1 - 0.928375), 1e-6);
     EXPECT_NEAR(m.out.c[0].at(0, 0), 0.2, 1e-7);
     // It vanishes: the box around it is 0.2 only, so the history may keep nothing of it.
     m.resolve(frame(2, 0.2f), {}, {});

@@ -51,7 +51,7 @@ TEST(Unjitter, WithoutJitterIsExact) {
     }
 }
 TEST(Unjitter, ARampIsShownWhereItIs) {
-    const Scene ramp = [](dvec2 p) { return 0.1 + 0.011 * p.x + 0.017 * p.y; };
+    const Scene ramp = [](dvec2 p) { return 0.1 + 0.023 * p.x + 0.007 * p.y; };
     for (const dvec2 j : kJitters) {
         const Frame f = sampled(0, 24, 16, ramp, j);
         const Rgb out = unjittered(f);
