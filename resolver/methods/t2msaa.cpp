@@ -25,7 +25,10 @@ class T2msaa : public Method {
             args.sample[i] = view(s.colorLinear);
             args.sampleDepth[i] = s.depthView.row(0);
             if (!p.flag("unjitter")) continue;
-            temporal::unjitter(s.colorLinear, frame.jitterPx, exec, unjittered_[i]);
+            // Their mean lies here from the pixel's centre.
+            const auto& at = frame.subSamplePositionsPx;
+            const glm::dvec2 placePx = frame.jitterPx + 0.5 * (at[pair[0]] + at[pair[1]]);
+            temporal::unjitter(s.colorLinear, placePx, exec, unjittered_[i]);
             args.sample[i] = view(std::as_const(unjittered_[i]));
             const glm::ivec2 texel = temporal::unjitteredTexel(frame);
             args.sampleDepth[i] += ptrdiff_t(texel.y) * args.in.stride + texel.x;

@@ -62,12 +62,12 @@ TEST(Unjitter, ARampIsShownWhereItIs) {
                 const auto at = [&](int i, int k) { return clampedAt(f.colorLinear.c[1], i, k); };
                 flipped = std::max(flipped, std::fabs(fetched(at, x, y, -j) - ramp({x + 0.5, y + 0.5})));
             }
-        if (glm::length(j) > 0.2) EXPECT_GT(flipped, 3e-3) << "the other sign must not pass";
+        EXPECT_GT(flipped, 3e-3) << "the other sign must not pass";
     }
 }
 TEST(Unjitter, BeyondThePictureTapsRepeatItsEdge) {
     for (const dvec2 j : kJitters)
-        for (const auto [w, h] : {std::pair{19, 7}, {1, 1}, {1, 9}, {16, 2}}) {
+        for (const auto& [w, h] : {std::pair{19, 7}, {1, 1}, {1, 9}, {16, 2}}) {
             Frame f = temporalFrame(0, w, h, noisePicture(9));
             f.jitterPx = j;
             const Rgb fast = unjittered(f), scalar = unjittered(f, Precision::scalar),

@@ -247,12 +247,14 @@ SynthSceneContents clutter(int w, int h, uint32_t seed) {
     uint32_t id = 2, index = 0;
     const auto next = [&](double lo, double hi) { return lo + (hi - lo) * hashed(seed ^ 0x51EDu, index++); };
     for (const Tile& t : tiles(w, h, columns, rows)) {
-        const dvec2 at(next(t.x0, t.x1), next(t.y0, t.y1));
-        const double angle = next(0, 2 * kPi);
+        // One draw per statement: the order of arguments is each compiler's own.
+        const double y = next(t.y0, t.y1), x = next(t.x0, t.x1), angle = next(0, 2 * kPi);
+        const dvec2 at(x, y);
         const dvec3 color = t.index % 3 == 0 ? palette.dark() : t.index % 3 == 1 ? palette.light() : palette.middle();
         Polygon shape;
         if (t.index % 4 == 3) {
-            shape = bar(at, angle, next(50, 120), next(0.6, 2.5));
+            const double width = next(0.6, 2.5), length = next(50, 120);
+            shape = bar(at, angle, length, width);
         } else {
             for (int k = 0; k < 3; k++) shape.push_back(at + direction(angle + 2.1 * k) * next(18, 46));
         }

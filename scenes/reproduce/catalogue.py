@@ -129,6 +129,9 @@ STEPS = {
     "displayed values, full history": ("--display", "identity", "--history", "full"),
     "the same as 8-bit images": THESIS_FLAGS,
 }
+# One stop darker: values end below the display's, so that an overshoot is not clipped there.
+HEADROOM_FLAGS = (*THESIS_FLAGS, "--exposure", "-1")
+HEADROOM_METHODS = "noaa uncharted unchartedNorm master"
 STEP_METHODS = "noaa uncharted unchartedNorm master master:unjitter=off accum:samples=16"
 
 # Contact sheets beside the pages: name -> shot and methods.

@@ -17,7 +17,9 @@ import time
 from pathlib import Path
 
 import studies
-from catalogue import ANGLES, PICTURES, SHOTS, STEP_METHODS, STEPS, THESIS_FLAGS
+from catalogue import (
+    ANGLES, HEADROOM_FLAGS, HEADROOM_METHODS, PICTURES, SHOTS, STEP_METHODS, STEPS, THESIS_FLAGS,
+)  # fmt: skip
 from figures import Run
 from page import Page
 from shots import ROOT, Shot, Workshop, make
@@ -138,6 +140,7 @@ def main(argv: list[str]) -> int:
     sequences = (ROOT / "blender_addon/aa_resolve/jitter.py").read_text()
     runs: dict[str, Run] = {}
     thesis: dict[str, Run] = {}  # the same shots in the protocol of the theses
+    headroom: dict[str, Run] = {}
     for name, shot in SHOTS.items():
         if f'"{shot.jitter}"' not in sequences:
             print(f"  shot {name}: left out, the exporter does not know the jitter {shot.jitter}", flush=True)
@@ -150,12 +153,14 @@ def main(argv: list[str]) -> int:
         runs[name] = run_methods(folder, "run", shot.methods, shop)
         if shot.thesis:
             thesis[name] = run_methods(folder, "thesis", shot.thesis, shop, THESIS_FLAGS)
+        if "master" in shot.thesis.split():
+            headroom[name] = run_methods(folder, "headroom", HEADROOM_METHODS, shop, HEADROOM_FLAGS)
     steps: dict[str, Run] = {}
     if "hard_edges" in thesis:
         folder = shop.folder(SHOTS["hard_edges"])
         for i, (what, flags) in enumerate(STEPS.items()):
             steps[what] = run_methods(folder, f"step{i}", STEP_METHODS, shop, flags)
-    study = studies.Study(runs, thesis, steps)
+    study = studies.Study(runs, thesis, steps, headroom)
     for name, (shot_name, methods) in PICTURES.items():
         if shot_name in runs:
             picture(name, SHOTS[shot_name], [m for m in methods.split() if m in runs[shot_name]], a.docs, shop)

@@ -55,11 +55,12 @@ def _figure(value: float | None, digits: int = 3) -> str:
 
 @dataclass
 class Study:
-    """Runs by shot: in our protocol, in that of the theses, and hard_edges in each step from one to the other."""
+    """Runs by shot: in our protocol, in that of the theses, and there one stop darker; hard_edges step by step."""
 
     runs: dict[str, Run]
     thesis: dict[str, Run]
     steps: dict[str, Run]
+    headroom: dict[str, Run]
 
 
 def headlines(study: Study) -> list[str]:
@@ -507,7 +508,10 @@ def published_page(study: Study) -> Page:
         for which, run in (("the thesis's question", study.thesis[shot]), ("ours", runs[shot])):
             gains = [run.gain(published.METHODS[n]) for n in names] + [run.gain("unchartedNorm")]
             rows.append([shot, which, *(_short(d) for d in gains)])
-        notes.append(f"**{shot}**, the thesis's question: " + " ".join(_order(study.thesis[shot], theirs)))
+        notes.append(
+            f"**{shot}**, the thesis's question: "
+            + " ".join([*_signs(study.thesis[shot], study.headroom[shot], theirs), *_order(study.thesis[shot], theirs)])
+        )
         notes.append(f"**{shot}**, ours: " + " ".join(_order(runs[shot], theirs)))
     page.heading("PSNR gain over no anti-aliasing, dB")
     page.table(["scene", "question", *(f"{n} ({code(published.METHODS[n])})" for n in names), code("unchartedNorm")], rows)
@@ -530,6 +534,24 @@ def published_page(study: Study) -> Page:
         )
         page.points(_t2msaa_answers(study))
     return page
+
+
+def _signs(run: Run, headroom: Run, theirs: dict[str, float]) -> list[str]:
+    """Whether every method stands on its published side of no anti-aliasing; where not, what one stop of headroom changes."""
+    other = [n for n in theirs if run.gain(published.METHODS[n]).db * theirs[n] < 0]
+    if not other:
+        return ["All signs are the published ones."]
+    sentences = []
+    for name in other:
+        text = published.METHODS[name]
+        sentence = f"{name} has the other sign: {signed(theirs[name])} dB published, {run.gain(text)} here."
+        if text in headroom:
+            dark = headroom.gain(text)
+            sentence += f" One stop darker, so that its overshoot is not clipped at the ends of the display, it is {dark}" + (
+                ": the published sign. The clipping hides what the sharpening does." if dark.db * theirs[name] > 0 else "."
+            )
+        sentences.append(sentence)
+    return sentences
 
 
 def _t2msaa_answers(study: Study) -> list[str]:

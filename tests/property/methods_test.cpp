@@ -41,6 +41,42 @@ TEST_P(EveryMethod, ConstantStaysConstant) {
     }
 }
 
+// methods/06 B0 in every method that offers it: a picture that rises evenly is shown where it is, in every frame,
+// whatever its jitter. The other sign, or none, would miss by up to 0.006.
+TEST(Unjitter, ARestingRampIsShownWhereItIs) {
+    const int w = 40, h = 24;
+    const Scene ramp = [](double x, double y) -> Surface {
+        return {glm::vec3(float(0.2 + 0.006 * x + 0.004 * y)), 5.0f, {0, 0, 1}, 1};
+    };
+    size_t count = 0;
+    for (const auto& m : registry()) {
+        const auto has = [&](std::string_view name) {
+            return std::any_of(m.params.begin(), m.params.end(), [&](const auto& p) { return p.name == name; });
+        };
+        if (!m.temporal) continue;
+        ASSERT_TRUE(has("unjitter") || has("unjitterColor") || m.id == "accum") << m.id;
+        if (!has("unjitter")) continue;
+        count++;
+        std::string text = std::string(m.id) + ":unjitter=on";
+        for (const auto& p : m.params)
+            if (p.name == "sharpen") text += p.type == ParamSpec::Type::choice ? ",sharpen=none" : ",sharpen=0";
+        Subject s = makeSubject(text, w, h);
+        // Four buffers at places of their own: asaa is centred once all of them are filled.
+        const int settled = m.id == "asaa" ? 10 : 1;
+        for (int n = 1; n <= 16; n++) {
+            Frame f = renderFrame(ramp, w, h, n, halton(n), {0, 0}, s.samples);
+            const DisplayChain identity{.transfer = Transfer::identity};
+            encodeFrame(f, identity, {});
+            s.running.resolve(f, f.display, {});
+            for (int y = 5; y < h - 5 && n >= settled; y++)
+                for (int x = 5; x < w - 5; x++)
+                    ASSERT_NEAR(s.running.out.c[1].at(x, y), ramp(x + 0.5, y + 0.5).color[1], 3e-4)
+                        << text << " frame " << n << " at " << x << "," << y;
+        }
+    }
+    EXPECT_GE(count, 15u);
+}
+
 // With the identity transfer linear and displayed are one: a method that encodes or decodes by itself, whatever the
 // frame's chain says, shows another constant. Exposure is applied once, before.
 TEST_P(EveryMethod, DisplayedValuesAreOneSpace) {
