@@ -177,8 +177,8 @@ def main(argv: list[str]) -> int:
         page.heading("Pages")
     page.points(index)
     page.say(
-        "How to read them: gains are decibels of PSNR over no anti-aliasing on display-encoded values, where 3 dB is half the",
-        "squared error; intervals are 95 %; *not resolved* means that the difference is within the truth's own noise or",
+        "How to read them: gains are decibels of PSNR over no anti-aliasing on display-encoded values (in the thesis's question on",
+        "displayed values without gamma), where 3 dB is half the squared error; intervals are 95 %; *not resolved* means that the difference is within the truth's own noise or",
         "depends on the part of the picture.",
     )
     if runs:
