@@ -109,7 +109,7 @@ SHOTS = _shots(
     ),
     Shot("moving_sphere", "moving_sphere", frames=32, quick_frames=16, **MOVING),
     Shot("hairball_rotating", "hairball", variant=("--rotating",), frames=24, quick_frames=12, **MOVING),
-    Shot("wires", "wires", frames=16, quick_frames=12, **MOVING),
+    Shot("wires", "wires", frames=24, quick_frames=12, **MOVING),
     Shot("synth_moving", "synth:moving", f"{SPATIAL} {TEMPORAL}", frames=40, quick_frames=24),
     Shot("synth_thin_motion", "synth:thin_motion", f"{SPATIAL} {TEMPORAL}", frames=40, quick_frames=24),
     # For timing alone.
