@@ -72,7 +72,7 @@ for quality in range(90, 20, -5):
 """
 
 
-def bench(shop: Workshop) -> Page:
+def bench(shop: Workshop, runs: dict[str, Run]) -> Page:
     """Times on one thread: at 1080p on a scene that moves, in the short form on small frames that are there anyway."""
     shot = SHOTS["hard_edges" if shop.quick else "moving_sphere_1080p"]
     command: list[object] = [shop.program, "bench", "-j", 1, "--json", "--repeats", 3, "--frames", 3]
@@ -80,6 +80,9 @@ def bench(shop: Workshop) -> Page:
     for m in methods_of(shot, shop):
         command += ["-m", m]
     where = f"{shot.size[0]} × {shot.size[1]}, rendered frames of {shot.scene}"
+    if runs:
+        made = next(iter(runs.values())).data["run"]
+        where += f", {made['machine']} ({made['instructionSet']})"
     return studies.speed_page(json.loads(shop.run("bench", command)), where, shot.size)
 
 
@@ -164,7 +167,7 @@ def main(argv: list[str]) -> int:
     for name, (shot_name, methods) in PICTURES.items():
         if shot_name in runs:
             picture(name, SHOTS[shot_name], [m for m in methods.split() if m in runs[shot_name]], a.docs, shop)
-    speed = None if a.no_bench else bench(shop)
+    speed = None if a.no_bench else bench(shop, runs)
     index = write_pages(study, speed, angles(shop), a.docs)
     page = Page("Results")
     page.say(
