@@ -76,11 +76,11 @@ const PlaneF& dissimilarityOf(const std::string& method, const Frame& f, std::ve
 TEST(Rsaa, SadpOfPlanesCornersAndOccluders) {
     std::vector<DebugLayer> layers;
     const Frame crease = renderPlanes(corner(16.3, 33, 21), 33, 21, d3dPattern(8));
-    const PlaneF& d = dissimilarityOf(geometryOnly(), crease, layers);
+    const PlaneF d = dissimilarityOf(geometryOnly(), crease, layers);
     EXPECT_NEAR(d.at(16, 10), 1.414, 0.25);  // some chord directions lean toward one of the walls
     EXPECT_EQ(d.at(10, 10), 0.0f);           // within a wall
     const Frame steps = renderPlanes(parallelPlanes(kLine), 33, 21, d3dPattern(8));
-    const PlaneF& s = dissimilarityOf(geometryOnly(), steps, layers);
+    const PlaneF s = dissimilarityOf(geometryOnly(), steps, layers);
     EXPECT_NEAR(*std::max_element(s.row(10), s.row(10) + 33), 2.0, 0.02);  // a little less off the picture's middle
 }
 // Depth cannot see a corner and normals cannot see one surface before another; SADP sees both.

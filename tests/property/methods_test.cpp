@@ -25,7 +25,7 @@ TEST_P(EveryMethod, ConstantStaysConstant) {
     for (const float v : {0.0f, 0.25f, 1.0f}) {
         Subject s = makeSubject(GetParam(), 40, 24);
         for (int n = 1; n <= 4; n++) {
-            const Rgb& out = step(
+            const Rgb out = step(
                 s, renderFrame(constantScene({v, v * 0.5f, v * 0.25f}), 40, 24, n, halton(n), {0.3, -0.6}, s.samples));
             Rgb expected(40, 24);
             for (size_t c = 0; c < 3; c++) expected.c[c] = PlaneF(40, 24, v * (c == 0 ? 1.0f : c == 1 ? 0.5f : 0.25f));
@@ -149,7 +149,7 @@ TEST_P(EveryMethod, LanesAgreeWithDouble) {
     for (int n = 1; n <= 3; n++) {
         const Frame f = renderFrame(shapes({1.3 * n, 0.4 * n}), 67, 43, n, halton(n), {1.3, 0.4}, lanes.samples);
         const Rgb a = step(lanes, f);
-        const Rgb& b = step(oracle, f, exact);
+        const Rgb b = step(oracle, f, exact);
         for (size_t c = 0; c < 3; c++)
             for (int y = 0; y < 43; y++)
                 for (int x = 0; x < 67; x++, all++) far += !(std::fabs(a.c[c].at(x, y) - b.c[c].at(x, y)) <= 3e-5f);
@@ -211,7 +211,7 @@ TEST_P(EveryMethod, NanDoesNotOutliveItsFrame) {
             f.colorLinear.c[0].at(3, 3) = INFINITY;
             f.colorLinear.fillBorder();
         }
-        const Rgb& out = step(s, f);
+        const Rgb out = step(s, f);
         if (n == 2) continue;
         ASSERT_TRUE(allFinite(out)) << "frame " << n;
     }

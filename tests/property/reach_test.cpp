@@ -81,7 +81,7 @@ int changePx(const std::string& text, int looked) {
     };
     Subject s = makeSubject(text, size, size);
     const Frame f = renderFrame(shapesInTheMiddle, size, size, 1, {0, 0}, {0, 0}, s.samples);
-    const Rgb& out = step(s, f);
+    const Rgb out = step(s, f);
     // Chebyshev distance to the nearest edge in two sweeps.
     PlaneF distance(size, size, 1e6f);
     for (int y = 0; y < size; y++)
