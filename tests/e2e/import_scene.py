@@ -70,7 +70,8 @@ bpy.ops.wm.save_as_mainfile(filepath=blend)
 
 scene.render.image_settings.file_format = "OPEN_EXR_MULTILAYER"
 scene.render.image_settings.color_depth = "32"
-for samples, seed, name in ((1, 0, "frames"), (16, 1, "a"), (16, 2, "b")):
+# 64: the edges of so small a truth are registered to 0.15 px only where it is quiet, in every Blender.
+for samples, seed, name in ((1, 0, "frames"), (64, 1, "a"), (64, 2, "b")):
     scene.cycles.samples = samples
     scene.cycles.seed = seed
     scene.cycles.pixel_filter_type = "BOX" if samples > 1 else "BLACKMAN_HARRIS"

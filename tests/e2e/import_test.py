@@ -42,7 +42,7 @@ class Import(ProgramTest):
         self.aaresolve("check", imported, "-q")
         manifest = json.loads((imported / "shot.json").read_text())
         self.assertEqual([f["frame"] for f in manifest["frames"]], [1, 2, 3])
-        self.assertEqual(manifest["truth"]["samples_per_half"], 16)
+        self.assertEqual(manifest["truth"]["samples_per_half"], 64)
         self.assertEqual((manifest["name"], manifest["fps"]), ("small", 25))
 
         said = self.blender(*headless, here / "import_compare.py", "--", exported, imported)
