@@ -11,7 +11,7 @@
 #include "cli/runner.h"
 #include "image/error.h"
 #include "shot/patterns.h"
-#include "shot/synth.h"
+#include "shot/synth/synth.h"
 
 namespace aa {
 namespace {

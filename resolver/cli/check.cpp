@@ -1,4 +1,4 @@
-#include "shot/check.h"
+#include "shot/check/check.h"
 
 #include <cstdio>
 #include <iostream>

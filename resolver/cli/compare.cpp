@@ -9,10 +9,7 @@
 #include "image/colour.h"
 #include "image/error.h"
 #include "image/io.h"
-#include "methods/params.h"
-#include "metrics/flip.h"
-#include "metrics/fourier.h"
-#include "metrics/metrics.h"
+#include "metrics/measure.h"
 #include "report/colour_map.h"
 #include "report/format.h"
 #include "report/gallery.h"
@@ -21,44 +18,6 @@
 namespace aa {
 namespace {
 namespace fs = std::filesystem;
-
-// What `--metrics` names. Pooled over frames: means, but PSNR, SNR and RMSE from the mean MSE.
-struct MetricName {
-    std::string_view name, help;
-    bool higherIsBetter;
-};
-constexpr MetricName kMetrics[] = {
-    {"mse", "mean squared error", false},
-    {"rmse", "its root", false},
-    {"psnr", "peak signal to noise, dB", true},
-    {"snr", "signal to noise, dB", true},
-    {"ssimLuma", "SSIM of luma 601", true},
-    {"ssimRgb", "SSIM, mean over channels", true},
-    {"ssimMatlab3D", "SSIM as MATLAB filters an RGB array", true},
-    {"flip", "LDR-FLIP, mean", false},
-    {"relMse", "relative MSE of linear light (EXR only)", false},
-    {"fmagMse", "Fourier magnitudes, blind to phase", false},
-    {"fband0", "MSE at 0 to 1/8 cycles/px", false},
-    {"fband1", "MSE at 1/8 to 1/4", false},
-    {"fband2", "MSE at 1/4 to 1/2", false},
-    {"fband3", "MSE at 1/2 and above", false},
-};
-const MetricName& metricByName(const std::string& given) {
-    const std::string name = given == "ssim" ? "ssimLuma" : given;
-    for (const auto& m : kMetrics)
-        if (m.name == name) return m;
-    std::vector<std::string_view> names;
-    for (const auto& m : kMetrics) names.push_back(m.name);
-    const std::string near = suggestion(name, names);
-    throw UsageError("unknown metric '" + given + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
-                     " (see aaresolve compare --help)");
-}
-std::string metricList() {
-    std::string all;
-    for (const auto& m : kMetrics)
-        all += "\n  " + std::string(m.name) + std::string(14 - m.name.size(), ' ') + std::string(m.help);
-    return all;
-}
 
 struct Options {
     std::string a, b, map, display = "srgb";
@@ -106,7 +65,7 @@ std::vector<Pair> pairsOf(const Options& o) {
 }
 
 struct Threshold {
-    const MetricName* metric;
+    const Figure* figure;
     double limit;
 };
 std::vector<Threshold> thresholdsOf(const Options& o) {
@@ -117,16 +76,14 @@ std::vector<Threshold> thresholdsOf(const Options& o) {
         const double limit = equals == std::string::npos ? 0 : std::strtod(text.c_str() + equals + 1, &end);
         if (equals == std::string::npos || end == text.c_str() + equals + 1 || *end)
             throw UsageError("--fail-below: expected metric=number such as psnr=40, found '" + text + "'");
-        const MetricName* m = &metricByName(text.substr(0, equals));
-        if (!m->higherIsBetter)
-            throw UsageError("--fail-below " + text + ": of " + std::string(m->name) +
+        const Figure* f = findFigure(text.substr(0, equals)).figure;
+        if (!f->higherIsBetter)
+            throw UsageError("--fail-below " + text + ": of " + std::string(f->name) +
                              " smaller is better; use psnr, snr or an SSIM");
-        all.push_back({m, limit});
+        all.push_back({f, limit});
     }
     return all;
 }
-
-using Figures = std::map<std::string_view, double>;
 
 struct Both {
     Rgb encodedA, encodedB, linearA, linearB;  // linear: empty for 8-bit images
@@ -152,49 +109,28 @@ Both loadBoth(const Pair& pair, const Options& o, const Exec& exec) {
     prepare(b, both.encodedB, both.linearB);
     return both;
 }
-// `b` is the reference.
-Figures figuresOf(const Both& p, const std::set<std::string_view>& wanted, const Exec& exec) {
-    Figures f;
-    const auto any = [&](std::initializer_list<std::string_view> names) {
-        return std::any_of(names.begin(), names.end(), [&](auto n) { return wanted.count(n) > 0; });
-    };
-    const SquaredError e = squaredError(p.encodedA, p.encodedB, exec);
-    f["mse"] = e.mse;
-    f["referencePower"] = e.reference;
-    if (any({"ssimLuma"})) f["ssimLuma"] = ssimLuma(p.encodedA, p.encodedB, exec);
-    if (any({"ssimRgb"})) f["ssimRgb"] = ssimRgb(p.encodedA, p.encodedB, exec);
-    if (any({"ssimMatlab3D"})) f["ssimMatlab3D"] = ssimMatlab3D(p.encodedA, p.encodedB, exec);
-    if (any({"flip"})) f["flip"] = flip(p.encodedA, p.encodedB, exec);
-    if (any({"relMse"})) {
-        if (p.linearA.empty() || p.linearB.empty()) throw UsageError("relMse needs linear images: two EXR files");
-        f["relMse"] = relMse(p.linearA, p.linearB, exec);
+// Figures of `wanted` metrics; `b` is the reference.
+FrameMetrics figuresOf(const Both& p, const std::set<const Metric*>& wanted, const Exec& exec) {
+    FrameMetrics figures = frameMetrics(squaredError(p.encodedA, p.encodedB, exec));
+    const bool linear = !p.linearA.empty() && !p.linearB.empty();
+    const ImagePair images{p.encodedA, p.encodedB, linear ? &p.linearA : nullptr, linear ? &p.linearB : nullptr};
+    for (const Metric* metric : wanted) {
+        if (!metric->measure) continue;
+        if (!metric->isPossible(images))
+            throw UsageError(std::string(metric->figures[0].name) + " needs linear images: two EXR files");
+        const std::vector<double> values = metric->measure(images, exec);
+        for (size_t i = 0; i < values.size(); i++) figures.others.emplace(metric->figures[i].name, values[i]);
     }
-    if (any({"fmagMse", "fband0", "fband1", "fband2", "fband3"})) {
-        const FourierError fourier = fourierError(p.encodedA, p.encodedB, exec);
-        f["fmagMse"] = fourier.fmagMse;
-        f["fband0"] = fourier.fband[0], f["fband1"] = fourier.fband[1];
-        f["fband2"] = fourier.fband[2], f["fband3"] = fourier.fband[3];
-    }
-    return f;
+    return figures;
 }
-void addDerived(Figures& f) {
-    f["rmse"] = rmse(f["mse"]);
-    f["psnr"] = psnr(f["mse"]);
-    f["snr"] = snr({f["mse"], f["referencePower"]});
-}
-std::string shown(std::string_view metric, double v) {
-    return metric == "psnr" || metric == "snr" ? decibels(v)
-           : metric.starts_with("ssim")        ? similarity(v)
-                                               : significant(v);
-}
-nlohmann::ordered_json numbers(const Figures& f, const std::vector<std::string>& wanted) {
+nlohmann::ordered_json numbers(const FrameMetrics& m, const std::vector<const Figure*>& wanted) {
     nlohmann::ordered_json j;
-    for (const auto& name : wanted) {
-        const double v = f.at(metricByName(name).name);
+    for (const Figure* f : wanted) {
+        const double v = m.figure(f->name).value();
         if (std::isfinite(v))
-            j[std::string(metricByName(name).name)] = v;
+            j[std::string(f->name)] = v;
         else
-            j[std::string(metricByName(name).name)] = significant(v);  // "Inf", "-Inf", "NaN"
+            j[std::string(f->name)] = significant(v);  // "Inf", "-Inf", "NaN"
     }
     return j;
 }
@@ -212,44 +148,52 @@ void writeErrorMap(const Both& p, const fs::path& file) {
 void compare(const Options& o, Context& context) {
     const Exec exec = o.work.exec();
     const auto thresholds = thresholdsOf(o);
-    std::set<std::string_view> wanted;
-    for (const auto& m : o.metrics) wanted.insert(metricByName(m).name);
-    for (const auto& t : thresholds) wanted.insert(t.metric->name);
+    std::vector<const Figure*> figures;
+    std::set<const Metric*> wanted;
+    for (const auto& m : o.metrics) {
+        const FigureChoice choice = findFigure(m);
+        figures.push_back(choice.figure);
+        wanted.insert(choice.metric);
+    }
+    for (const auto& t : thresholds) wanted.insert(findFigure(t.figure->name).metric);
     const auto pairs = pairsOf(o);
     if (!o.map.empty() && pairs.size() > 1) makeWritableFolder(o.map);
 
-    Figures pooled;
-    std::vector<Figures> frames;
+    SquaredError squares;
+    std::map<std::string, double, std::less<>> others;
+    std::vector<FrameMetrics> frames;
+    const double count = double(pairs.size());
     withThreads(o.work.threads, [&] {
         for (const auto& pair : pairs) {
             const Both both = loadBoth(pair, o, exec);
             frames.push_back(figuresOf(both, wanted, exec));
-            for (const auto& [name, value] : frames.back()) pooled[name] += value / double(pairs.size());
-            addDerived(frames.back());
+            const FrameMetrics& f = frames.back();
+            squares.mse += f.mse / count, squares.reference += f.reference / count;
+            for (const auto& [name, value] : f.others) others[name] += value / count;
             if (!o.map.empty())
                 writeErrorMap(both, pairs.size() > 1 ? fs::path(o.map) / (pair.name + ".png") : fs::path(o.map));
         }
     });
-    addDerived(pooled);
+    FrameMetrics pooled = frameMetrics(squares);
+    pooled.others = std::move(others);
 
     std::vector<std::string> failures;
     for (const auto& t : thresholds)
-        if (const double v = pooled.at(t.metric->name); !(v >= t.limit))
-            failures.push_back(std::string(t.metric->name) + " " + shown(t.metric->name, v) + " is below " +
-                               shown(t.metric->name, t.limit));
+        if (const double v = pooled.figure(t.figure->name).value(); !(v >= t.limit))
+            failures.push_back(std::string(t.figure->name) + " " + shown(*t.figure, v) + " is below " +
+                               shown(*t.figure, t.limit));
     if (o.json) {
         nlohmann::ordered_json j = {
-            {"a", o.a}, {"b", o.b}, {"frames", pairs.size()}, {"pooled", numbers(pooled, o.metrics)}};
+            {"a", o.a}, {"b", o.b}, {"frames", pairs.size()}, {"pooled", numbers(pooled, figures)}};
         for (size_t i = 0; i < pairs.size() && pairs.size() > 1; i++)
-            j["perFrame"][pairs[i].name] = numbers(frames[i], o.metrics);
+            j["perFrame"][pairs[i].name] = numbers(frames[i], figures);
         j["failures"] = failures;
         std::cout << j.dump(1) << "\n";
     } else {
-        const auto line = [&](const std::string& name, const Figures& f) {
+        const auto line = [&](const std::string& name, const FrameMetrics& m) {
             std::printf("%-16s", name.c_str());
-            for (const auto& m : o.metrics)
-                std::printf("  %s %s", std::string(metricByName(m).name).c_str(),
-                            shown(metricByName(m).name, f.at(metricByName(m).name)).c_str());
+            for (const Figure* f : figures)
+                std::printf("  %s %s", std::string(f->name).c_str(), shown(*f, m.figure(f->name).value()).c_str());
             std::printf("\n");
         };
         if (pairs.size() > 1)
@@ -266,7 +210,7 @@ void addCompare(CLI::App& app, Context& context) {
     auto* c = app.add_subcommand("compare", "Metrics of two images or of two folders of frames; B is the reference");
     c->add_option("A", o->a, "PNG (sRGB codes), EXR (linear), or a folder of frames")->required();
     c->add_option("B", o->b, "the reference, of the same size or with the same frames")->required();
-    c->add_option("--metrics", o->metrics, "comma-separated; `ssim` is ssimLuma:" + metricList())->delimiter(',');
+    c->add_option("--metrics", o->metrics, "comma-separated; `ssim` is ssimLuma:" + listOfFigures())->delimiter(',');
     c->add_option("--map", o->map, "error map on the fixed scale: a PNG, of folders a folder");
     c->add_option("--fail-below", o->thresholds, "exit 1 when a pooled figure is below, for example psnr=40")
         ->delimiter(',');

@@ -1,4 +1,4 @@
-#include "shot/import.h"
+#include "shot/import/import.h"
 
 #include <cstdio>
 #include <iostream>
@@ -8,7 +8,8 @@
 #include "cli/progress.h"
 #include "image/error.h"
 #include "methods/method.h"
-#include "shot/import_folder.h"
+#include "shot/import/folder.h"
+#include "shot/manifest.h"
 
 namespace aa {
 namespace {

@@ -6,7 +6,8 @@
 
 #include "cli/cli.h"
 #include "image/error.h"
-#include "methods/rsaa_lut_data.h"
+#include "image/io.h"
+#include "methods/geometry/rsaa_lut_data.h"
 
 namespace aa {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "cli/cli.h"
 #include "image/error.h"
-#include "methods/params.h"
+
 
 int main(int argc, char** argv) {
     CLI::App app{
@@ -16,9 +16,8 @@ int main(int argc, char** argv) {
     app.option_defaults()->always_capture_default();
     aa::Context context;
     const auto commands = {
-        aa::addList,  aa::addPlan,   aa::addCheck,   aa::addRun,   aa::addFilter,    aa::addBench,
-        aa::addSheet, aa::addReport, aa::addCompare, aa::addSynth, aa::addLearnRsaa,
-        aa::addImport, aa::addSweep, aa::addAngles,
+        aa::addList,   aa::addPlan,    aa::addCheck, aa::addRun,       aa::addFilter, aa::addBench, aa::addSheet,
+        aa::addReport, aa::addCompare, aa::addSynth, aa::addLearnRsaa, aa::addImport, aa::addSweep, aa::addAngles,
     };
     for (const auto add : commands) add(app, context);
     try {

@@ -36,7 +36,7 @@ void printTable(const RunResults& r) {
                 std::printf(" %+9.3f", *m->pooled->gainDb);
             else
                 std::printf(" %9s", "-");
-            std::printf(" %9.6f", m->pooled->mean.ssimLuma);
+            std::printf(" %9.6f", m->pooled->mean.others.at("ssimLuma"));
         } else {
             std::printf(" %10s %9s %9s", "-", "-", "-");
         }

@@ -12,6 +12,7 @@
 #include "image/io.h"
 #include "metrics/temporal.h"
 #include "shot/frame_stream.h"
+#include "shot/manifest.h"
 
 namespace aa {
 namespace fs = std::filesystem;
@@ -83,7 +84,7 @@ RunResults describeRun(const Manifest& m, const RunOptions& o) {
 // its peers without or with another fill: they reject the same pixels.
 void judgeRejected(const std::vector<RunningMethod>& methods, const Rgb& truthEncoded,
                    std::vector<MethodResult>& results) {
-    const auto base = [](const RunningMethod& m) { return m.spec.text.substr(0, m.spec.text.find('+')); };
+    const auto base = [](const RunningMethod& m) { return withoutStages(m.spec.text); };
     for (size_t k = 0; k < methods.size(); k++) {
         const auto peer = std::find_if(methods.begin(), methods.end(), [&](const auto& m) {
             return m.method->rejection() && base(m) == base(methods[k]);

@@ -7,6 +7,7 @@
 #include "image/colour.h"
 #include "methods/driver.h"
 #include "report/results.h"
+#include "shot/manifest.h"
 #include "shot/reader.h"
 
 namespace aa {

@@ -36,13 +36,6 @@ Variation parseVariation(const std::string& text) {
     return v;
 }
 
-// A method as written with more parameters, before its stages: "uncharted:kmin=1+sharpen=norm".
-std::string withParameters(const std::string& method, const std::string& parameters) {
-    const size_t plus = method.find('+');
-    const std::string head = method.substr(0, plus), stages = plus == std::string::npos ? "" : method.substr(plus);
-    return head + (head.find(':') == std::string::npos ? ":" : ",") + parameters + stages;
-}
-
 std::vector<std::string> combinations(const std::string& method, const std::vector<Variation>& variations) {
     std::vector<std::string> all = {""};
     for (const Variation& v : variations) {

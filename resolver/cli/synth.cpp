@@ -1,4 +1,4 @@
-#include "shot/synth.h"
+#include "shot/synth/synth.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -19,13 +19,13 @@ DisplayArgs displayArgs(const DisplayChain& chain) {
 
 void encode(const Rgb& linear, const DisplayChain& chain, const Exec& exec, Rgb& encoded) {
     const auto args = colourArgs(linear, encoded, chain);
-    runKernel(colourKernelsFor(exec.isa).encode, exec, args, linear.height());
+    runKernel(colourKernelsFor(exec).encode, exec, args, linear.height());
     encoded.fillBorder();
 }
 
 void decode(const Rgb& encoded, const DisplayChain& chain, const Exec& exec, Rgb& linear) {
     const auto args = colourArgs(encoded, linear, chain);
-    runKernel(colourKernelsFor(exec.isa).decode, exec, args, encoded.height());
+    runKernel(colourKernelsFor(exec).decode, exec, args, encoded.height());
     linear.fillBorder();
 }
 

@@ -28,11 +28,7 @@ void writeExr(const std::filesystem::path& file, const Rgb& linear, bool display
 // 8-bit codes floor(255 v + 0.5) of encoded values in [0,1].
 void writePng(const std::filesystem::path& file, const Rgb& encoded);
 
-// Named planes of one size as channels NAME or NAME.R/.G/.B of one float EXR.
-struct NamedPlanes {
-    std::string name;
-    std::vector<PlaneF> planes;  // 1 or 3
-};
+// As one float EXR: channels NAME, or NAME.R/.G/.B.
 void writeLayers(const std::filesystem::path& file, const std::vector<NamedPlanes>& layers);
 
 // A path next to `file` to write to before renaming over it.

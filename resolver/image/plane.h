@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <new>
+#include <string>
 #include <vector>
 
 #include "kernels/table.h"
@@ -112,6 +113,12 @@ struct Rgb {
     bool samePixels(const Rgb& o) const {
         return c[0].samePixels(o.c[0]) && c[1].samePixels(o.c[1]) && c[2].samePixels(o.c[2]);
     }
+};
+
+// Planes of one size under a name: a colour or one value.
+struct NamedPlanes {
+    std::string name;
+    std::vector<PlaneF> planes;  // 1 or 3
 };
 
 inline RgbIn view(const Rgb& i) { return {{i.c[0].row(0), i.c[1].row(0), i.c[2].row(0)}}; }

@@ -14,16 +14,8 @@
 
 namespace aa {
 
-Isa bestIsa();               // the widest set that this processor runs
 bool isaSupported(Isa isa);  // whether this processor runs it
 std::string_view name(Isa isa);
-
-// How work is executed; passed to every method, never global. The number of threads is the caller's TBB arena.
-struct Exec {
-    Isa isa = bestIsa();
-    Precision precision = Precision::fast;
-    bool parallel = true;  // false: the calling thread alone
-};
 
 // Runs a row function over [0, height) in blocks of rows; the result cannot depend on the split.
 template <class Fn>

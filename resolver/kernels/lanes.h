@@ -44,7 +44,7 @@ struct words_of {
 // GCC 12 keeps to 256 bits where it vectorises by itself, so 16 lanes name their instructions.
 #ifdef __AVX512F__
 template <class T, int W>
-inline constexpr bool kZmm = std::is_same_v<T, float> && W == 16;
+inline constexpr bool kZmm = std::is_same_v<T, float>&& W == 16;
 #endif
 
 // a < b ? a : b and a > b ? a : b: one instruction, which GCC 12 misses where an operand is constant.
@@ -84,7 +84,8 @@ struct Lanes {
     friend AA_INLINE Lanes operator o(Lanes a, Lanes b) { return a.v o b.v; }
     AA_OP(+)
     AA_OP(-)
-    AA_OP(*) AA_OP(/)
+    AA_OP(*)
+    AA_OP(/)
 #undef AA_OP
         friend AA_INLINE Lanes
         operator-(Lanes a) {
@@ -94,7 +95,8 @@ struct Lanes {
     friend AA_INLINE auto operator o(Lanes a, Lanes b) { return a.v o b.v; }
     AA_CMP(<)
     AA_CMP(>)
-    AA_CMP(<=) AA_CMP(>=) AA_CMP(==) AA_CMP(!=)
+    AA_CMP(<=)
+    AA_CMP(>=) AA_CMP(==) AA_CMP(!=)
 #undef AA_CMP
         // min(x, NaN) == x and max(x, NaN) == x
         friend AA_INLINE Lanes min(Lanes a, Lanes b) {
@@ -326,7 +328,8 @@ struct vec3 {
     }
 AA_OP(+)
 AA_OP(-)
-AA_OP(*) AA_OP(/)
+AA_OP(*)
+AA_OP(/)
 #undef AA_OP
     template <class R>
     AA_INLINE vec3<R> abs(vec3<R> a) {

@@ -1,5 +1,5 @@
-// The sRGB transfer functions in lanes, by Newton's roots instead of libm's pow (same bits everywhere). Error <= 3e-7 in
-// float. Include from *.kernel.cpp only.
+// The sRGB transfer functions in lanes, by Newton's roots instead of libm's pow (same bits everywhere). Error <= 3e-7
+// in float. Include from *.kernel.cpp only.
 #pragma once
 #include "kernels/lanes.h"
 

@@ -1,4 +1,5 @@
-// A frame's centre samples and sub-samples as plain views, filled by methods/subsample_geometry.h. Null: not read.
+// A frame's centre samples and sub-samples as plain views, filled by methods/geometry/subsample_geometry.h. Null: not
+// read.
 #pragma once
 #include "kernels/table.h"
 

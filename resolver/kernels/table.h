@@ -16,7 +16,17 @@ struct RgbOut {
 enum class Isa { v2, v3, v4 };                  // x86-64-v2, -v3, -v4
 enum class Precision { fast, scalar, oracle };  // float lanes, float, double arithmetic on float storage
 
-// A kernel: a function over rows [y0, y1) of its own argument struct, in three precisions.
+Isa bestIsa();  // the widest set that this processor runs
+
+// How work is executed; passed to every method, never global. The number of threads is the caller's TBB arena.
+struct Exec {
+    Isa isa = bestIsa();
+    Precision precision = Precision::fast;
+    bool parallel = true;  // false: the calling thread alone
+};
+
+// A kernel: a function over rows [y0, y1) of its own argument struct, in three precisions. The one-lane forms are the
+// same on every instruction set, so they are built for the first alone and are null in the tables of the others.
 template <class Args>
 struct RowKernel {
     void (*fast)(const Args&, int, int);
@@ -24,22 +34,22 @@ struct RowKernel {
     void (*oracle)(const Args&, int, int);
 };
 
-// A kernel may keep rows of intermediate values in scratch memory (kernels/ring.h): `rows` of them, as wide as a plane's
-// stride, after a margin.
+// A kernel may keep rows of intermediate values in scratch memory (kernels/ring.h): `rows` of them, as wide as a
+// plane's stride, after a margin.
 inline constexpr int kRingMargin = 16;
 
 }  // namespace aa
 
 // In a method's header: AA_KERNEL_TABLE(FxaaKernels, fxaaKernels) declares v2::, v3:: and v4::fxaaKernels and
-// aa::fxaaKernelsFor(isa). In its .kernel.cpp: AA_DEFINE_TABLE(FxaaKernels, fxaaKernels) = {AA_ROWS(fxaaRows), ...};
+// aa::fxaaKernelsFor(exec). In its .kernel.cpp: AA_DEFINE_TABLE(FxaaKernels, fxaaKernels) = {AA_ROWS(fxaaRows), ...};
 // Where the build holds one instruction set alone (AA_ONE_ISA), every isa means that one.
 #ifdef AA_ONE_ISA
-#define AA_KERNEL_TABLE(Type, table)                                    \
-    namespace AA_ONE_ISA {                                              \
-    extern const Type table;                                            \
-    }                                                                   \
-    namespace aa {                                                      \
-    inline const Type& table##For(Isa) { return ::AA_ONE_ISA::table; } \
+#define AA_KERNEL_TABLE(Type, table)                                           \
+    namespace AA_ONE_ISA {                                                     \
+    extern const Type table;                                                   \
+    }                                                                          \
+    namespace aa {                                                             \
+    inline const Type& table##For(const Exec&) { return ::AA_ONE_ISA::table; } \
     }
 #else
 #define AA_KERNEL_TABLE(Type, table)                                                      \
@@ -53,8 +63,9 @@ inline constexpr int kRingMargin = 16;
     extern const Type table;                                                              \
     }                                                                                     \
     namespace aa {                                                                        \
-    inline const Type& table##For(Isa isa) {                                              \
-        return isa == Isa::v4 ? ::v4::table : isa == Isa::v3 ? ::v3::table : ::v2::table; \
+    inline const Type& table##For(const Exec& exec) {                                     \
+        if (exec.precision != Precision::fast || exec.isa == Isa::v2) return ::v2::table; \
+        return exec.isa == Isa::v4 ? ::v4::table : ::v3::table;                           \
     }                                                                                     \
     }
 #endif
@@ -64,7 +75,12 @@ inline constexpr int kRingMargin = 16;
     }                                \
     const Type AA_ARCH::table
 // AA_WIDE_ROWS: for kernels that compute much per pixel and whose tiles have room for 16 pixels at a time.
-#define AA_WIDE_ROWS(fn) \
-    { fn<AA_ARCH::Lanes<float, AA_WIDE_LANES>>, fn<float>, fn<double> }
-#define AA_ROWS(fn) \
-    { fn<AA_ARCH::Lanes<float, AA_LANES>>, fn<float>, fn<double> }
+#ifdef AA_ONE_LANE_FORMS
+#define AA_FORMS(fast, scalar, oracle) \
+    { fast, scalar, oracle }
+#else
+#define AA_FORMS(fast, scalar, oracle) \
+    { fast, nullptr, nullptr }
+#endif
+#define AA_WIDE_ROWS(fn) AA_FORMS((fn<AA_ARCH::Lanes<float, AA_WIDE_LANES>>), fn<float>, fn<double>)
+#define AA_ROWS(fn) AA_FORMS((fn<AA_ARCH::Lanes<float, AA_LANES>>), fn<float>, fn<double>)

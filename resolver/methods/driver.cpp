@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "shot/manifest.h"
+
 namespace aa {
 
 RunningMethod::RunningMethod(MethodSpec s, const ShotInfo& shot) : spec(std::move(s)), method(spec.create(shot)) {}

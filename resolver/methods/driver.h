@@ -1,7 +1,8 @@
 // Colour-space conversions between a frame, a method and its judge. A method declares the space it reads and writes;
 // nothing else converts.
 #pragma once
-#include "methods/method.h"
+#include "methods/spec.h"
+#include "shot/manifest.h"
 
 namespace aa {
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "image/colour.h"
-#include "image/io.h"
 #include "kernels/dispatch.h"
 #include "methods/params.h"
 #include "shot/frame.h"
@@ -39,8 +38,8 @@ class Method {
     virtual size_t stateBytes() const { return 0; }                     // history and scratch kept between frames
     virtual std::vector<DebugLayer> debugLayers() const { return {}; }  // of the last frame; empty when there are none
     bool keepDebugLayers = false;                                       // set by the driver before the first frame
-    // Where history was not used, 0 = it was, in the last frame (methods/temporal_kernels.h, Rejection); null unless
-    // the method is temporal and keepRejection was set before the first frame.
+    // Where history was not used, 0 = it was, in the last frame (methods/temporal/temporal_kernels.h, Rejection); null
+    // unless the method is temporal and keepRejection was set before the first frame.
     virtual const PlaneF* rejection() const { return nullptr; }
     bool keepRejection = false;
 };
@@ -79,33 +78,5 @@ Space averagedSpace(const Params& params);
 // All methods, in the order of the documentation.
 const std::vector<MethodDescriptor>& registry();
 const MethodDescriptor& findMethod(std::string_view id);  // throws UsageError with a suggestion
-
-struct StageDescriptor;  // methods/stage.h
-// A stage as written after a method: `sharpen=norm`.
-struct StageSpec {
-    const StageDescriptor* stage = nullptr;
-    std::string value;
-};
-
-// A method as written on the command line, with the stages that run on its output:
-// `smaa1x:preset=HIGH,edges=luma`, `uncharted+sharpen=norm`.
-struct MethodSpec {
-    std::string
-        text;  // as written; also the name of its output folder, with characters outside [A-Za-z0-9._=,+-] as '_'
-    const MethodDescriptor* method = nullptr;
-    std::vector<std::pair<std::string, std::string>> given;
-    std::vector<StageSpec> stages;
-    Params params() const { return Params(method->id, method->params, given); }
-    PassSet passes() const;
-    Space outputSpace() const;  // of the method; stages keep it
-    bool readsEncoded() const;  // the method or a method that one of its stages runs
-    std::string folderName() const;
-    std::unique_ptr<Method> create(const ShotInfo& shot) const;
-};
-// id[:name=value,...][+stage=value]... Throws UsageError: unknown method or stage, malformed, bad parameter.
-MethodSpec parseMethod(std::string_view text);
-PassSet passesOf(const std::vector<MethodSpec>& methods);
-// Of the methods that read frames of this sampling only.
-PassSet passesOf(const std::vector<MethodSpec>& methods, Sampling sampling);
 
 }  // namespace aa

@@ -55,7 +55,4 @@ class Params {
     std::set<std::string, std::less<>> given_;
 };
 
-// The candidate nearest to `word` by edit distance, for "did you mean"; empty when none is near.
-std::string suggestion(std::string_view word, const std::vector<std::string_view>& candidates);
-
 }  // namespace aa

@@ -7,13 +7,13 @@ void sharpen(const Rgb& image, Sharpen filter, Space space, const Exec& exec, Rg
     const SharpenArgs args{
         view(image),   view(out), image.stride(),
         image.width(), filter,    space == Space::encoded ? SharpenRange::display : SharpenRange::neighbourhood};
-    runKernel(sharpenKernelsFor(exec.isa).sharpen, exec, args, image.height());
+    runKernel(sharpenKernelsFor(exec).sharpen, exec, args, image.height());
 }
 
 void sharpenLuma(const Rgb& image, float amount, const Exec& exec, Rgb& out) {
     const SharpenArgs args{
         view(image), view(out), image.stride(), image.width(), Sharpen::lumaPost, SharpenRange::positive, amount};
-    runKernel(sharpenKernelsFor(exec.isa).sharpen, exec, args, image.height());
+    runKernel(sharpenKernelsFor(exec).sharpen, exec, args, image.height());
 }
 
 }  // namespace aa

@@ -1,9 +1,9 @@
 #include "methods/stage.h"
 
 #include "image/error.h"
-#include "methods/fill.h"
-#include "methods/motion_blur.h"
 #include "methods/sharpen.h"
+#include "methods/stages/fill.h"
+#include "methods/stages/motion_blur.h"
 
 namespace aa {
 namespace {

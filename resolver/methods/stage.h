@@ -5,7 +5,7 @@
 // (`asaa+fill=fxaa311:preset=39`). A new stage = one StageDescriptor in stage.cpp; it then appears in `list` and is
 // open to every method.
 #pragma once
-#include "methods/method.h"
+#include "methods/spec.h"
 
 namespace aa {
 

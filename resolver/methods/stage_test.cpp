@@ -4,7 +4,7 @@
 
 #include "image/error.h"
 #include "methods/sharpen.h"
-#include "methods/spatial_testing.h"
+#include "methods/spatial/spatial_testing.h"
 
 namespace aa {
 namespace {

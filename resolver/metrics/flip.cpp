@@ -7,6 +7,7 @@
 
 #include "image/colour.h"
 #include "metrics/flip_kernels.h"
+#include "metrics/metric.h"
 #include "metrics/metrics_kernels.h"
 
 namespace aa {
@@ -28,7 +29,7 @@ double flip(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map
                         map ? map->row(0) : nullptr,
                         map ? map->stride() : 0,
                         rows.data()};
-    const auto& kernel = flipKernelsFor(exec.isa).flip;
+    const auto& kernel = flipKernelsFor(exec).flip;
     const auto fn = exec.precision == Precision::fast     ? kernel.fast
                     : exec.precision == Precision::scalar ? kernel.scalar
                                                           : kernel.oracle;
@@ -36,6 +37,15 @@ double flip(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map
         exec, h, [&](int y0, int y1) { fn(args, y0, y1); }, kRowsPerBlock);
     if (map) map->fillBorder();
     return std::accumulate(rows.begin(), rows.end(), 0.0) / (double(w) * h);
+}
+
+Metric flipMetric() {
+    return {.figures = {{"flip", "FLIP", "LDR-FLIP, mean"}},
+            .nsPerPixel = 93,
+            .source = "methods/07 s.4",
+            .measure = [](const ImagePair& i, const Exec& exec) {
+                return std::vector{flip(i.testEncoded, i.referenceEncoded, exec)};
+            }};
 }
 
 FlipStatistics flipStatistics(const PlaneF& map) {

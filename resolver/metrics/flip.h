@@ -23,4 +23,7 @@ struct FlipStatistics {
 };
 FlipStatistics flipStatistics(const PlaneF& map);
 
+struct Metric;
+Metric flipMetric();
+
 }  // namespace aa

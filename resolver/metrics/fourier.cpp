@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "metrics/metric.h"
+
 namespace aa {
 namespace {
 using Complex = std::complex<double>;
@@ -96,6 +98,20 @@ FourierError fourierError(const Rgb& test, const Rgb& reference, const Exec& exe
     }
     e.fmse = e.fband[0] + e.fband[1] + e.fband[2] + e.fband[3];
     return e;
+}
+
+Metric fourierMetric() {
+    return {.figures = {{"fmagMse", "Fourier MSE", "Fourier magnitudes, blind to phase"},
+                        {"fband0", "MSE <1/8", "MSE at 0 to 1/8 cycles/px"},
+                        {"fband1", "MSE <1/4", "MSE at 1/8 to 1/4"},
+                        {"fband2", "MSE <1/2", "MSE at 1/4 to 1/2"},
+                        {"fband3", "MSE >1/2", "MSE at 1/2 and above"}},
+            .nsPerPixel = 700,
+            .source = "methods/07 s.3",
+            .measure = [](const ImagePair& i, const Exec& exec) {
+                const FourierError e = fourierError(i.testEncoded, i.referenceEncoded, exec);
+                return std::vector{e.fmagMse, e.fband[0], e.fband[1], e.fband[2], e.fband[3]};
+            }};
 }
 
 }  // namespace aa

@@ -18,6 +18,9 @@ struct FourierError {
 };
 FourierError fourierError(const Rgb& test, const Rgb& reference, const Exec& exec);
 
+struct Metric;
+Metric fourierMetric();
+
 // Discrete Fourier transform of any length, mixed radix over its prime factors; a plan serves many rows.
 class Fft {
   public:

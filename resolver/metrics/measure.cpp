@@ -1,7 +1,8 @@
 #include "metrics/measure.h"
 
+#include <algorithm>
+
 #include "metrics/error_bar.h"
-#include "metrics/flip.h"
 
 namespace aa {
 
@@ -29,20 +30,40 @@ Reference makeReference(const Rgb& halfA, const Rgb& halfB, const DisplayChain& 
     return r;
 }
 
+FrameMetrics frameMetrics(const SquaredError& e) {
+    return {.mse = e.mse, .reference = e.reference, .psnr = psnr(e.mse), .snr = snr(e), .others = {}};
+}
+
+std::optional<double> FrameMetrics::figure(std::string_view name) const {
+    if (const auto other = others.find(name); other != others.end()) return other->second;
+    const Figure* f = figureByName(name);
+    if (!f || !f->ofSquares) return {};
+    return f->ofSquares(squares());
+}
+
+MeasureOptions measureOptions(const std::vector<std::string>& names) {
+    MeasureOptions options;
+    for (const auto& name : names)
+        if (const Metric* m = findFigure(name).metric;
+            !m->always && std::find(options.metrics.begin(), options.metrics.end(), m) == options.metrics.end())
+            options.metrics.push_back(m);
+    return options;
+}
+
 FrameMetrics measure(const Rgb& encoded, const Rgb* linear, const Reference& reference, const MeasureOptions& options,
                      const Exec& exec, TileErrors& pool) {
     const TileErrors errors = tileErrors(encoded, reference.encoded, exec);
     pool += errors;
-    const SquaredError e = errors.squaredError();
-    FrameMetrics m;
-    m.mse = e.mse;
-    m.reference = e.reference;
-    m.psnr = psnr(e.mse);
-    m.snr = snr(e);
-    m.ssimLuma = ssimLuma(encoded, reference.encoded, exec);
-    if (linear) m.relMse = relMse(*linear, reference.linear, exec);
-    if (options.ssimRgb) m.ssimRgb = ssimRgb(encoded, reference.encoded, exec);
-    if (options.flip) m.flip = flip(encoded, reference.encoded, exec);
+    FrameMetrics m = frameMetrics(errors.squaredError());
+    const ImagePair images{encoded, reference.encoded, linear, linear ? &reference.linear : nullptr};
+    const auto add = [&](const Metric& metric) {
+        if (!metric.measure || !metric.isPossible(images)) return;
+        const std::vector<double> values = metric.measure(images, exec);
+        for (size_t i = 0; i < values.size(); i++) m.others.emplace(metric.figures[i].name, values[i]);
+    };
+    for (const Metric& metric : metrics())
+        if (metric.always) add(metric);
+    for (const Metric* metric : options.metrics) add(*metric);
     return m;
 }
 

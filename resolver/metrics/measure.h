@@ -1,20 +1,23 @@
 // All figures of one frame in one call: what the runner and `compare` need.
 #pragma once
+#include <map>
 #include <optional>
+#include <string>
 
 #include "image/colour.h"
-#include "metrics/metrics.h"
+#include "metrics/metric.h"
 
 namespace aa {
 
-// Encoded (primary, methods/07 s.8) but for relMse.
+// Of encoded values (primary, methods/07 s.8) but for metrics of linear light, which methods with encoded output lack.
 struct FrameMetrics {
     double mse = 0, reference = 0;  // mean of (T-R)^2 and of R^2
     double psnr = 0, snr = 0;       // dB
-    double ssimLuma = 0;
-    std::optional<double> relMse;  // of linear light; absent for methods whose output is encoded
-    std::optional<double> ssimRgb, flip;
+    std::map<std::string, double, std::less<>> others;  // figures that are not of squared error, by name
+    SquaredError squares() const { return {mse, reference}; }
+    std::optional<double> figure(std::string_view name) const;  // any figure; nothing where it was not measured
 };
+FrameMetrics frameMetrics(const SquaredError& squares);
 
 // The ground truth of one frame, prepared once for all methods.
 struct Reference {
@@ -27,8 +30,10 @@ Reference makeReference(const Rgb& halfA, const Rgb& halfB, const DisplayChain& 
                         bool eightBit = false);
 
 struct MeasureOptions {
-    bool ssimRgb = false, flip = false;
+    std::vector<const Metric*> metrics;  // beside those that every run has
 };
+// Of the names in `--metrics`. Throws UsageError.
+MeasureOptions measureOptions(const std::vector<std::string>& names);
 // `encoded` is the method's image after the display chain; `linear` is null when the method gives encoded colour. The
 // tile errors of the encoded image are added to `pool`.
 FrameMetrics measure(const Rgb& encoded, const Rgb* linear, const Reference& reference, const MeasureOptions& options,

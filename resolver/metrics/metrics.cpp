@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "metrics/metric.h"
 #include "metrics/metrics_kernels.h"
 
 namespace aa {
@@ -22,7 +23,7 @@ double ssim(const Rgb& test, const Rgb& reference, const Exec& exec, SsimSignal 
     const SsimArgs args{
         view(test), view(reference), test.stride(), w, h, signal, map ? map->row(0) : nullptr, map ? map->stride() : 0,
         rows.data()};
-    const auto& kernel = metricsKernelsFor(exec.isa).ssim;
+    const auto& kernel = metricsKernelsFor(exec).ssim;
     const auto fn = exec.precision == Precision::fast     ? kernel.fast
                     : exec.precision == Precision::scalar ? kernel.scalar
                                                           : kernel.oracle;
@@ -51,7 +52,7 @@ TileErrors tileErrors(const Rgb& test, const Rgb& reference, const Exec& exec) {
     std::vector<double> tileRows(size_t(h) * size_t(tilesX)), referenceRows(static_cast<size_t>(h));
     const SquaredErrorArgs args{view(test), view(reference), test.stride(),       w,
                                 tilesX,     tileRows.data(), referenceRows.data()};
-    runKernel(metricsKernelsFor(exec.isa).squaredError, exec, args, h);
+    runKernel(metricsKernelsFor(exec).squaredError, exec, args, h);
 
     TileErrors errors;
     errors.sum.resize(size_t(tilesX) * size_t(tilesY));
@@ -80,7 +81,7 @@ double relMse(const Rgb& test, const Rgb& reference, const Exec& exec) {
     assert(test.width() == reference.width() && test.height() == reference.height());
     std::vector<double> rows(static_cast<size_t>(test.height()));
     const RelativeErrorArgs args{view(test), view(reference), test.stride(), test.width(), rows.data()};
-    runKernel(metricsKernelsFor(exec.isa).relativeError, exec, args, test.height());
+    runKernel(metricsKernelsFor(exec).relativeError, exec, args, test.height());
     return inOrder(rows) / (3.0 * test.width() * test.height());
 }
 
@@ -103,6 +104,50 @@ double ssimRgb(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* 
 }
 double ssimMatlab3D(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map) {
     return ssim(test, reference, exec, SsimSignal::volume, map);
+}
+
+Metric squaredErrorMetric() {
+    const auto decibels = FigureForm::decibels;
+    return {.figures = {{"mse", "MSE", "mean squared error", {}, false, [](const SquaredError& e) { return e.mse; }},
+                        {"rmse", "RMSE", "its root", {}, false, [](const SquaredError& e) { return rmse(e.mse); }},
+                        {"psnr", "PSNR", "peak signal to noise, dB", decibels, true,
+                         [](const SquaredError& e) { return psnr(e.mse); }},
+                        {"snr", "SNR", "signal to noise, dB", decibels, true,
+                         [](const SquaredError& e) { return snr(e); }}},
+            .always = true,
+            .nsPerPixel = 4,
+            .source = "methods/07 s.1"};
+}
+Metric relMseMetric() {
+    return {.figures = {{"relMse", "relMSE", "relative MSE of linear light (of EXR files, of methods with linear output)"}},
+            .space = ColourSpace::linear,
+            .always = true,
+            .nsPerPixel = 3,
+            .source = "methods/07 s.8",
+            .measure = [](const ImagePair& i, const Exec& exec) {
+                return std::vector{relMse(*i.testLinear, *i.referenceLinear, exec)};
+            }};
+}
+namespace {
+Metric ssimMetric(Figure figure, bool always, int nsPerPixel,
+                  double (*measure)(const Rgb&, const Rgb&, const Exec&, PlaneF*)) {
+    figure.form = FigureForm::similarity;
+    figure.higherIsBetter = true;
+    return {.figures = {figure},
+            .always = always,
+            .nsPerPixel = nsPerPixel,
+            .source = "methods/07 s.2",
+            .measure = [measure](const ImagePair& i, const Exec& exec) {
+                return std::vector{measure(i.testEncoded, i.referenceEncoded, exec, nullptr)};
+            }};
+}
+}  // namespace
+Metric ssimLumaMetric() { return ssimMetric({"ssimLuma", "SSIM", "SSIM of luma 601"}, true, 25, ssimLuma); }
+Metric ssimRgbMetric() {
+    return ssimMetric({"ssimRgb", "SSIM RGB", "SSIM, mean over channels"}, false, 75, ssimRgb);
+}
+Metric ssimMatlab3DMetric() {
+    return ssimMetric({"ssimMatlab3D", "SSIM 3D", "SSIM as MATLAB filters an RGB array"}, false, 120, ssimMatlab3D);
 }
 
 void quantise8(Rgb& encoded, const Exec& exec) {

@@ -45,6 +45,14 @@ double ssimRgb(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* 
 // As MATLAB treats an M x N x 3 array: a volume, filtered across the channels too (replicated). For comparison only.
 double ssimMatlab3D(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr);
 
+// How `--metrics` names them (metrics/metric.h).
+struct Metric;
+Metric squaredErrorMetric();
+Metric relMseMetric();
+Metric ssimLumaMetric();
+Metric ssimRgbMetric();
+Metric ssimMatlab3DMetric();
+
 // floor(255 x + 0.5) / 255: what an 8-bit image file keeps (option `q8` of methods/07). Border filled.
 void quantise8(Rgb& encoded, const Exec& exec);
 

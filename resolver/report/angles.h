@@ -1,9 +1,9 @@
-// The half-plane study (methods/angle_study.h) as files and as a section of the report.
+// The half-plane study (study/angle_study.h) as files and as a section of the report.
 #pragma once
 #include <filesystem>
 #include <string>
 
-#include "methods/angle_study.h"
+#include "study/angle_study.h"
 
 namespace aa {
 

@@ -28,6 +28,18 @@ std::string signedDecibelNumber(double v) { return printed("%+.2f", v); }
 std::string decibels(double v) { return decibelNumber(v) + " dB"; }
 std::string similarity(double v) { return printed("%.6f", v); }
 
+std::string shown(const Figure& figure, double v) {
+    switch (figure.form) {
+        case FigureForm::decibels:
+            return decibels(v);
+        case FigureForm::similarity:
+            return similarity(v);
+        case FigureForm::significant:
+            break;
+    }
+    return significant(v);
+}
+
 std::string runLine(const RunResults& run) {
     std::string line =
         std::to_string(run.width) + " x " + std::to_string(run.height) + (run.isStatic ? ", static" : ", moving");

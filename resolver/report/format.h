@@ -11,6 +11,8 @@ std::string shortNumber(double v);                  // 3 significant digits, no 
 std::string decibelNumber(double v);                // 38.78
 std::string signedDecibelNumber(double v);          // +3.21
 std::string decibels(double v);                     // 38.78 dB
+// By what the figure is: decibels, similarity, or 4 significant digits.
+std::string shown(const Figure& figure, double v);
 std::string similarity(double v);                   // 6 decimals: three saturate (methods/07 s.2)
 
 // What was run, in one line: size, jitter and whether its block is centred, machine.

@@ -20,7 +20,7 @@ MethodResult method(const std::string& id, double mse, double seconds) {
     FrameResult f;
     FrameMetrics metrics;
     metrics.mse = mse, metrics.reference = 0.2, metrics.psnr = psnr(mse), metrics.snr = snr({mse, 0.2}),
-    metrics.ssimLuma = 0.9;
+    metrics.others["ssimLuma"] = 0.9;
     f.frame = 1, f.seconds = seconds, f.metrics = metrics;
     m.frames = {f};
     return m;

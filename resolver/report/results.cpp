@@ -6,10 +6,12 @@
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "image/error.h"
 #include "image/io.h"
+#include "methods/spec.h"
 
 namespace aa {
 namespace fs = std::filesystem;
@@ -71,23 +73,16 @@ json toJson(const FrameMetrics& m) {
     json j = {{"mse", number(m.mse)},
               {"psnr", number(m.psnr)},
               {"snr", number(m.snr)},
-              {"ssimLuma", number(m.ssimLuma)},
               {"referencePower", number(m.reference)}};
-    if (m.relMse) j["relMse"] = number(m.relMse);
-    if (m.ssimRgb) j["ssimRgb"] = number(m.ssimRgb);
-    if (m.flip) j["flip"] = number(m.flip);
+    for (const auto& [name, value] : m.others) j[name] = number(value);
     return j;
 }
 FrameMetrics frameMetrics(const json& j) {
-    FrameMetrics m;
-    m.mse = toNumber(j.at("mse"));
-    m.psnr = toNumber(j.at("psnr"));
-    m.snr = toNumber(j.at("snr"));
-    m.ssimLuma = toNumber(j.at("ssimLuma"));
-    m.reference = toNumber(j.at("referencePower"));
-    m.relMse = toOptional(j, "relMse");
-    m.ssimRgb = toOptional(j, "ssimRgb");
-    m.flip = toOptional(j, "flip");
+    FrameMetrics m = frameMetrics(SquaredError{toNumber(j.at("mse")), toNumber(j.at("referencePower"))});
+    for (const Metric& metric : metrics())
+        for (const Figure& f : metric.figures)
+            if (const auto v = f.ofSquares ? std::nullopt : toOptional(j, std::string(f.name).c_str()))
+                m.others.emplace(f.name, *v);
     return m;
 }
 json toJson(const PooledMetrics& p) {
@@ -206,12 +201,12 @@ void addErrorsOverTime(RunResults& run) {
         if (a.flicker.size() == b.flicker.size()) p.flicker = compareOverTime(a.flicker, b.flicker);
         const bool samePixels = std::equal(a.rejected.begin(), a.rejected.end(), b.rejected.begin(), b.rejected.end(),
                                            [](auto& x, auto& y) { return x.count == y.count; });
-        const auto base = [&](size_t i) { return run.methods[i].text.substr(0, run.methods[i].text.find('+')); };
+        const auto base = [&](size_t i) { return withoutStages(run.methods[i].text); };
         if (samePixels && base(p.first) == base(p.second)) p.rejected = compareOverTime(a.rejected, b.rejected);
     }
 }
 
-// Mean of a figure over the frames; absent unless every frame has it.
+// Mean of a value over the frames; absent unless every frame has it.
 template <class Get>
 std::optional<double> meanOf(const std::vector<const FrameMetrics*>& frames, Get get) {
     double sum = 0;
@@ -222,6 +217,16 @@ std::optional<double> meanOf(const std::vector<const FrameMetrics*>& frames, Get
     }
     return sum / double(frames.size());
 }
+// Means of squares and of every other figure.
+FrameMetrics meanMetrics(const std::vector<const FrameMetrics*>& frames) {
+    FrameMetrics mean =
+        frameMetrics(SquaredError{*meanOf(frames, [](const FrameMetrics& m) { return std::optional(m.mse); }),
+                                  *meanOf(frames, [](const FrameMetrics& m) { return std::optional(m.reference); })});
+    for (const auto& other : frames[0]->others)
+        if (const auto v = meanOf(frames, [&](const FrameMetrics& m) { return m.figure(other.first); }))
+            mean.others.emplace(other.first, *v);
+    return mean;
+}
 std::optional<PooledMetrics> pool(const MethodResult& method, double noise) {
     std::vector<const FrameMetrics*> frames;
     for (const auto& f : method.frames)
@@ -229,14 +234,7 @@ std::optional<PooledMetrics> pool(const MethodResult& method, double noise) {
     if (frames.empty()) return {};
     PooledMetrics p;
     p.frames = int(frames.size());
-    p.mean.mse = *meanOf(frames, [](const FrameMetrics& m) { return std::optional(m.mse); });
-    p.mean.reference = *meanOf(frames, [](const FrameMetrics& m) { return std::optional(m.reference); });
-    p.mean.psnr = psnr(p.mean.mse);
-    p.mean.snr = snr({p.mean.mse, p.mean.reference});
-    p.mean.ssimLuma = *meanOf(frames, [](const FrameMetrics& m) { return std::optional(m.ssimLuma); });
-    p.mean.relMse = meanOf(frames, [](const FrameMetrics& m) { return m.relMse; });
-    p.mean.ssimRgb = meanOf(frames, [](const FrameMetrics& m) { return m.ssimRgb; });
-    p.mean.flip = meanOf(frames, [](const FrameMetrics& m) { return m.flip; });
+    p.mean = meanMetrics(frames);
     p.mseInterval = mseInterval(p.mean.mse, noise);
     double finite = 0;
     for (const FrameMetrics* m : frames) {
@@ -368,18 +366,29 @@ std::string toJsonText(const RunResults& run) {
     return j.dump(1) + "\n";
 }
 
+std::vector<const Figure*> figuresIn(const RunResults& run) {
+    std::set<std::string_view> present = {"mse", "psnr", "snr"};
+    for (const auto& m : run.methods)
+        for (const auto& f : m.frames)
+            if (f.metrics)
+                for (const auto& other : f.metrics->others) present.insert(other.first);
+    std::vector<const Figure*> figures;
+    for (const Metric& metric : metrics())
+        for (const Figure& f : metric.figures)
+            if (present.contains(f.name)) figures.push_back(&f);
+    return figures;
+}
+
 std::string toCsvText(const RunResults& run) {
     std::ostringstream out;
     const std::string protocol = csvText(inOneField(run.protocol));
-    out << "method,frame,mse,psnr,snr,ssimLuma,relMse,ssimRgb,flip,seconds,protocol\n";
+    const std::vector<const Figure*> figures = figuresIn(run);
+    out << "method,frame";
+    for (const Figure* f : figures) out << ',' << f->name;
+    out << ",seconds,protocol\n";
     const auto line = [&](const std::string& method, const std::string& frame, const FrameMetrics* m, double seconds) {
         out << csvText(method) << ',' << frame;
-        if (m)
-            out << ',' << csvNumber(m->mse) << ',' << csvNumber(m->psnr) << ',' << csvNumber(m->snr) << ','
-                << csvNumber(m->ssimLuma) << ',' << csvNumber(m->relMse) << ',' << csvNumber(m->ssimRgb) << ','
-                << csvNumber(m->flip);
-        else
-            out << ",,,,,,,";
+        for (const Figure* f : figures) out << ',' << csvNumber(m ? m->figure(f->name) : std::nullopt);
         out << ',' << csvNumber(seconds) << ',' << protocol << '\n';
     };
     for (const auto& m : run.methods) {

@@ -26,8 +26,8 @@ struct FrameResult {
     std::optional<FrameSum> rejected{};
 };
 
-// Figures over the judged frames that have truth. MSE, reference power, SSIM, relMse and FLIP are means over the
-// frames; PSNR and SNR come from the mean MSE, never from a mean of decibels.
+// Figures over the judged frames that have truth: means over the frames, but those of squared error, which come from
+// the mean squares (metrics/metric.h).
 struct PooledMetrics {
     int frames = 0;
     FrameMetrics mean;
@@ -105,6 +105,8 @@ void finish(RunResults& run, const std::vector<TileErrors>& errors);
 void writeResults(const RunResults& run, const std::filesystem::path& folder);
 std::string toJsonText(const RunResults& run);
 std::string toCsvText(const RunResults& run);
+// The figures that a run holds, in the order of tables: mse, psnr and snr, those that every run has, those asked for.
+std::vector<const Figure*> figuresIn(const RunResults& run);
 // Reads OUT/results.json. Throws InputError: no run there, damaged, wrong type of a member (named).
 RunResults readResults(const std::filesystem::path& folder);
 

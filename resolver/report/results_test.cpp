@@ -16,7 +16,7 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 
 FrameResult frame(int number, double mse, double seconds, double ssim = 0.9) {
     FrameMetrics m;
-    m.mse = mse, m.reference = 0.25, m.psnr = psnr(mse), m.snr = snr({mse, 0.25}), m.ssimLuma = ssim;
+    m.mse = mse, m.reference = 0.25, m.psnr = psnr(mse), m.snr = snr({mse, 0.25}), m.others["ssimLuma"] = ssim;
     return {number, seconds, m, true, "noaa/" + std::to_string(number) + ".exr"};
 }
 RunResults twoMethods() {
@@ -37,7 +37,7 @@ RunResults twoMethods() {
     other.passes = {"color"};
     other.stateBytes = 4096;
     other.frames = {frame(1, 0.0, 4e-3, 1.0), frame(2, 0.008, 4e-3)};
-    other.frames[0].metrics->flip = 0.0, other.frames[1].metrics->flip = 0.25;
+    other.frames[0].metrics->others["flip"] = 0.0, other.frames[1].metrics->others["flip"] = 0.25;
     run.methods = {noaa, other};
     return run;
 }
@@ -58,14 +58,14 @@ TEST(Results, PoolsMseNotDecibels) {
     EXPECT_GT(std::abs(noaa.mean.psnr - (psnr(0.01) + psnr(0.03)) / 2), 0.5);  // the mean of decibels is another number
     EXPECT_DOUBLE_EQ(noaa.meanFinitePsnr, (psnr(0.01) + psnr(0.03)) / 2);
     EXPECT_DOUBLE_EQ(noaa.mseInterval.corrected, 0.02 - 1e-5);
-    EXPECT_FALSE(noaa.mean.flip);
+    EXPECT_FALSE(noaa.mean.figure("flip"));
     // One identical frame: its infinite PSNR must not swallow the others.
     const auto& other = *run.methods[1].pooled;
     EXPECT_DOUBLE_EQ(other.mean.psnr, psnr(0.004));
     EXPECT_EQ(other.infinitePsnrFrames, 1);
     EXPECT_DOUBLE_EQ(other.meanFinitePsnr, psnr(0.008));
     EXPECT_DOUBLE_EQ(*other.gainDb, psnr(0.004) - psnr(0.02));
-    EXPECT_DOUBLE_EQ(*other.mean.flip, 0.125);
+    EXPECT_DOUBLE_EQ(*other.mean.figure("flip"), 0.125);
     EXPECT_DOUBLE_EQ(*noaa.gainDb, 0);
 }
 TEST(Results, UnjudgedFramesAreLeftOut) {

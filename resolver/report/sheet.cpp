@@ -218,7 +218,7 @@ class Sheet {
             if (m.pooled->gainDb && m.id != "noaa")
                 figure("over noaa", signedDecibelNumber(*m.pooled->gainDb), "dB",
                        *m.pooled->gainDb >= 0 ? kBetter : kWorse, 16);
-            figure("SSIM", similarity(m.pooled->mean.ssimLuma), "", kInk, 16);
+            figure("SSIM", similarity(m.pooled->mean.others.at("ssimLuma")), "", kInk, 16);
         }
         figure("time", shortNumber(m.nsPerPixel), "ns/px", kInk, 16);
         if (m.temporal) {

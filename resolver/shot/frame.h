@@ -1,12 +1,13 @@
 // One frame of a shot in memory. Passes that were not asked for are empty planes. All borders are filled.
 #pragma once
+#include <glm/vec2.hpp>
 #include <optional>
 #include <vector>
 
 #include "image/colour.h"
 #include "image/plane.h"
+#include "shot/camera.h"
 #include "shot/edge_segment.h"
-#include "shot/manifest.h"
 #include "shot/pass.h"
 
 namespace aa {

@@ -4,7 +4,6 @@
 // InputError that names the member and the file.
 #pragma once
 #include <filesystem>
-#include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -12,14 +11,9 @@
 #include <string>
 #include <vector>
 
-namespace aa {
+#include "shot/camera.h"
 
-struct Camera {
-    std::string kind = "perspective";  // or "orthographic", "panorama"
-    glm::dmat4 view{1.0};              // world -> view, camera looks along -z, column vectors
-    glm::dmat4 projection{1.0};        // view -> clip, y up, WITHOUT jitter
-    double nearClip = 0.1, farClip = 100.0;
-};
+namespace aa {
 
 struct FrameEntry {
     int frame = 1;

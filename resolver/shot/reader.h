@@ -1,6 +1,7 @@
 // Reads a shot selectively: only the parts of the EXR that the asked passes need are decoded.
 #pragma once
 #include "shot/frame.h"
+#include "shot/manifest.h"
 
 namespace aa {
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "frames.h"
+#include "methods/method.h"
 
 namespace aa::testing {
 namespace {

@@ -1,0 +1,217 @@
+#include "methods/geometry/msaa.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "image/error.h"
+#include "methods/geometry/subsample_geometry.h"
+#include "methods/method.h"
+#include "methods/reference/resolve_filters.h"
+
+namespace aa {
+namespace {
+
+double distance2(glm::dvec2 a, glm::dvec2 b) { return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y); }
+
+// Which sub-samples hold a colour, then the rest. spread: the one farthest from the centre, then always the one
+// farthest from those chosen.
+std::vector<int> slotsFirst(const std::vector<glm::dvec2>& positionsPx, int slots, bool spread) {
+    std::vector<int> order(positionsPx.size());
+    std::iota(order.begin(), order.end(), 0);
+    if (!spread) return order;
+    const auto position = [&](int k) { return positionsPx[size_t(k)]; };
+    for (auto chosen = order.begin(); chosen != order.begin() + slots; ++chosen) {
+        const auto separation2 = [&](int k) {
+            double nearest = chosen == order.begin() ? distance2(position(k), {}) : 4.0;
+            for (auto c = order.begin(); c != chosen; ++c)
+                nearest = std::min(nearest, distance2(position(k), position(*c)));
+            return nearest;
+        };
+        std::iter_swap(chosen, std::max_element(chosen, order.end(),
+                                                [&](int a, int b) { return separation2(a) < separation2(b); }));
+    }
+    return order;
+}
+
+class MsaaMethod : public Method {
+  public:
+    MsaaMethod(std::string_view id, const Params& p, std::vector<int> slotsFirst, int slots,
+               const std::vector<glm::dvec2>& positionsPx)
+        : id_(id),
+          slotsFirst_(std::move(slotsFirst)),
+          slots_(slots),
+          byGeometry_(p.choice("key") == "surface"),
+          centroid_(p.choice("shadingPosition") == "centroid"),
+          encoded_(averagedSpace(p) == Space::encoded),
+          inverseLuminance_(p.choice("resolve") == "inverseLuminance"),
+          order_(positionsPx.size()) {
+        const auto position = [&](int k) { return positionsPx[size_t(slotsFirst_[size_t(k)])]; };
+        if (p.choice("filter") != "box") {
+            ResolveShape shape{.filter = ResolveFilter(p.choiceIndex("filter")), .diameterPx = p.real("diameter")};
+            taps_ = resolveTaps(withOwnDiameter(shape), positionsPx, id);
+            for (auto& tap : taps_)
+                tap.sample = int(std::find(slotsFirst_.begin(), slotsFirst_.end(), tap.sample) - slotsFirst_.begin());
+        }
+        std::iota(order_.begin(), order_.end(), 0);
+        nearestSlot_ = order_;
+        for (int& nearest : nearestSlot_) {
+            const glm::dvec2 own = position(nearest);
+            nearest = *std::min_element(order_.begin(), order_.begin() + slots, [&](int a, int b) {
+                return distance2(position(a), own) < distance2(position(b), own);
+            });
+        }
+        std::stable_sort(order_.begin(), order_.end(),
+                         [&](int a, int b) { return distance2(position(a), {}) < distance2(position(b), {}); });
+    }
+
+    void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
+        const GeometryViews geometry(
+            frame, {.normals = byGeometry_, .ids = true, .camera = byGeometry_, .colors = true}, id_ + ":key=surface");
+        GeometryArgs permuted = geometry.args();
+        std::vector<SubSampleArgs> samples;
+        for (const int k : slotsFirst_) samples.push_back(geometry.args().sample[k]);
+        permuted.sample = samples.data();
+        MsaaArgs a{.color = view(frame.colorLinear),
+                   .copied = view(encoded_ ? frame.colorEncoded : frame.colorLinear),
+                   .out = view(out),
+                   .geometry = &permuted,
+                   .rule = kSameSurface,
+                   .slots = slots_,
+                   .order = order_.data(),
+                   .nearestSlot = nearestSlot_.data(),
+                   .byGeometry = byGeometry_,
+                   .centroid = centroid_,
+                   .encoded = encoded_,
+                   .display = displayArgs(frame.display),
+                   .inverseLuminance = inverseLuminance_,
+                   .sampleColors = nullptr,
+                   .surfacesLayer = nullptr,
+                   .coverageLayer = nullptr};
+        std::vector<RgbOut> sampleColors;
+        if (!taps_.empty()) {
+            sampleColors_.resize(samples.size());
+            for (Rgb& c : sampleColors_) {
+                if (c.width() != frame.width || c.height() != frame.height) c = Rgb(frame.width, frame.height);
+                sampleColors.push_back(view(c));
+            }
+            a.sampleColors = sampleColors.data();
+        }
+        layers_.clear();
+        if (keepDebugLayers) {
+            for (const char* layer : {"surfaces", "centreCoverage"})
+                layers_.push_back({layer, {PlaneF(frame.width, frame.height)}});
+            a.surfacesLayer = layers_[0].planes[0].row(0), a.coverageLayer = layers_[1].planes[0].row(0);
+        }
+        runKernel(msaaKernelsFor(exec).resolve, exec, a, frame.height);
+        if (!taps_.empty()) filter(exec, out);
+    }
+    size_t stateBytes() const override {
+        size_t bytes = 0;
+        for (const Rgb& c : sampleColors_) bytes += c.bytes();
+        return bytes;
+    }
+    std::vector<DebugLayer> debugLayers() const override { return layers_; }
+
+  private:
+    void filter(const Exec& exec, Rgb& out) {
+        std::vector<RgbIn> samples;
+        for (Rgb& c : sampleColors_) {
+            c.fillBorder();
+            samples.push_back(view(std::as_const(c)));
+        }
+        const ResolveArgs args{.samples = samples.data(),
+                               .sampleCount = int(samples.size()),
+                               .taps = taps_.data(),
+                               .tapCount = int(taps_.size()),
+                               .inverseLuminance = false,
+                               .luminanceScale = 1,
+                               .out = view(out),
+                               .stride = out.stride(),
+                               .width = out.width()};
+        runKernel(resolveKernelsFor(exec).resolve, exec, args, out.height());
+        if (encoded_) clampToDisplay(exec, out);
+    }
+    // Filters with negative weights leave the range of displayed values.
+    static void clampToDisplay(const Exec& exec, Rgb& out) {
+        forRows(exec, out.height(), [&](int y0, int y1) {
+            for (auto& channel : out.c)
+                for (int y = y0; y < y1; y++)
+                    for (int x = 0; x < out.width(); x++) channel.at(x, y) = std::clamp(channel.at(x, y), 0.0f, 1.0f);
+        });
+    }
+
+    std::string id_;
+    std::vector<int> slotsFirst_;
+    int slots_;
+    bool byGeometry_, centroid_, encoded_, inverseLuminance_;
+    std::vector<int> order_, nearestSlot_;
+    std::vector<ResolveTap> taps_;   // of another filter than the box over the pixel
+    std::vector<Rgb> sampleColors_;  // what it filters: the colour of every sub-sample's surface
+    std::vector<DebugLayer> layers_;
+};
+
+std::vector<ParamSpec> surfaceParams() {
+    return {choiceParam("key", "surface", {"surface", "object"}, "what is shaded once: a surface, or a whole object",
+                        "methods/01 s.1.4"),
+            choiceParam("shadingPosition", "centre", {"centre", "centroid"},
+                        "where a partly covered surface is shaded when it covers the centre", "methods/01 s.1.4"),
+            filterParam("methods/01 s.1.4, 1.8"),
+            realParam("diameter", "0", 0, 8, "of the filter, px; 0: its own (lanczos 4, others 2)", "MSAAFilter",
+                      "filter=tent|gaussian|smoothstep|bspline|mitchell|catmullRom|cubic|blackmanHarris|sinc|lanczos"),
+            choiceParam("resolve", "linear", {"linear", "inverseLuminance"},
+                        "weights of the colours: 1, or 1 / (1 + luminance)", "methods/01 s.1.4", "filter=box"),
+            averagedSpaceParam()};
+}
+PassSet surfacePasses(const Params& p) { return p.choice("key") == "surface" ? Pass::depth | Pass::normal : PassSet{}; }
+
+}  // namespace
+
+MethodDescriptor msaaDescriptor() {
+    return {.id = "msaa",
+            .title = "Multisampling",
+            .family = "geometry",
+            .summary = "Every surface in a pixel is shaded once and weighted by the sub-samples that it covers.",
+            .source = "Akeley 1993; methods/01 s.1.4",
+            .passes = Pass::color | Pass::object | Pass::subsamples | Pass::subsampleColor,
+            .params = surfaceParams(),
+            .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
+                requireSubSamples(shot.subSamplePositionsPx, "msaa", size_t(kMsaaMaxSamples));
+                const auto& positionsPx = shot.subSamplePositionsPx;
+                const int samples = int(positionsPx.size());
+                return std::make_unique<MsaaMethod>("msaa", p, slotsFirst(positionsPx, samples, false), samples,
+                                                    positionsPx);
+            },
+            .morePasses = surfacePasses,
+            .outputSpace = averagedSpace,
+            .reachPx = 5};  // the widest filter's radius and a pixel
+}
+
+MethodDescriptor csaaDescriptor() {
+    MethodDescriptor d = msaaDescriptor();
+    d.id = "csaa";
+    d.title = "Coverage sampling";
+    d.summary = "Multisampling with fewer stored colours than coverage samples.";
+    d.source = "Young 2006; methods/01 s.1.5";
+    const std::vector<ParamSpec> slotParams = {
+        intParam("slots", "4", 1, kMsaaMaxSamples, "sub-samples that hold a colour: 8x and 16x have 4, the Q modes 8",
+                 "methods/01 s.1.5"),
+        choiceParam("slotPositions", "first", {"first", "spread"},
+                    "the first sub-samples of the pattern, or those farthest apart",
+                    "methods/01 s.1.5; spread is ours")};
+    for (ParamSpec& p : d.params)
+        if (p.name == "filter") std::erase(p.choices, "quincunx");  // two sub-samples: nothing to leave out
+    d.params.insert(d.params.begin(), slotParams.begin(), slotParams.end());
+    d.create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
+        requireSubSamples(shot.subSamplePositionsPx, "csaa", size_t(kMsaaMaxSamples));
+        const int slots = p.integer("slots"), samples = int(shot.subSamplePositionsPx.size());
+        if (slots > samples)
+            throw UsageError("csaa: slots=" + std::to_string(slots) + ", and the shot has only " +
+                             std::to_string(samples) + " sub-samples per pixel; choose at most that many");
+        return std::make_unique<MsaaMethod>(
+            "csaa", p, slotsFirst(shot.subSamplePositionsPx, slots, p.choice("slotPositions") == "spread"), slots,
+            shot.subSamplePositionsPx);
+    };
+    return d;
+}
+}  // namespace aa

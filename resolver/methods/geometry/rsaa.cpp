@@ -1,0 +1,167 @@
+#include "methods/geometry/rsaa.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "image/error.h"
+#include "methods/geometry/rsaa_lut_data.h"
+#include "methods/geometry/subsample_geometry.h"
+#include "methods/method.h"
+
+namespace aa {
+namespace {
+
+constexpr double kMaskPassFloor = 0.2;  // methods/05 s.5.5.2; blender_addon/aa_resolve/subsamples.py
+
+struct Options {
+    Dissimilarity measure;
+    float floor;
+    bool adaptive, tuning, tuneAdaptive, quadrant, ids, maskPass;
+    RsaaTraining training;
+    explicit Options(const Params& p)
+        : measure(Dissimilarity(p.choiceIndex("measure"))),
+          floor(p.realf(measure == Dissimilarity::sadp    ? "sadpFloor"
+                        : measure == Dissimilarity::depth ? "depthFloor"
+                                                          : "normalFloor")),
+          adaptive(p.choice("clustering") == "adaptive"),
+          tuning(p.choice("tuning") != "off"),
+          tuneAdaptive(p.choice("tuning") == "adaptive"),
+          quadrant(p.choice("neighbours") == "quadrant"),
+          ids(p.flag("ids")),
+          maskPass(p.choice("mask") == "pass" || (p.choice("mask") == "auto" && asTheMaskPass(p))),
+          training(RsaaTraining(p.choiceIndex("training"))) {}
+    // Whether computing the masks would give the mask pass, which was made by the defaults.
+    bool asTheMaskPass(const Params& p) const {
+        return measure == Dissimilarity::sadp && p.real("sadpFloor") == kMaskPassFloor && adaptive && ids;
+    }
+    bool readsGeometry() const { return !maskPass || tuning; }
+    GeometryNeeds needs() const {
+        return {.normals = measure != Dissimilarity::depth, .ids = ids, .camera = measure == Dissimilarity::sadp};
+    }
+};
+
+std::vector<float> offsetTable(const std::vector<glm::dvec2>& positionsPx, RsaaTraining training) {
+    const size_t samples = positionsPx.size();
+    const auto shipped = shippedRsaaEntries(samples);
+    if (training == RsaaTraining::all && !shipped.empty() && positionsPx == d3dPattern(samples))
+        return rsaaTable(samples, shipped);
+    return rsaaTable(samples, learnRsaa(positionsPx, training));
+}
+
+// The pixels that are asked for the surface of a sub-sample. quadrant:
+// all three on its side, which are those that a fetch toward it blends. Otherwise the nearest of the eight; on a tie
+// one across an edge rather than one across a corner.
+RsaaNeighbours neighboursOf(const SubSampleArgs& sample, bool quadrant) {
+    const float ox = sample.offsetPx[0], oy = sample.offsetPx[1];
+    const int sx = ox < 0 ? -1 : 1, sy = oy < 0 ? -1 : 1;
+    if (quadrant) return {{{sx, 0}, {0, sy}, {sx, sy}}, 3};
+    static const glm::ivec2 axisFirst[] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
+    const auto distance2 = [&](glm::ivec2 n) {
+        const float dx = ox - float(n.x), dy = oy - float(n.y);
+        return dx * dx + dy * dy;
+    };
+    const glm::ivec2 nearest =
+        *std::min_element(std::begin(axisFirst), std::end(axisFirst),
+                          [&](glm::ivec2 a, glm::ivec2 b) { return distance2(a) < distance2(b); });
+    return {{{nearest.x, nearest.y}}, 1};
+}
+
+class RsaaMethod : public Method {
+  public:
+    RsaaMethod(const Options& options, const std::vector<glm::dvec2>& positionsPx)
+        : options_(options), offsetsPx_(offsetTable(positionsPx, options.training)) {}
+
+    void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
+        RsaaArgs a{};
+        a.color = view(frame.colorLinear), a.out = view(out);
+        a.stride = out.stride(), a.width = frame.width, a.height = frame.height;
+        a.samples = int(frame.subSamples.size()), a.offsetsPx = offsetsPx_.data();
+        a.measure = options_.measure, a.floor = options_.floor, a.adaptive = options_.adaptive;
+        a.tuning = options_.tuning, a.tuneAdaptive = options_.tuneAdaptive;
+        if (options_.maskPass) a.maskPass = frame.subSampleMask.row(0);
+        const GeometryArgs notRead{};
+        a.geometry = &notRead;
+        std::optional<GeometryViews> geometry;
+        std::vector<RsaaNeighbours> neighbours;
+        if (options_.readsGeometry()) {
+            geometry.emplace(frame, options_.needs(), "rsaa:measure=sadp");
+            for (int k = 0; k < a.samples; k++)
+                neighbours.push_back(neighboursOf(geometry->args().sample[k], options_.quadrant));
+            a.geometry = &geometry->args(), a.neighbours = neighbours.data();
+        }
+        if (keepDebugLayers) keepLayers(frame, a);
+        runKernel(rsaaKernelsFor(exec).resolve, exec, a, frame.height);
+    }
+    size_t stateBytes() const override { return offsetsPx_.size() * sizeof(float); }
+    std::vector<DebugLayer> debugLayers() const override { return layers_; }
+
+  private:
+    void keepLayers(const Frame& frame, RsaaArgs& a) {
+        layers_.clear();
+        for (const char* layer : {"mask", "tunedMask", "dissimilarity", "offsetXPx", "offsetYPx"})
+            layers_.push_back({layer, {PlaneF(frame.width, frame.height)}});
+        a.maskLayer = layers_[0].planes[0].row(0), a.tunedLayer = layers_[1].planes[0].row(0);
+        a.dissimilarityLayer = layers_[2].planes[0].row(0);
+        a.offsetXLayer = layers_[3].planes[0].row(0), a.offsetYLayer = layers_[4].planes[0].row(0);
+    }
+
+    Options options_;
+    std::vector<float> offsetsPx_;
+    std::vector<DebugLayer> layers_;
+};
+
+}  // namespace
+
+MethodDescriptor rsaaDescriptor() {
+    return {
+        .id = "rsaa",
+        .title = "Resampling anti-aliasing",
+        .family = "geometry",
+        .summary =
+            "Fetches the colour beside the pixel centre, at an offset learned for its mask of sub-samples on other "
+            "surfaces.",
+        .source = "Reshetov 2012 (seed 004); methods/05 s.5.5",
+        .passes = Pass::color | Pass::subsamples,
+        .params = {choiceParam("measure", "sadp", {"sadp", "depth", "normal"}, "dissimilarity of two geometry samples",
+                               "seed 004 slides 24-27"),
+                   realParam("sadpFloor", "0.2", 0.001, 2, "below this SADP everything is one surface",
+                             "methods/05 s.5.5", "measure=sadp"),
+                   realParam("depthFloor", "0.02", 0.0001, 2, "below this relative depth everything is one surface",
+                             "methods/05 s.5.5", "measure=depth"),
+                   realParam("normalFloor", "0.1", 0.001, 2, "below this 1 - cosine everything is one surface",
+                             "methods/05 s.5.5", "measure=normal"),
+                   choiceParam("clustering", "adaptive", {"adaptive", "threshold"},
+                               "similar or different by one k-means iteration, or by the floor alone",
+                               "seed 004 slides 20-22", "mask=auto|geometry"),
+                   choiceParam(
+                       "tuning", "on", {"on", "off", "adaptive"},
+                       "drop different sub-samples that no neighbour shows; adaptive: nearer than half of the own "
+                       "dissimilarity counts as shown",
+                       "seed 004 slides 32-33"),
+                   choiceParam("neighbours", "quadrant", {"quadrant", "nearest"},
+                               "who may show it: the three pixels on the sub-sample's side, or the one nearest to it",
+                               "ours: nearest costs 1.8 dB on isolated edges", "tuning=on|adaptive"),
+                   choiceParam("mask", "auto", {"auto", "geometry", "pass"},
+                               "computed here, or the shot's mask pass; auto: the pass where both are the same",
+                               "methods/05 s.5.5"),
+                   flagParam("ids", true, "sub-samples on another object are different whatever their geometry",
+                             "ours: the shot's mask pass does so"),
+                   choiceParam("training", "all", {"all", "halfPlanes"}, "what the offsets were learned from",
+                               "methods/11 #33")},
+        .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
+            requireSubSamples(shot.subSamplePositionsPx, "rsaa", size_t(kRsaaMaxSamples));
+            return std::make_unique<RsaaMethod>(Options(p), shot.subSamplePositionsPx);
+        },
+        .morePasses =
+            [](const Params& p) {
+                const Options o(p);
+                PassSet passes;
+                if (!o.readsGeometry()) return passes;
+                passes |= Pass::depth;
+                if (o.needs().normals) passes |= Pass::normal;
+                if (o.needs().ids) passes |= Pass::object;
+                return passes;
+            },
+        .reachPx = 2};
+}
+}  // namespace aa

@@ -1,0 +1,149 @@
+#include "methods/spatial/fxaa.h"
+#include "methods/spatial/fxaa_base.h"
+
+namespace aa {
+namespace {
+
+class Fxaa1 : public FxaaMethod {
+  public:
+    explicit Fxaa1(const Params& p) {
+        struct Preset {
+            float threshold, thresholdMin;
+            int steps, acceleration;
+            double cap;
+            bool cross;
+        };
+        // FXAA white paper (2011), methods/02 s.2.2. Presets above 3 only lengthen the search.
+        static const Preset presets[] = {
+            {1.f / 4, 1.f / 12, 2, 4, 2.0 / 3, true},   {1.f / 8, 1.f / 16, 4, 3, 3.0 / 4, false},
+            {1.f / 8, 1.f / 24, 8, 2, 3.0 / 4, false},  {1.f / 8, 1.f / 24, 16, 1, 3.0 / 4, false},
+            {1.f / 8, 1.f / 24, 24, 1, 3.0 / 4, false}, {1.f / 8, 1.f / 24, 32, 1, 3.0 / 4, false},
+        };
+        const Preset& preset = presets[p.choiceIndex("preset")];
+        args_.edgeThreshold = preset.threshold;
+        args_.edgeThresholdMin = preset.thresholdMin;
+        args_.steps = preset.steps;
+        args_.acceleration = preset.acceleration;
+        args_.subpixCap = preset.cap;
+        args_.subpixTrim = 0.25;
+        args_.crossLowPass = preset.cross;
+    }
+    void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
+        findLuma(frame.colorEncoded, LumaKind::redGreen, exec);
+        prepare(args_, frame.colorEncoded, out);
+        runKernel(fxaaVariantKernelsFor(exec).fxaa1, exec, args_, frame.height);
+    }
+
+  private:
+    Fxaa1Args args_{};
+};
+
+class FxaaCs : public FxaaMethod {
+  public:
+    explicit FxaaCs(const Params& p) : linear_(p.choice("blendSpace") == "linear") {
+        args_.edgeThreshold = 0;
+        args_.edgeThresholdMin = p.realf("contrastThreshold");
+        args_.subpix = p.real("subpixelRemoval");
+        if (p.choice("preset") == "25")
+            setDistances(args_, {1, 1.5, 2, 2, 2, 2, 4, 8});
+        else
+            setDistances(args_, {1, 1, 1, 1, 1, 1.5, 2, 2, 2, 2, 4, p.choice("longest") == "36.5" ? 18.0 : 8.0});
+    }
+    void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
+        findLuma(frame.colorLinear, shownLuma(LumaKind::log2Linear, frame.display), exec);
+        transposeLuma(frame.width, frame.height, exec);
+        prepare(args_, linear_ ? frame.colorLinear : frame.colorEncoded, out);
+        runKernel(fxaaVariantKernelsFor(exec).fxaaCs, exec, args_, frame.height);
+    }
+
+  private:
+    FxaaCsArgs args_{};
+    bool linear_;
+};
+
+class FxaaConsole : public FxaaMethod {
+  public:
+    explicit FxaaConsole(const Params& p) {
+        args_.edgeThreshold = p.realf("edgeThreshold");
+        args_.edgeThresholdMin = p.realf("edgeThresholdMin");
+        args_.reachPx = p.real("reach");
+        args_.sharpness = p.real("sharpness");
+    }
+    void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
+        findLuma(frame.colorEncoded, LumaKind::rec601, exec);
+        prepare(args_, frame.colorEncoded, out);
+        runKernel(fxaaVariantKernelsFor(exec).console, exec, args_, frame.height);
+    }
+    std::vector<DebugLayer> debugLayers() const override {
+        if (!keepDebugLayers) return {};
+        // Direction of the taps, and 1 where the outer ones count.
+        return {{"taps", {negativePx_, positivePx_, shiftPx_}}};
+    }
+
+  private:
+    FxaaConsoleArgs args_{};
+};
+
+}  // namespace
+
+MethodDescriptor fxaa1Descriptor() {
+    return {
+        .id = "fxaa1",
+        .title = "FXAA 1",
+        .family = "spatial",
+        .summary = "White-paper FXAA: exhaustive search of both edge ends, 3x3 low-pass against sub-pixel aliasing.",
+        .source = "Lottes, FXAA white paper; methods/02 s.2.2",
+        .passes = Pass::color,
+        .input = Space::encoded,
+        .output = Space::encoded,
+        .params = {choiceParam("preset", "3", {"0", "1", "2", "3", "4", "5"},
+                               "thresholds and search length; above 3 only longer", "FXAA white paper")},
+        .create = [](const Params& p, const ShotInfo&) { return std::make_unique<Fxaa1>(p); },
+        .reachPx = 36};  // preset 5 reads 32 px along the edge and its neighbours
+}
+
+MethodDescriptor fxaaCsDescriptor() {
+    return {.id = "fxaacs",
+            .title = "FXAA for compute shaders",
+            .family = "spatial",
+            .summary = "FXAA with log-luma decisions and a blend with one neighbour in linear light.",
+            .source = "Stanard, MiniEngine; methods/02 s.2.3",
+            .passes = Pass::color,
+            .input = Space::encoded,
+            .output = Space::linear,
+            .params = {choiceParam("preset", "25", {"25", "39"}, "search pattern", "MiniEngine"),
+                       choiceParam("longest", "26.5", {"26.5", "36.5"}, "distance of the last, unsampled step, px",
+                                   "methods/11 #38", "preset=39"),
+                       realParam("contrastThreshold", "0.175", 0.01, 1, "least range of log luma that makes an edge",
+                                 "MiniEngine"),
+                       realParam("subpixelRemoval", "0.5", 0, 1, "removal of sub-pixel aliasing, 0 off", "MiniEngine"),
+                       choiceParam("blendSpace", "linear", {"linear", "encoded"}, "space in which pixels are blended",
+                                   "MiniEngine")},
+            .create = [](const Params& p, const ShotInfo&) { return std::make_unique<FxaaCs>(p); },
+            .outputSpace =
+                [](const Params& p) { return p.choice("blendSpace") == "linear" ? Space::linear : Space::encoded; },
+            .reachPx = 30};  // as fxaa311
+}
+
+MethodDescriptor fxaaConsoleDescriptor() {
+    return {
+        .id = "fxaaconsole",
+        .title = "FXAA 3.11 Console",
+        .family = "spatial",
+        .summary = "Four taps along the local edge direction, found from the luma of the pixel's corners.",
+        .source = "Lottes, FXAA 3.11 console path; methods/02 s.2.4",
+        .passes = Pass::color,
+        .input = Space::encoded,
+        .output = Space::encoded,
+        .params = {realParam("reach", "0.5", 0.1, 1, "distance of the inner taps, px; 0.33 is sharper", "FXAA 3.11"),
+                   realParam("sharpness", "8", 1, 16, "how soon the outer taps reach 4 px; 4 softer, 2 very soft",
+                             "FXAA 3.11"),
+                   realParam("edgeThreshold", "0.125", 0, 1, "contrast that makes an edge, relative to the maximum",
+                             "FXAA 3.11"),
+                   realParam("edgeThresholdMin", "0.05", 0.01, 1, "least luma contrast that makes an edge",
+                             "FXAA 3.11")},
+        .create = [](const Params& p, const ShotInfo&) { return std::make_unique<FxaaConsole>(p); },
+        .reachPx = 6};  // outer taps at 4 px, bilinear
+}
+
+}  // namespace aa

@@ -1,0 +1,259 @@
+#include "methods/spatial/smaa.h"
+
+#include "methods/spatial/luma.h"
+#include "methods/spatial/smaa_areas.h"
+
+namespace aa {
+
+namespace {
+struct Preset {
+    std::string_view name;
+    float threshold;
+    int searchSteps, diagonalSteps;
+    float cornerRounding;  // percent; negative: off
+};
+const Preset kPresets[] = {{"LOW", 0.15f, 4, 0, -1},  // SMAA v2.8, methods/03 s.3.2
+                           {"MEDIUM", 0.10f, 8, 0, -1},
+                           {"HIGH", 0.10f, 16, 8, 25},
+                           {"ULTRA", 0.05f, 32, 16, 25}};
+Preset chosen(const Params& p) {
+    for (const auto& preset : kPresets)
+        if (p.choice("preset") == preset.name) return preset;
+    return {"custom", p.realf("threshold"), p.integer("searchSteps"), p.integer("diagonalSteps"),
+            p.realf("cornerRounding")};
+}
+}  // namespace
+
+Smaa::Smaa(const Params& p) : published_(p.choice("areas") == "table") {
+    const Preset preset = chosen(p);
+    edge_.kind = SmaaEdges(p.choiceIndex("edges"));
+    edge_.predication = SmaaPredication(p.choiceIndex("predication"));
+    edge_.consistent = p.choice("colourContrast") == "consistent";
+    edge_.threshold = edge_.kind == SmaaEdges::depth ? p.realf("depthThreshold") : preset.threshold;
+    edge_.localContrast = p.realf("localContrast");
+    edge_.predicationThreshold = p.realf("predicationThreshold");
+    edge_.predicationScale = p.realf("predicationScale");
+    edge_.predicationStrength = p.realf("predicationStrength");
+    blend_.searchSteps = preset.searchSteps;
+    blend_.diagonalSteps = preset.diagonalSteps;
+    blend_.cornerRounding = preset.cornerRounding < 0 ? -1 : preset.cornerRounding / 100;
+    blend_.unorm8 = p.choice("weights") == "unorm8";
+    border_ = std::max(2 * preset.searchSteps, preset.diagonalSteps) + 4;
+    static_assert(kMaxDiagonal + 2 < kBitRows);
+}
+
+// Exact areas come from a table where it stays in the second-level cache: 0.5 MB at ULTRA's 32 steps.
+constexpr int kMostTabled = 32;
+
+const Smaa::Tables& Smaa::tablesFor(glm::dvec2 samplePx) {
+    for (const auto& t : tables_)
+        if (t.samplePx == samplePx) return t;
+    Tables t;
+    t.samplePx = samplePx;
+    if (published_) {
+        t.orthogonal[0] = orthogonalTable(-samplePx.y);
+        t.orthogonal[1] = orthogonalTable(-samplePx.x);
+    } else if (blend_.searchSteps <= kMostTabled) {
+        t.orthogonal[0] = exactTable(double(-float(samplePx.y)), 2 * blend_.searchSteps);
+        if (samplePx.x != samplePx.y) t.orthogonal[1] = exactTable(double(-float(samplePx.x)), 2 * blend_.searchSteps);
+    }
+    if (blend_.diagonalSteps > 0) {
+        // The displacement along the line does nothing; across it, half of it in x and half in y (y up).
+        const double first = (samplePx.x + samplePx.y) / 2, second = (samplePx.x - samplePx.y) / 2;
+        t.diagonal[0] = diagonalTable({first, -first}, published_);
+        t.diagonal[1] = diagonalTable({second, -second}, published_);
+    }
+    if (tables_.size() == 64) tables_.erase(tables_.begin());  // jitter without a period
+    tables_.push_back(std::move(t));
+    return tables_.back();
+}
+
+void Smaa::findEdges(const Frame& frame, const Rgb& colorEncoded, glm::dvec2 samplePx, const Exec& exec) {
+    width_ = colorEncoded.width();
+    height_ = colorEncoded.height();
+    samplePx_ = samplePx;
+    top_.resize(width_, height_, border_);
+    left_.resize(width_, height_, border_);
+    topByColumn_.resize(height_, width_, border_);
+    leftByColumn_.resize(height_, width_, border_);
+    SmaaEdgeArgs args = edge_;
+    if (args.kind == SmaaEdges::luma) {
+        lumaPlane(colorEncoded, LumaKind::rec709, exec, luma_);
+        args.scalar = luma_.row(0);
+    } else if (args.kind == SmaaEdges::depth) {
+        args.scalar = frame.depthView.row(0);
+    }
+    args.color = view(colorEncoded);
+    if (args.predication == SmaaPredication::depth) args.depthView = frame.depthView.row(0);
+    if (args.predication == SmaaPredication::object) args.objectId = frame.objectId.row(0);
+    args.top = top_.row(0);
+    args.left = left_.row(0);
+    args.stride = colorEncoded.stride();
+    args.bitStride = top_.stride();
+    args.width = width_;
+    const auto& kernels = smaaKernelsFor(exec);
+    runKernel(kernels.edges, exec, args, height_);
+    for (auto [from, to] : {std::pair{&top_, &topByColumn_}, {&left_, &leftByColumn_}}) {
+        from->repeatBorder();
+        runKernel(kernels.transpose, exec,
+                  SmaaTransposeArgs{from->row(0), to->row(0), from->stride(), to->stride(), height_}, (width_ + 7) / 8);
+        to->repeatBorder();
+    }
+}
+
+void Smaa::blend(const Rgb& in, Rgb& out, const Exec& exec) { blend(in, out, nullptr, nullptr, exec); }
+void Smaa::blend(const Rgb& in, Rgb& out, const PlaneF* const motion[2], PlaneF* const motionOut[2], const Exec& exec) {
+    const size_t pixels = size_t(width_) * size_t(height_);
+    if (keepDebugLayers) {
+        for (auto* plane : {&topWeights_, &leftWeights_, &topLengths_, &leftLengths_}) plane->assign(2 * pixels, 0);
+        isDiagonal_.assign(pixels, 0);
+    }
+    SmaaBlendArgs args = blend_;
+    const Tables& tables = tablesFor(samplePx_);
+    for (size_t k = 0; k < 2; k++) args.diagonalTable[k] = tables.diagonal[k].data();
+    const auto debug = [&](std::vector<float>& plane) { return keepDebugLayers ? plane.data() : nullptr; };
+    const auto axis = [&](const BitPlane& along, const BitPlane& cross, const BitPlane& crossTransposed,
+                          double samplePx, const std::vector<float>& table, std::vector<float>& weights,
+                          std::vector<float>& lengths) {
+        const bool exact = !published_ && !table.empty();
+        return SmaaAxis{along.row(0),
+                        cross.row(0),
+                        crossTransposed.row(0),
+                        along.stride(),
+                        crossTransposed.stride(),
+                        crossTransposed.rows(),
+                        -float(samplePx),
+                        published_ ? table.data() : nullptr,
+                        exact ? table.data() : nullptr,
+                        debug(weights),
+                        debug(lengths)};
+    };
+    const bool oneTable = tables.orthogonal[1].empty();
+    args.top = axis(top_, left_, leftByColumn_, samplePx_.y, tables.orthogonal[0], topWeights_, topLengths_);
+    args.left = axis(leftByColumn_, topByColumn_, top_, samplePx_.x, tables.orthogonal[oneTable ? 0 : 1], leftWeights_,
+                     leftLengths_);
+    args.isDiagonal = keepDebugLayers ? isDiagonal_.data() : nullptr;
+    for (size_t c = 0; c < 3; c++) args.in[c] = in.c[c].row(0), args.out[c] = out.c[c].row(0);
+    args.channels = 3;
+    for (size_t c = 0; motion && c < 2; c++, args.channels++)
+        args.in[args.channels] = motion[c]->row(0), args.out[args.channels] = motionOut[c]->row(0);
+    args.stride = in.stride();
+    args.width = width_;
+    args.height = height_;
+    const int blocks = (height_ + kSmaaBlockRows - 1) / kSmaaBlockRows;
+    args.scratchSize = 6 * (width_ + 16);        // rows are read a few pixels past their end
+    args.diagonalsSize = 2 * (width_ / 8 + 16);  // and bits by words
+    scratch_.resize(size_t(args.scratchSize) * size_t(blocks));
+    diagonals_.resize(size_t(args.diagonalsSize) * size_t(blocks));
+    args.scratch = scratch_.data();
+    args.diagonals = diagonals_.data();
+    runKernel(smaaBlendKernelsFor(exec).blend, exec, args, blocks, 1);
+}
+
+size_t Smaa::bytes() const {
+    size_t tables = 0;
+    for (const auto& t : tables_)
+        for (const auto* v : {&t.orthogonal[0], &t.orthogonal[1], &t.diagonal[0], &t.diagonal[1]}) tables += v->size();
+    return luma_.bytes() + top_.bytes() + left_.bytes() + topByColumn_.bytes() + leftByColumn_.bytes() +
+           (scratch_.size() + tables) * sizeof(float) + diagonals_.size();
+}
+
+std::vector<DebugLayer> Smaa::debugLayers() const {
+    if (!keepDebugLayers) return {};
+    DebugLayer edges{"edges", std::vector<PlaneF>(3, PlaneF(width_, height_))};  // left, top, diagonal
+    DebugLayer top = {"weights.top", edges.planes}, left = {"weights.left", edges.planes};
+    DebugLayer topSearch = {"search.top", edges.planes}, leftSearch = {"search.left", edges.planes};
+    for (int y = 0; y < height_; y++)
+        for (int x = 0; x < width_; x++) {
+            const size_t pixel = size_t(y) * size_t(width_) + size_t(x);
+            edges.planes[0].at(x, y) = left_.at(x, y);
+            edges.planes[1].at(x, y) = top_.at(x, y);
+            edges.planes[2].at(x, y) = isDiagonal_[pixel];
+            for (size_t i = 0; i < 2; i++) {  // own, opposite; distance to either end, px
+                top.planes[i].at(x, y) = topWeights_[2 * pixel + i];
+                topSearch.planes[i].at(x, y) = topLengths_[2 * pixel + i];
+                left.planes[i].at(x, y) = leftWeights_[2 * pixel + i];
+                leftSearch.planes[i].at(x, y) = leftLengths_[2 * pixel + i];
+            }
+        }
+    return {edges, top, left, topSearch, leftSearch};
+}
+
+std::vector<ParamSpec> smaaParams() {
+    return {
+        choiceParam("preset", "HIGH", {"LOW", "MEDIUM", "HIGH", "ULTRA", "custom"},
+                    "threshold, search lengths, diagonals and corners", "SMAA v2.8"),
+        realParam("threshold", "0.1", 0.0009765625, 0.5, "luma or colour difference that makes an edge", "SMAA v2.8",
+                  "preset=custom"),
+        intParam("searchSteps", "16", 1, 112, "search length to either side, in steps of 2 px", "SMAA v2.8",
+                 "preset=custom"),
+        intParam("diagonalSteps", "8", 0, kMaxDiagonal, "diagonal search length in px, 0 off", "SMAA v2.8",
+                 "preset=custom"),
+        realParam("cornerRounding", "25", -1, 100, "how much sharp corners are rounded, percent; -1 off", "SMAA v2.8",
+                  "preset=custom"),
+        choiceParam("edges", "luma", {"luma", "colour", "depth"}, "what makes an edge", "SMAA v2.8"),
+        realParam("depthThreshold", "0.01", 0.0009765625, 1, "relative depth difference that makes an edge",
+                  "methods/03 s.3.2.1", "edges=depth"),
+        realParam("localContrast", "2", 1, 1000, "an edge goes where a neighbouring edge is this many times as strong",
+                  "SMAA v2.8", "edges=luma|colour"),
+        choiceParam("colourContrast", "reference", {"reference", "consistent"},
+                    "second neighbour of colour edges: against the centre as in the shader, or against the first",
+                    "methods/11 #39", "edges=colour"),
+        choiceParam("predication", "off", {"off", "depth", "object"}, "raise the threshold where this pass has no edge",
+                    "SMAA v2.8", "edges=luma|colour"),
+        realParam("predicationThreshold", "0.01", 0, 1, "relative depth difference that is an edge of that pass",
+                  "SMAA v2.8", "predication=depth"),
+        realParam("predicationScale", "2", 1, 5, "factor on the threshold", "SMAA v2.8", "predication=depth|object"),
+        realParam("predicationStrength", "0.4", 0, 1, "share taken off again at edges of that pass", "SMAA v2.8",
+                  "predication=depth|object"),
+        choiceParam("blendSpace", "linear", {"linear", "encoded"}, "space in which pixels are blended",
+                    "SMAA v2.8 (sRGB reads)"),
+        choiceParam("areas", "analytic", {"analytic", "table"},
+                    "weights exact, or looked up in the 8-bit area table as the shader does", "methods/03 s.3.2.3"),
+        choiceParam("weights", "float", {"float", "unorm8"}, "storage of the blending weights", "methods/03"),
+    };
+}
+
+PassSet smaaPasses(const Params& p) {
+    PassSet passes;
+    if (p.choice("edges") == "depth" || p.choice("predication") == "depth") passes |= Pass::depth;
+    if (p.choice("predication") == "object") passes |= Pass::object;
+    return passes;
+}
+
+namespace {
+class Smaa1x : public Method {
+  public:
+    explicit Smaa1x(const Params& p) : smaa_(p), linear_(p.choice("blendSpace") == "linear") {}
+    void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
+        smaa_.keepDebugLayers = keepDebugLayers;
+        smaa_.findEdges(frame, frame.colorEncoded, {0, 0}, exec);
+        smaa_.blend(linear_ ? frame.colorLinear : frame.colorEncoded, out, exec);
+    }
+    size_t stateBytes() const override { return smaa_.bytes(); }
+    std::vector<DebugLayer> debugLayers() const override { return smaa_.debugLayers(); }
+
+  private:
+    Smaa smaa_;
+    bool linear_;
+};
+}  // namespace
+
+MethodDescriptor smaa1xDescriptor() {
+    return {.id = "smaa1x",
+            .title = "SMAA 1x",
+            .family = "spatial",
+            .summary = "Revectorises edges from their length and crossing edges, with diagonals and corners.",
+            .source = "Jimenez et al. 2012, SMAA v2.8; methods/03 s.3.2",
+            .passes = Pass::color,
+            .input = Space::encoded,
+            .output = Space::linear,
+            .params = smaaParams(),
+            .create = [](const Params& p, const ShotInfo&) { return std::make_unique<Smaa1x>(p); },
+            .morePasses = smaaPasses,
+            .outputSpace =
+                [](const Params& p) { return p.choice("blendSpace") == "linear" ? Space::linear : Space::encoded; },
+            .reachPx = 66};  // methods/08 s.8.4; preset=custom reaches 2 * searchSteps + 2
+}
+
+}  // namespace aa

@@ -1,0 +1,76 @@
+#pragma once
+#include "kernels/table.h"
+
+namespace aa {
+enum class SmaaEdges { luma, colour, depth };
+enum class SmaaPredication { off, depth, object };
+struct SmaaEdgeArgs {
+    const float* scalar;       // luma or depth; null for colour edges
+    RgbIn color;               // encoded
+    const float* depthView;    // predication
+    const uint32_t* objectId;  // predication
+    uint8_t *top, *left;       // bits (methods/spatial/edge_bits.h)
+    int stride, bitStride, width;
+    SmaaEdges kind;
+    SmaaPredication predication;
+    bool consistent;  // colour edges: compare left with leftleft, as luma edges do, not the centre
+    float threshold, localContrast;
+    float predicationThreshold, predicationScale, predicationStrength;
+};
+
+struct SmaaTransposeArgs {
+    const uint8_t* from;
+    uint8_t* to;
+    int fromStride, toStride, height;
+};
+
+inline constexpr int kMaxDiagonal = 20;  // methods/03 s.3.2.4: published tables hold 20 distances
+inline constexpr int kDiagonals = kMaxDiagonal + 1;
+inline constexpr int kSmaaBlockRows = 32;  // rows that are weighted and blended together
+inline constexpr int kSmaaChannels = 5;    // colour, and motion with the same weights
+
+// Lines of one orientation: the plane that they follow, the plane that crosses them, and the latter transposed.
+struct SmaaAxis {
+    const uint8_t *along, *cross, *crossTransposed;
+    int stride, crossTransposedStride, crossTransposedRows;
+    float offset;                 // of the sub-sample across the edge (area tile)
+    const float* publishedTable;  // 25 code pairs x 16 x 16 pairs; null: exact areas
+    const float* exactTable;      // exact areas: 16 code pairs x reach x (reach + 1) pairs; null: evaluated
+    float *weights, *lengths;     // debug: pairs (own, opposite) and (left, right) per pixel; null when not wanted
+};
+struct SmaaBlendArgs {
+    SmaaAxis top, left;
+    const float* diagonalTable[2];   // 16 code pairs x kDiagonals^2 pairs, for the two directions
+    int searchSteps, diagonalSteps;  // diagonalSteps 0: off
+    float cornerRounding;            // negative: off
+    bool unorm8;
+    const float* in[kSmaaChannels];
+    float* out[kSmaaChannels];
+    int channels;
+    float* scratch;       // per block: weights of two rows of top edges and of one row of left edges, own and opposite
+    uint8_t* diagonals;   // per block: bits of the pixels of two rows that the diagonal pass has handled
+    uint8_t* isDiagonal;  // debug: one byte per pixel; null when not wanted
+    long scratchSize, diagonalsSize;  // per block
+    int stride, width, height;
+};
+// One orthogonal area: crossing codes, distances to the two ends, sub-sample offset -> weights.
+struct SmaaAreaQuery {
+    int left, right, leftPx, rightPx;
+    double offset;
+    double own, opposite;  // out
+};
+struct SmaaAreaArgs {
+    SmaaAreaQuery* queries;
+};
+
+struct SmaaKernels {
+    RowKernel<SmaaEdgeArgs> edges;
+    RowKernel<SmaaTransposeArgs> transpose;  // over blocks of 8 columns
+};
+struct SmaaBlendKernels {
+    RowKernel<SmaaBlendArgs> blend;  // over blocks of kSmaaBlockRows rows
+    RowKernel<SmaaAreaArgs> areas;
+};
+}  // namespace aa
+AA_KERNEL_TABLE(aa::SmaaKernels, smaaKernels)
+AA_KERNEL_TABLE(aa::SmaaBlendKernels, smaaBlendKernels)

@@ -1,0 +1,325 @@
+#include "methods/spatial/area.kernel.h"
+#include "methods/spatial/edge_bits.kernel.h"
+#include "methods/spatial/smaa_kernels.h"
+
+// SMAA's blending weights, and the blend: block by block of rows, so that the weights stay in the first-level cache.
+// Left edges are top edges of the transposed planes.
+namespace AA_ARCH {
+using namespace aa;
+
+// Short U shapes are rounded: their tips would alternate otherwise.
+template <class T>
+AA_INLINE Pair<T> smoothed(Pair<T> a, T d) {
+    const T t = min(d * T(1.0 / 32), T(1));
+    auto bend = [&](T v) __attribute__((always_inline)) {
+        const T s = sqrt(v + v) * T(0.5);
+        return s + (v - s) * t;
+    };
+    return {bend(a.own), bend(a.opposite)};
+}
+// Crossing codes of the two ends (0 none, 1 above, 3 below, 4 both), distances to them in px -> weights.
+template <class T>
+AA_INLINE Pair<T> ortho_area(int left, int right, int leftPx, int rightPx, T offset) {
+    const Pair<T> nothing{T(0), T(0)};
+    const bool single1 = left == 1 || left == 3, single2 = right == 1 || right == 3;
+    if (!single1 && !single2) return nothing;
+    const T l = T(leftPx), d = T(leftPx + rightPx + 1), above = T(0.5) + offset, below = T(-0.5) + offset;
+    const T h1 = left == 1 ? above : below, h2 = right == 1 ? above : below;
+    if (single1 && single2) {
+        if (left == right) return smoothed(first_half(h1, d, l), d) + smoothed(second_half(h2, d, l), d);
+        const Pair<T> z = segment_area(T(0), h1, d, h2, l);
+        if (offset == T(0)) return z;
+        const Pair<T> both_halves = first_half(h1, d, l) + second_half(h2, d, l);
+        return {(z.own + both_halves.own) * T(0.5), (z.opposite + both_halves.opposite) * T(0.5)};
+    }
+    if (single1) {
+        if (right == 4) return segment_area(T(0), h1, d, left == 1 ? below : above, l);
+        return leftPx <= rightPx ? first_half(h1, d, l) : nothing;
+    }
+    if (left == 4) return segment_area(T(0), right == 1 ? below : above, d, h2, l);
+    return leftPx >= rightPx ? second_half(h2, d, l) : nothing;
+}
+// The published form: 16 x 16 entries at square distances, bilinear in the roots.
+template <class T>
+AA_INLINE Pair<T> table_area(const float* table, int left, int right, int leftPx, int rightPx) {
+    const float* const block = table + (left * 5 + right) * 16 * 16 * 2;
+    const T u = min(sqrt(T(leftPx)), T(15)), v = min(sqrt(T(rightPx)), T(15));
+    const int i = int(u) < 14 ? int(u) : 14, j = int(v) < 14 ? int(v) : 14;
+    const T fu = u - T(i), fv = v - T(j);
+    auto at = [&](int k) __attribute__((always_inline)) {
+        const float* const p = block + 2 * (i * 16 + j) + k;
+        const T a = T(p[0]) + (T(p[32]) - T(p[0])) * fu, b = T(p[2]) + (T(p[34]) - T(p[2])) * fu;
+        return a + (b - a) * fv;
+    };
+    return {at(0), at(1)};
+}
+
+// ---- diagonals (s.3.2.4): `top` and `left` are the edge bits of a pixel's upper and left border
+
+struct EdgesAt {
+    const SmaaBlendArgs& a;
+    AA_INLINE bool top(int x, int y) const { return bit_at(a.top.along + long(y) * a.top.stride, x); }
+    AA_INLINE bool left(int x, int y) const { return bit_at(a.top.cross + long(y) * a.top.stride, x); }
+};
+struct DiagonalEnd {
+    int distance;
+    bool found;
+};
+// One arm: pixels at n * (dx, dy) as long as both bits of the staircase are set; the left bit is read `leftShift` away.
+AA_INLINE DiagonalEnd diagonal_arm(const EdgesAt& e, int x, int y, int dx, int dy, int leftShift, bool countLast) {
+    const int steps = e.a.diagonalSteps;
+    int n = 1, passed = 0;
+    bool success = true;
+    for (; n <= steps && success; n++) {
+        success = e.top(x + n * dx, y + n * dy) && e.left(x + n * dx + leftShift, y + n * dy);
+        passed += success;
+    }
+    const int distance = passed < steps - 1 ? passed : steps - 1;
+    const bool last = countLast && e.top(x + (n - 1) * dx, y + (n - 1) * dy);
+    return {distance + (last ? 1 : 0), !success};
+}
+template <class T>
+AA_INLINE Pair<T> diagonal_lookup(const float* table, bool h1, bool v1, bool found1, bool h2, bool v2, bool found2,
+                                  int d1, int d2) {
+    const int c1 = found1 ? 2 * h1 + v1 : 0, c2 = found2 ? 2 * h2 + v2 : 0;
+    const float* const p = table + 2 * (((c1 * 4 + c2) * kDiagonals + d1) * kDiagonals + d2);
+    return {T(p[0]), T(p[1])};
+}
+// A diagonal is longer than 2 px, so one of its arms passes its first pixel: where the bits of a row's neighbours allow
+// that, for the pixels from x on. Bottom left to top right, and top left to bottom right.
+struct DiagonalCandidates {
+    uint64_t rising, falling;
+    AA_INLINE DiagonalCandidates(const SmaaBlendArgs& a, int x, int y) {
+        const uint8_t *top = a.top.along + long(y) * a.top.stride, *left = a.top.cross + long(y) * a.top.stride;
+        const uint8_t *topAbove = top - a.top.stride, *leftAbove = left - a.top.stride, *topBelow = top + a.top.stride,
+                      *leftBelow = left + a.top.stride;
+        rising = (bits_from(topAbove, x + 1) & bits_from(leftAbove, x + 1)) |
+                 (bits_from(left, x) & bits_from(topBelow, x - 1) & bits_from(leftBelow, x - 1));
+        falling = (bits_from(topAbove, x - 1) & bits_from(leftAbove, x)) |
+                  (bits_from(left, x + 1) & bits_from(topBelow, x + 1) & bits_from(leftBelow, x + 2));
+    }
+};
+template <class T>
+AA_INLINE Pair<T> diagonal_weights(const SmaaBlendArgs& a, int x, int y) {
+    const EdgesAt e{a};
+    Pair<T> sum{T(0), T(0)};
+    const DiagonalCandidates candidates(a, x, y);
+    if (candidates.rising & 1) {
+        const DiagonalEnd d1 = e.left(x, y) ? diagonal_arm(e, x, y, -1, 1, 0, true) : DiagonalEnd{0, true};
+        const DiagonalEnd d2 = diagonal_arm(e, x, y, 1, -1, 0, false);
+        const int n = d1.distance, m = d2.distance;
+        if (n + m > 2)
+            sum = diagonal_lookup<T>(a.diagonalTable[0], e.top(x - n - 1, y + n), e.left(x - n, y + n), d1.found,
+                                     e.top(x + m + 1, y - m), e.left(x + m + 1, y - m - 1), d2.found, n, m);
+    }
+    if (candidates.falling & 1) {  // the same shape mirrored, so that own and opposite change places
+        const DiagonalEnd d1 = diagonal_arm(e, x, y, -1, -1, 1, false);
+        const DiagonalEnd d2 = e.left(x + 1, y) ? diagonal_arm(e, x, y, 1, 1, 1, true) : DiagonalEnd{0, true};
+        const int n = d1.distance, m = d2.distance;
+        if (n + m > 2) {
+            const Pair<T> w =
+                diagonal_lookup<T>(a.diagonalTable[1], e.top(x - n - 1, y - n), e.left(x - n, y - n - 1), d1.found,
+                                   e.top(x + m + 1, y + m), e.left(x + m + 1, y + m), d2.found, n, m);
+            sum = sum + Pair<T>{w.opposite, w.own};
+        }
+    }
+    return sum;
+}
+
+// ---- lines along rows or columns (s.3.2.2, 3.2.3, 3.2.5)
+
+// Edges that cross the end of a line, from its row -2 to +1: bits 1 and 2 touch it, 0 and 3 lie beyond.
+AA_INLINE unsigned crossing_bits(const SmaaAxis& axis, int p, int q) {
+    const int row = p < 0 ? 0 : p < axis.crossTransposedRows ? p : axis.crossTransposedRows - 1;  // the sampler clamps
+    return unsigned(bits_from(axis.crossTransposed + long(row) * axis.crossTransposedStride, q - 2)) & 15u;
+}
+AA_INLINE int crossing_code(unsigned bits) { return (bits & 2 ? 1 : 0) + (bits & 4 ? 3 : 0); }
+// Crossing edges make the line turn: a sharp corner keeps part of its shape. The factors of both weights for every
+// combination of nearer end (left, right, both alike) and crossing edges beyond the line (rows -2 and +1, either end).
+template <class T>
+struct Corners {
+    Pair<T> factor[3 * 16];
+    AA_INLINE explicit Corners(float cornerRounding) {
+        const T reduction = cornerRounding < 0 ? T(0) : T(1) - T(cornerRounding);  // negative: off
+        for (int nearer = 0; nearer < 3; nearer++)
+            for (int bits = 0; bits < 16; bits++) {
+                const T share = nearer == 2 ? reduction * T(0.5) : reduction;
+                const T left = nearer != 1 ? share : T(0), right = nearer != 0 ? share : T(0);
+                auto at = [&](int leftBit, int rightBit) __attribute__((always_inline)) {
+                    return max(T(0), T(1) - (bits & leftBit ? left : T(0)) - (bits & rightBit ? right : T(0)));
+                };
+                factor[nearer * 16 + bits] = {at(2, 8), at(1, 4)};
+            }
+    }
+    AA_INLINE Pair<T> of(unsigned leftBits, unsigned rightBits, int leftPx, int rightPx) const {
+        const int nearer = int(leftPx > rightPx) + 2 * int(leftPx == rightPx);
+        const unsigned bits = (leftBits & 1) | (leftBits >> 2 & 2) | (rightBits & 1) << 2 | (rightBits & 8);
+        return factor[nearer * 16 + int(bits)];
+    }
+};
+template <class T>
+AA_INLINE Pair<T> stored(const SmaaBlendArgs& a, Pair<T> w) {
+    if (a.unorm8) w = {floor(w.own * T(255) + T(0.5)) / T(255), floor(w.opposite * T(255) + T(0.5)) / T(255)};
+    return {T(float(w.own)), T(float(w.opposite))};
+}
+// The edge at position p of line q; `pixel` is its index in the debug planes, negative where another block keeps it.
+template <class T>
+AA_INLINE Pair<T> line_weights(const SmaaBlendArgs& a, const SmaaAxis& axis, const Corners<T>& corners, int p, int q,
+                               long pixel) {
+    const int reach = 2 * a.searchSteps;
+    const uint8_t *along = axis.along + long(q) * axis.stride, *cross = axis.cross + long(q) * axis.stride;
+    const int leftPx = run_down(along, cross, cross - axis.stride, p, reach - 1);
+    const int rightPx = run_up(along, cross, cross - axis.stride, p, reach);
+    const unsigned leftBits = crossing_bits(axis, p - leftPx, q), rightBits = crossing_bits(axis, p + rightPx + 1, q);
+    Pair<T> w;
+    if (std::is_same_v<T, float> && axis.exactTable) {
+        const unsigned pair = (leftBits >> 1 & 3) * 4 + (rightBits >> 1 & 3);
+        const float* const entry = axis.exactTable + 2 * ((long(pair) * reach + leftPx) * (reach + 1) + rightPx);
+        w = {T(entry[0]), T(entry[1])};
+    } else if (axis.publishedTable) {
+        w = table_area<T>(axis.publishedTable, crossing_code(leftBits), crossing_code(rightBits), leftPx, rightPx);
+    } else {
+        w = ortho_area<T>(crossing_code(leftBits), crossing_code(rightBits), leftPx, rightPx, T(axis.offset));
+    }
+    w = {min(w.own, T(1)), min(w.opposite, T(1))};  // samples beyond their pixel (jitter + position) lift lines over it
+    const Pair<T> rounding = corners.of(leftBits, rightBits, leftPx, rightPx);
+    w = {w.own * rounding.own, w.opposite * rounding.opposite};
+    if (axis.lengths && pixel >= 0) {
+        axis.lengths[2 * pixel] = float(leftPx);
+        axis.lengths[2 * pixel + 1] = float(rightPx);
+    }
+    return stored(a, w);
+}
+AA_INLINE void keep(const SmaaAxis& axis, long pixel, float own, float opposite) {
+    if (!axis.weights || pixel < 0) return;
+    axis.weights[2 * pixel] = own;
+    axis.weights[2 * pixel + 1] = opposite;
+}
+
+// ---- rows
+
+// The blending weights of a row's edges, 0 where there is none.
+struct RowWeights {
+    float *own, *opposite;
+    AA_INLINE void clear(int width) {
+        __builtin_memset(own, 0, size_t(width) * sizeof(float));
+        __builtin_memset(opposite, 0, size_t(width) * sizeof(float));
+    }
+    template <class T>
+    AA_INLINE void set(int x, Pair<T> w, const SmaaAxis& debug, long pixel) {
+        own[x] = float(w.own), opposite[x] = float(w.opposite);
+        keep(debug, pixel, own[x], opposite[x]);
+    }
+};
+// Of the row's top edges; sets the bits of the pixels that a diagonal took. `own`: the row lies in the block, and is
+// not the one after it.
+template <class T>
+AA_INLINE void top_weights(const SmaaBlendArgs& a, const Corners<T>& corners, int y, bool own, RowWeights weights,
+                           uint8_t* diagonals) {
+    const uint8_t* const top = a.top.along + long(y) * a.top.stride;
+    const auto pixel = [&](int x) { return own ? long(y) * a.width + x : -1; };
+    __builtin_memset(diagonals, 0, size_t(a.width / 8 + 9));
+    weights.clear(a.width);
+    if (a.diagonalSteps > 0)
+        for_each_bit(
+            a.width,
+            [&](int x) {
+                const DiagonalCandidates candidates(a, x, y);
+                return bits_from(top, x) & (candidates.rising | candidates.falling);
+            },
+            [&](int x) __attribute__((always_inline)) {
+                const Pair<T> w = diagonal_weights<T>(a, x, y);
+                if (!(w.own + w.opposite > T(0))) return;
+                diagonals[x >> 3] = uint8_t(diagonals[x >> 3] | 1 << (x & 7));
+                if (a.isDiagonal && own) a.isDiagonal[pixel(x)] = 1;
+                weights.set(x, stored(a, w), a.top, pixel(x));
+            });
+    for_each_bit(
+        a.width, [&](int x) { return bits_from(top, x) & ~bits_from(diagonals, x); },
+        [&](int x) __attribute__((always_inline)) {
+            weights.set(x, line_weights<T>(a, a.top, corners, x, y, pixel(x)), a.top, pixel(x));
+        });
+}
+template <class T>
+AA_INLINE void left_weights(const SmaaBlendArgs& a, const Corners<T>& corners, int y, RowWeights weights,
+                            const uint8_t* diagonals) {
+    const uint8_t* const left = a.top.cross + long(y) * a.top.stride;
+    weights.clear(a.width);
+    for_each_bit(
+        a.width, [&](int x) { return bits_from(left, x) & ~bits_from(diagonals, x); },
+        [&](int x) __attribute__((always_inline)) {
+            const long pixel = long(y) * a.width + x;
+            weights.set(x, line_weights<T>(a, a.left, corners, y, x, pixel), a.left, pixel);
+        });
+    weights.opposite[a.width] = weights.opposite[a.width - 1];  // the sampler clamps
+}
+// N<R> pixels with the weights of their four borders.
+template <class R>
+AA_INLINE void blend_pixels(const SmaaBlendArgs& a, long o, R right, R left, R bottom, R top) {
+    using T = Elem<R>;
+    const auto active = right + left + bottom + top >= R(T(1e-5));
+    // Symmetric corners weigh both axes alike; they count as vertical in every precision, as equal 8-bit weights do.
+    const auto horizontal = max(right, left) > max(bottom, top) * R(T(1 + 1e-5));
+    const R forward = select(horizontal, right, bottom), backward = select(horizontal, left, top);
+    const R total = select(active, forward + backward, R(T(1)));
+    const R f = forward * forward / total, b = backward * backward / total;
+    for (int c = 0; c < a.channels; c++) {
+        const float* const p = a.in[c] + o;
+        const R own = load<R>(p);
+        const R next = select(horizontal, load<R>(p + 1), load<R>(p + a.stride)),
+                previous = select(horizontal, load<R>(p - 1), load<R>(p - a.stride));
+        store(select(active, own + f * (next - own) + b * (previous - own), own), a.out[c] + o);
+    }
+}
+template <class R>
+AA_INLINE void blend_row(const SmaaBlendArgs& a, int y, RowWeights top, RowWeights below, RowWeights left) {
+    const uint8_t *tops = a.top.along + long(y) * a.top.stride, *belows = tops + a.top.stride,
+                  *lefts = a.top.cross + long(y) * a.top.stride;
+    for (int x = 0; x < a.width; x += 8) {
+        const long o = long(y) * a.stride + x;
+        const unsigned edges = unsigned(tops[x >> 3] | belows[x >> 3] | lefts[x >> 3]) | (lefts[(x >> 3) + 1] & 1u);
+        for (int i = 0; i < 8; i += N<R>)
+            if (edges)
+                blend_pixels<R>(a, o + i, load<R>(left.opposite + x + i + 1), load<R>(left.own + x + i),
+                                load<R>(below.opposite + x + i), load<R>(top.own + x + i));
+            else
+                for (int c = 0; c < a.channels; c++) store(load<R>(a.in[c] + o + i), a.out[c] + o + i);
+    }
+}
+template <class R>
+__attribute__((flatten)) void blendBlocks(const SmaaBlendArgs& a, int b0, int b1) {
+    using T = Elem<R>;
+    const Corners<T> corners(a.cornerRounding);
+    const long rowSize = a.scratchSize / 6;
+    for (int block = b0; block < b1; block++) {
+        float* const scratch = a.scratch + block * a.scratchSize;
+        RowWeights top{scratch, scratch + rowSize}, below{scratch + 2 * rowSize, scratch + 3 * rowSize};
+        const RowWeights left{scratch + 4 * rowSize, scratch + 5 * rowSize};
+        uint8_t* topDiagonals = a.diagonals + block * a.diagonalsSize;
+        uint8_t* belowDiagonals = topDiagonals + a.diagonalsSize / 2;
+        const int y0 = block * kSmaaBlockRows, y1 = y0 + kSmaaBlockRows < a.height ? y0 + kSmaaBlockRows : a.height;
+        top_weights<T>(a, corners, y0, true, top, topDiagonals);
+        for (int y = y0; y < y1; y++) {
+            const bool last = y + 1 == a.height;  // the sampler clamps
+            if (!last) top_weights<T>(a, corners, y + 1, y + 1 < y1, below, belowDiagonals);
+            left_weights<T>(a, corners, y, left, topDiagonals);
+            blend_row<R>(a, y, top, last ? top : below, left);
+            const RowWeights spare = top;
+            top = below, below = spare;
+            uint8_t* const spareDiagonals = topDiagonals;
+            topDiagonals = belowDiagonals, belowDiagonals = spareDiagonals;
+        }
+    }
+}
+template <class R>
+void areaRows(const SmaaAreaArgs& a, int from, int to) {
+    for (int k = from; k < to; k++) {
+        SmaaAreaQuery& q = a.queries[k];
+        const auto w = ortho_area<Elem<R>>(q.left, q.right, q.leftPx, q.rightPx, Elem<R>(q.offset));
+        q.own = double(w.own);
+        q.opposite = double(w.opposite);
+    }
+}
+}  // namespace AA_ARCH
+
+AA_DEFINE_TABLE(aa::SmaaBlendKernels, smaaBlendKernels) = {AA_ROWS(blendBlocks), AA_ROWS(areaRows)};

@@ -1,0 +1,65 @@
+#include "methods/stages/motion_blur.h"
+
+#include <cmath>
+
+namespace aa {
+namespace {
+
+constexpr int kMaxSamples = 32;  // Chapman 2012
+
+class MotionBlurStage : public Stage {
+  public:
+    explicit MotionBlurStage(float scale) : scale_(scale) {}
+
+    void apply(const Frame& frame, const Method&, Space, const Exec& exec, Rgb& image) override {
+        if (blurred_.width() != frame.width || blurred_.height() != frame.height)
+            blurred_ = Rgb(frame.width, frame.height);
+        forRows(exec, frame.height, [&](int y0, int y1) {
+            for (int y = y0; y < y1; y++)
+                for (int x = 0; x < frame.width; x++) blurPixel(frame, image, x, y);
+        });
+        std::swap(image, blurred_);
+    }
+    size_t stateBytes() const override { return blurred_.bytes(); }
+
+  private:
+    void blurPixel(const Frame& frame, const Rgb& image, int x, int y) {
+        const float longest = 0.5f * float(std::max(frame.width, frame.height));
+        float vx = frame.motionXPx.at(x, y) * scale_, vy = frame.motionYPx.at(x, y) * scale_;
+        const float length = std::sqrt(vx * vx + vy * vy);
+        if (length > longest) vx *= longest / length, vy *= longest / length;
+        // Not (length >= 2): NaN, and infinities, whose scaled components are NaN, keep their pixel.
+        const int n = length >= 2 && std::isfinite(vx) && std::isfinite(vy)
+                          ? std::min(int(std::min(length, longest)), kMaxSamples)
+                          : 1;
+        float sum[3];
+        for (size_t c = 0; c < 3; c++) sum[c] = image.c[c].at(x, y);
+        for (int i = 1; i < n; i++) {
+            const float t = float(i) / float(n - 1) - 0.5f;
+            const float u = std::clamp(float(x) + vx * t, 0.0f, float(frame.width - 1)),
+                        v = std::clamp(float(y) + vy * t, 0.0f, float(frame.height - 1));
+            const int ix = int(u), iy = int(v);
+            const float fx = u - float(ix), fy = v - float(iy);
+            for (size_t c = 0; c < 3; c++) {
+                const float *a = image.c[c].row(iy) + ix, *b = image.c[c].row(iy + 1) + ix;
+                const float top = a[0] + (a[1] - a[0]) * fx, bottom = b[0] + (b[1] - b[0]) * fx;
+                sum[c] += top + (bottom - top) * fy;
+            }
+        }
+        for (size_t c = 0; c < 3; c++) blurred_.c[c].at(x, y) = n == 1 ? sum[c] : sum[c] / float(n);
+    }
+    float scale_;
+    Rgb blurred_;
+};
+}  // namespace
+
+StageDescriptor motionBlurStage() {
+    return {
+        .value = realParam("motionBlur", "0.5", 0, 16, "length of the blur in frame intervals; 0.5 = half-open shutter",
+                           "Chapman 2012; methods/06 s.6.11"),
+        .passes = Pass::motion,
+        .create = [](const std::string& value, const MethodSpec&, const ShotInfo&) -> std::unique_ptr<Stage> {
+            return std::make_unique<MotionBlurStage>(std::stof(value));
+        }};
+}
+}  // namespace aa

@@ -1,0 +1,137 @@
+#include "methods/temporal/asaa.h"
+
+#include <utility>
+
+#include "image/error.h"
+#include "methods/method.h"
+#include "methods/temporal/temporal.h"
+
+namespace aa {
+namespace {
+
+// Where the static surface point at (p, z) of this frame lies in clip space of another camera.
+CameraPath cameraPath(const Frame& frame, const std::optional<Camera>& other) {
+    CameraPath path;
+    const auto rays = viewRays(frame);
+    if (!rays || !other || other->kind != frame.camera->kind) return path;
+    path.moves = other->view != frame.camera->view || other->projection != frame.camera->projection;
+    const glm::dmat4 m = other->projection * other->view * glm::inverse(frame.camera->view);
+    const int rows[3] = {0, 1, 3};
+    for (int r = 0; r < 3; r++) {
+        const int i = rows[r];
+        const glm::dvec3 d = m[0][i] * rays->perDepth[0] + m[1][i] * rays->perDepth[1] - glm::dvec3(0, 0, m[2][i]);
+        const glm::dvec3 c = m[0][i] * rays->constant[0] + m[1][i] * rays->constant[1] + glm::dvec3(0, 0, m[3][i]);
+        for (int k = 0; k < 3; k++) path.perDepth[r][k] = float(d[k]), path.constant[r][k] = float(c[k]);
+    }
+    return path;
+}
+
+class Asaa : public Method {
+  public:
+    explicit Asaa(const Params& params) : params_(params) {}
+
+    void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
+        const int w = frame.width, h = frame.height;
+        const bool fits = spare_.width() == w && spare_.height() == h, fresh = frame.reset || !started_;
+        if (!fresh && !fits)
+            throw InputError("asaa: frame " + std::to_string(frame.number) + " is " + std::to_string(w) + "x" +
+                             std::to_string(h) + ", its history is " + std::to_string(spare_.width()) + "x" +
+                             std::to_string(spare_.height()) + "; set `reset` on the frame where the size changes");
+        if (!fits) {
+            spare_ = RgbaPlane(w, h);
+            for (auto& b : buffers_) b.image = RgbaPlane(w, h);
+            for (auto& c : count_) c = PlaneF(w, h);
+        }
+        if (fresh)
+            for (auto& b : buffers_) b.filled = false;
+        for (auto& b : buffers_) b.age++;
+
+        // (-.25, -.25), (-.25, .25), (.25, -.25), (.25, .25): the quadrant that the jitter lies in.
+        const size_t quadrant = size_t(frame.jitterPx.x >= 0) * 2 + size_t(frame.jitterPx.y >= 0);
+        const auto phi = [](size_t q) { return glm::vec2(q & 2 ? 0.25f : -0.25f, q & 1 ? 0.25f : -0.25f); };
+        AsaaArgs args{};
+        args.in = temporal::frameView(frame, frame.colorEncoded);
+        if (params_.flag("unjitter")) {  // to where the quadrant's buffer has its samples
+            temporal::unjitter(frame.colorEncoded, frame.jitterPx - glm::dvec2(phi(quadrant)), exec, unjittered_);
+            args.in.color = view(std::as_const(unjittered_));
+        }
+        args.in.out = view(out);
+        args.in.next = spare_.row(0);
+        args.lastFrame = cameraPath(frame, frame.previousCamera);
+        for (size_t i = 0; i < 4; i++) {
+            const Buffer& b = buffers_[i];
+            if (!b.filled) continue;
+            args.anyHistory = true;
+            args.buffer[i] = {b.image.row(0), phi(i).x, phi(i).y, float(b.age), cameraPath(frame, b.camera), {}};
+            if (b.camera) args.buffer[i].expected = expectedDepth(frame, *b.camera);
+        }
+        args.phiX = phi(quadrant).x, args.phiY = phi(quadrant).y;
+        args.previousCount = count_[0].row(0);
+        args.nextCount = count_[1].row(0);
+        args.eq331 = params_.choice("blurMode") == "eq331";
+        args.fourInMotion = params_.choice("motionCount") == "four";
+        args.countAtPixel = !args.eq331 && temporal::countAtPixel(params_);
+        args.rejection = temporal::rejectionTest(params_);
+        args.in.debug = debug_.begin(*this, w, h);
+        runKernel(asaaKernelsFor(exec).resolve, exec, args, h);
+
+        std::swap(spare_, buffers_[quadrant].image);
+        buffers_[quadrant].image.fillBorder();
+        buffers_[quadrant].camera = frame.camera;
+        buffers_[quadrant].filled = true;
+        buffers_[quadrant].age = 0;
+        std::swap(count_[0], count_[1]);
+        count_[0].fillBorder();
+        started_ = true;
+    }
+    size_t stateBytes() const override { return 5 * spare_.bytes() + 2 * count_[0].bytes() + unjittered_.bytes(); }
+    const PlaneF* rejection() const override { return debug_.rejection(); }
+    std::vector<DebugLayer> debugLayers() const override {
+        std::vector<DebugLayer> layers = debug_.layers();
+        if (!layers.empty()) layers.push_back({"sampleCount", {count_[0]}});
+        return layers;
+    }
+
+  private:
+    struct Buffer {
+        RgbaPlane image;
+        std::optional<Camera> camera;
+        int age = 0;  // frames since its update
+        bool filled = false;
+    };
+    Params params_;
+    Buffer buffers_[4];
+    RgbaPlane spare_;
+    PlaneF count_[2];
+    Rgb unjittered_;
+    bool started_ = false;
+    TemporalDebugLayers debug_;
+};
+}  // namespace
+
+MethodDescriptor asaaDescriptor() {
+    return {.id = "asaa",
+            .title = "Amortized supersampling",
+            .family = "temporal",
+            .summary = "Four sub-pixel buffers followed through camera and object motion, summed with tent weights.",
+            .source = "Yang et al. 2009; seed 001 s.3.8, 4.4.1; methods/06 s.6.8",
+            .passes = Pass::color | Pass::depth | Pass::motion,
+            .input = Space::encoded,
+            .output = Space::encoded,
+            .temporal = true,
+            .params = {temporal::unjitterParam(false, "methods/06 B0: by the normally distributed part of the jitter"),
+                       choiceParam("blurMode", "thesis", {"thesis", "eq331"},
+                                   "limit of blur in motion: 4 samples, or eq 3.31 with the threshold 0.12 above the "
+                                   "filter's variance and the sample count of eq 3.29",
+                                   "methods/11 nr 23"),
+                       choiceParam("motionCount", "atMost", {"atMost", "four"},
+                                   "sample count of a moving pixel: at most 4 as the text says, or 4 as its listing "
+                                   "4.11 sets it",
+                                   "seed 001 s.4.4.1", "blurMode=thesis"),
+                       temporal::countAtParam("seed 001 s.4.4.1; eq331 reads it where the surface was, as eq 3.29 does",
+                                              "blurMode=thesis"),
+                       temporal::depthToleranceParam(), temporal::bothSidesParam(),
+                       temporal::magnificationParam("1", "seed 001 s.4.4.1: figures 4.10 and 4.11; methods/11 nr 18")},
+            .create = [](const Params& p, const ShotInfo&) { return std::make_unique<Asaa>(p); }};
+}
+}  // namespace aa

@@ -1,0 +1,123 @@
+#include "methods/temporal/fsr2n.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "methods/method.h"
+#include "methods/temporal/temporal.h"
+
+namespace aa {
+namespace {
+
+double lanczos2(double x) {
+    if (x >= 2) return 0;
+    const double t = std::numbers::pi * x;
+    return x < 1e-9 ? 1 : 2 * std::sin(t) * std::sin(t / 2) / (t * t);
+}
+// Weights of the 3x3 samples by their distance from the pixel centre, normalised.
+template <class Weight>
+void fillWeights(float (&weights)[9], glm::dvec2 jitterPx, const Weight& of) {
+    double w[9], sum = 0;
+    for (int n = 0; n < 9; n++) sum += w[n] = of(std::hypot(n % 3 - 1 + jitterPx.x, n / 3 - 1 + jitterPx.y));
+    for (int n = 0; n < 9; n++) weights[n] = float(w[n] / sum);
+}
+// Length of the ray through the picture's corner against that through its centre: 1 without perspective.
+double cornerStretch(const Frame& frame) {
+    if (!frame.camera || frame.camera->kind != "perspective") return 1;
+    const double px = frame.camera->projection[0][0], py = frame.camera->projection[1][1];
+    return px > 0 && py > 0 ? std::sqrt(1 + 1 / (px * px) + 1 / (py * py)) : 1;
+}
+
+class Fsr2n : public Method {
+  public:
+    Fsr2n(const Params& params, int jitterPeriod)
+        : params_(params), lockDecay_(1.0f / float(std::max(1, jitterPeriod))) {}
+
+    void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
+        const Params& p = params_;
+        const Fsr2nKernels& kernels = fsr2nKernelsFor(exec);
+        Fsr2nArgs args{};
+        args.in = temporal::frameView(frame, frame.colorLinear);
+        if (p.flag("unjitter")) temporal::unjitter(frame, args.in);
+        const glm::dvec2 jitterPx{args.in.jitterXPx, args.in.jitterYPx};
+        args.in.out = view(out);
+        history_.begin(frame, "fsr2n", args.in);
+        args.in.feedbackCeiling = temporal::feedbackCeiling(p, history_.framesSinceReset());
+        args.in.dilation = Dilation::closest3x3;
+        for (PlaneF* plane : {&nearest_, &luma_[0], &luma_[1]})
+            if (plane->width() != frame.width || plane->height() != frame.height)
+                *plane = PlaneF(frame.width, frame.height);
+        if (args.in.history) {
+            for (int y = 0; y < frame.height; y++) std::fill(nearest_.row(y), nearest_.row(y) + frame.width, kNoDepth);
+            runKernel(kernels.scatter, exec, Fsr2nScatterArgs{args.in, nearest_.row(0), exec.parallel}, frame.height);
+            nearest_.fillBorder();
+        }
+        args.nearest = nearest_.row(0);
+        args.previousLuma = luma_[0].row(0);
+        args.nextLuma = luma_[1].row(0);
+        fillWeights(args.lanczos, jitterPx, lanczos2);
+        fillWeights(args.still, jitterPx, [](double d) { return std::exp(-2 * d * d); });
+        fillWeights(args.moving, jitterPx, [](double d) { return std::exp(-3 * d * d); });
+        args.weight = p.realf("weight");
+        args.boxScale = p.realf("boxScale");
+        args.lockDecay = lockDecay_;
+        args.locks = p.flag("locks");
+        const double diagonalPx = std::hypot(frame.width, frame.height);
+        args.separation = float(1.37e-5 * cornerStretch(frame) * diagonalPx);            // FSR 2
+        args.power = float(1 + 2 * std::min(1.0, diagonalPx / std::hypot(1920, 1080)));  // FSR 2 has 2203, its rounding
+        args.in.debug = debug_.begin(*this, frame.width, frame.height);
+        if (keepDebugLayers) {
+            for (PlaneF* plane : {&depthClip_, &lock_})
+                if (plane->width() != frame.width || plane->height() != frame.height)
+                    *plane = PlaneF(frame.width, frame.height);
+            args.debugDepthClip = depthClip_.row(0), args.debugLock = lock_.row(0);
+        }
+        temporal::runTemporal(kernels.resolve, exec, args);
+        history_.end({}, exec);
+        std::swap(luma_[0], luma_[1]);
+        luma_[0].fillBorder();
+    }
+    size_t stateBytes() const override {
+        return history_.bytes() + nearest_.bytes() + luma_[0].bytes() + luma_[1].bytes();
+    }
+    const PlaneF* rejection() const override { return debug_.rejection(); }
+    std::vector<DebugLayer> debugLayers() const override {
+        std::vector<DebugLayer> layers = debug_.layers();
+        if (!lock_.empty()) {
+            layers.push_back({"depthClip", {depthClip_}});
+            layers.push_back({"lock", {lock_}});
+        }
+        return layers;
+    }
+
+  private:
+    Params params_;
+    float lockDecay_;
+    ColourHistory history_;
+    PlaneF nearest_, luma_[2];
+    TemporalDebugLayers debug_;
+    PlaneF depthClip_, lock_;
+};
+}  // namespace
+
+MethodDescriptor fsr2nDescriptor() {
+    return {
+        .id = "fsr2n",
+        .title = "FSR2-like accumulation at native resolution",
+        .family = "temporal",
+        .summary = "Depth clip by scattered depth, locked thin features, Lanczos filters, tone-mapped blend.",
+        .source = "AMD FSR 2 (public source), not identical to it; methods/06 s.6.14",
+        .passes = Pass::color | Pass::depth | Pass::motion,
+        .temporal = true,
+        .params = {temporal::unjitterParam(false, "methods/06 B0; the filter of the current frame knows its jitter"),
+                   realParam("weight", "0.1", 0.001, 1, "weight of the current colour against 1 of the history",
+                             "methods/06 s.6.14; 0.1 is where FSR 2's limit of 10 times the weight is neutral"),
+                   realParam("boxScale", "1", 1, 20,
+                             "half width of the colour box at rest, in standard deviations; 1 in motion",
+                             "FSR 2: up to 20 when it upscales much, at native resolution its least"),
+                   flagParam("locks", true, "keep the history of one-pixel ridges outside the colour box", "FSR 2"),
+                   temporal::warmupParam()},
+        .create = [](const Params& p, const ShotInfo& shot) { return std::make_unique<Fsr2n>(p, shot.jitterPeriod); }};
+}
+}  // namespace aa

@@ -1,0 +1,198 @@
+#include "methods/temporal/fsr2n.h"
+
+#include "kernels/math.h"
+#include "methods/temporal/temporal_blocks.kernel.h"
+
+namespace AA_ARCH {
+
+constexpr float kLeastSplat = 0.01f;   // bilinear weights below it are no evidence (FSR 2)
+constexpr float kSimilarLuma = 1.05f;  // ratio up to which two pixels are of one ridge (FSR 2)
+constexpr float kLockedLuma = 0.9f;    // ratio down to which a lock's luma is unchanged (FSR 2)
+constexpr float kFastPx = 20;          // speed at which box and weight are those of motion (FSR 2)
+
+AA_INLINE void take_least(float* at, float z, bool shared) {
+    if (!shared) {
+        if (z < *at) *at = z;
+        return;
+    }
+    int32_t bits, *cell = (int32_t*)at;
+    std::memcpy(&bits, &z, 4);
+    int32_t old = __atomic_load_n(cell, __ATOMIC_RELAXED);
+    while (bits < old && !__atomic_compare_exchange_n(cell, &old, bits, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+    }
+}
+template <class R>
+__attribute__((flatten)) void fsr2nScatterRows(const Fsr2nScatterArgs& a, int y0, int y1) {
+    using T = Elem<R>;
+    const TemporalIn& in = a.in;
+    for (int y = y0; y < y1; y++)
+        for (int x = 0; x < in.width; x += N<R>) {
+            const Surface<R> s = closest_surface<R>(in, long(y) * in.stride + x, false);
+            const Reprojection<R> q = reproject(in, s.motion, x, y);
+            alignas(64) float z[N<R>];
+            store(s.depthView, z);
+            const Offsets<R> texel = texel_offsets(q, in.stride);
+            const R zero(T(0)), one(T(1)), left = R(T(x)) + iota<R>() + q.wholeX, top = R(T(y)) + q.wholeY;
+            const auto known = both(both(q.inside, s.depthView > zero), iota<R>() < R(T(in.width - x)));
+            for (int tap = 0; tap < 4; tap++) {
+                const int dx = tap & 1, dy = tap >> 1;
+                const R w = (dx ? q.fracX : one - q.fracX) * (dy ? q.fracY : one - q.fracY);
+                const auto in_x = both(left >= R(T(-dx)), left < R(T(in.width - dx))),
+                           in_y = both(top >= R(T(-dy)), top < R(T(in.height - dy)));
+                unsigned lanes = mask_bits<R>(both(both(known, w > R(T(kLeastSplat))), both(in_x, in_y)));
+                float* at = a.nearest + long(y + dy) * in.stride + x + dx;
+                for (; lanes; lanes &= lanes - 1) {
+                    const int i = __builtin_ctz(lanes);
+                    take_least(at + texel.k[i], z[i], a.shared);
+                }
+            }
+        }
+}
+
+// 0: the surface was visible a frame ago. 1: something nearer stood before it.
+template <class R>
+AA_INLINE R depth_clip(const Fsr2nArgs& a, const Reprojection<R>& q, R depth, long o) {
+    using T = Elem<R>;
+    const R zero(T(0)), one(T(1));
+    const Offsets<R> k = texel_offsets(q, a.in.stride);
+    const R wx[2] = {one - q.fracX, q.fracX}, wy[2] = {one - q.fracY, q.fracY};
+    R visible(zero), weights(zero);
+    for (int tap = 0; tap < 4; tap++) {
+        const R found = gather<R>(a.nearest + o + long(tap >> 1) * a.in.stride + (tap & 1), k);
+        const R behind = depth - found, w = wx[tap & 1] * wy[tap >> 1];
+        const auto counts = both(behind > zero, w > R(T(kLeastSplat)));
+        if (mask_bits<R>(counts) == 0) continue;
+        const R least = max(depth, found) * R(T(a.separation));
+        const R share = min(least / select(counts, behind, one), one);
+        // From 1080p on the power is 3: no logarithm.
+        const R graded = a.power == 3 ? share * share * share : pow_positive(share, R(T(a.power)));
+        visible = visible + select(counts, w * graded, zero);
+        weights = weights + select(counts, w, zero);
+    }
+    return select(weights > zero, saturate(one - visible / max(weights, R(T(1e-6)))), zero);
+}
+
+// A pixel brighter or darker than all that differ from it, and not part of a 2x2 block of its kind: a thin line's.
+template <class R, class LumaAt>
+AA_INLINE Mask<R> is_ridge(const LumaAt& at) {
+    using T = Elem<R>;
+    const R y = at(0, 0), far(T(1e30));
+    R darkest(far), brightest(-far);
+    Mask<R> similar[9];
+    for (int j = -1; j <= 1; j++)
+        for (int i = -1; i <= 1; i++) {
+            const R v = at(i, j), most = max(v, y);
+            const auto same = either(most < min(v, y) * R(T(kSimilarLuma)), most < R(T(1e-6)));
+            similar[(j + 1) * 3 + i + 1] = same;
+            darkest = min(darkest, select(same, far, v));
+            brightest = max(brightest, select(same, -far, v));
+        }
+    const auto block = [&](int a, int b, int c) { return both(both(similar[a], similar[b]), similar[c]); };
+    const auto solid = either(either(block(0, 1, 3), block(1, 2, 5)), either(block(3, 6, 7), block(5, 7, 8)));
+    return both(either(y > brightest, y < darkest), negate(solid));
+}
+
+// The mean of h and c in the space x / (1 + max(x)), taken back. As a step from h, so that equal colours stay exact and
+// nothing cancels: with H = 1 + max(h), C = 1 + max(c), P = (1 - a) C and Q = a H the mean is
+// (P h + Q c) / (P + Q + least over the channels of P (H - 1 - h) + Q (C - 1 - c)).
+template <class R>
+AA_INLINE vec3<R> tone_mapped_mean(vec3<R> h, vec3<R> c, R a) {
+    using T = Elem<R>;
+    const R zero(T(0)), one(T(1)), mh = max_component(h), mc = max_component(c);
+    const R P = (one - a) * (one + mc), Q = a * (one + mh);
+    const vec3<R> below = (vec3<R>(mh) - h) * P + (vec3<R>(mc) - c) * Q;
+    const R excess = min(below.x, min(below.y, below.z));
+    const vec3<R> mean = h + ((c - h) * Q - h * excess) * (one / (P + Q + excess));
+    return select(a == one, c, select(a == zero, h, max(mean, vec3<R>(zero))));
+}
+
+template <class R>
+AA_INLINE void fsr2nPixel(const Fsr2nArgs& a, int x, int y) {
+    using T = Elem<R>;
+    const TemporalIn& in = a.in;
+    const R zero(T(0)), one(T(1));
+    const long o = long(y) * in.stride + x;
+    const vec3<R> raw = load3<R>(in.color.c, o);
+    const Window<R> at([&](int i, int j) __attribute__((always_inline)) {
+        return to_ycocg(load3<R>(in.color.c, o + long(j) * in.stride + i));
+    });
+
+    // 1
+    const Surface<R> surface = closest_surface<R>(in, o, false);
+    const Motion<R> motion = surface.motion;
+    const Reprojection<R> q = reproject(in, motion, x, y);
+    const R hidden = depth_clip(a, q, surface.depthView, o);
+    const R speed = sqrt(motion.x * motion.x + motion.y * motion.y), fast = saturate(speed * R(T(1 / kFastPx)));
+
+    // 3. as deviations from the centre
+    const vec3<R> centre = at(0, 0);
+    vec3<R> filtered(zero), m1(zero), m2(zero);
+    R around(zero);
+    Box<R> bounds{centre, centre};
+    for (int j = -1; j <= 1; j++)
+        for (int i = -1; i <= 1; i++) {
+            if (i == 0 && j == 0) continue;
+            const int n = (j + 1) * 3 + i + 1;
+            const vec3<R> c = at(i, j), d = c - centre;
+            const R w = mix(R(T(a.still[n])), R(T(a.moving[n])), fast);
+            filtered = filtered + d * R(T(a.lanczos[n]));
+            bounds.lo = min(bounds.lo, c), bounds.hi = max(bounds.hi, c);
+            m1 = m1 + d * w, m2 = m2 + d * d * w;
+            around = around + d.x;
+        }
+    const vec3<R> current = clamp3(centre + filtered, bounds.lo, bounds.hi);
+    const vec3<R> mean = centre + m1, sigma = sqrt(max(m2 - m1 * m1, vec3<R>(zero)));
+    const vec3<R> reach = sigma * mix(R(T(a.boxScale)), one, max(hidden, fast));
+    const Box<R> box{max(bounds.lo, mean - reach), min(bounds.hi, mean + reach)};
+
+    // 2
+    const Offsets<R> nearest = nearest_offsets(q, in.stride);
+    R lock = fetch_rgba<R>(in.history + 4 * o, nearest).a;
+    const R luma = centre.x + around * R(T(1) / T(9)), usual = gather<R>(a.previousLuma + o, nearest);
+    const R brighter = max(luma, usual), darker = min(luma, usual);
+    const auto kept = both(q.inside, either(darker >= brighter * R(T(kLockedLuma)), brighter < R(T(1e-6))));
+    lock = select(kept, max(lock - R(T(a.lockDecay)), zero) * (one - hidden), zero);
+    if (a.locks)
+        lock = select(is_ridge<R>([&](int i, int j) __attribute__((always_inline)) { return at(i, j).x; }), one, lock);
+    const auto known = both(q.inside, hidden <= R(T(0.5)));
+    const R nextUsual = select(known, usual + (luma - usual) * R(T(a.lockDecay)), luma);
+
+    // 4
+    const vec3<R> past = fetch_lanczos(in.history + 4 * o, in.stride, q), history = to_ycocg(past);
+    const vec3<R> held = mix(clamp3(history, box.lo, box.hi), history, lock);
+    const auto toRgb = [&](vec3<R> c) __attribute__((always_inline)) { return max(from_ycocg(c), vec3<R>(zero)); };
+    const R w(T(a.weight));
+    R accumulated = one - hidden;
+    accumulated = min(accumulated, mix(accumulated, w * R(T(10)), saturate(speed * R(T(10)))));
+    accumulated = min(accumulated, mix(accumulated, w, fast));
+    const R alpha = max(w / (accumulated + w), R(T(1) - T(in.feedbackCeiling)));
+    const vec3<R> mixed = tone_mapped_mean(toRgb(held), toRgb(current), alpha);
+    const vec3<R> result = select(q.inside, mixed, toRgb(current));
+
+    store_blend(in, x, y, sanitised(result, raw, past), select(finite(lock), lock, zero));
+    store(select(finite(nextUsual), nextUsual, zero), a.nextLuma + o);
+    if (!in.debug.rejection) return;
+    store_debug(in.debug, o, motion, q.inside, box, held - history, one - alpha);
+    store(select(known, zero, select(q.inside, R(T(int(Rejection::disoccluded))), R(T(int(Rejection::outside))))),
+          in.debug.rejection + o);
+    if (a.debugLock) store(hidden, a.debugDepthClip + o), store(lock, a.debugLock + o);
+}
+template <class R>
+__attribute__((flatten)) void fsr2nRows(const Fsr2nArgs& a, int y0, int y1) {
+    for (int y = y0; y < y1; y++)
+        for (int x = 0; x < a.in.width; x += N<R>) {
+            if (a.in.history) {
+                fsr2nPixel<R>(a, x, y);
+                continue;
+            }
+            const long o = long(y) * a.in.stride + x;
+            const R zero(Elem<R>(0)), luma = to_ycocg(load3<R>(a.in.color.c, o)).x;
+            store_first<R>(a.in, x, y, load3<R>(a.in.color.c, long(y) * a.in.stride + x), zero);
+            store(select(finite(luma), luma, zero), a.nextLuma + o);
+            if (a.debugLock) store(zero, a.debugDepthClip + o), store(zero, a.debugLock + o);
+        }
+}
+
+}  // namespace AA_ARCH
+
+AA_DEFINE_TABLE(aa::Fsr2nKernels, fsr2nKernels) = {AA_WIDE_ROWS(fsr2nScatterRows), AA_WIDE_ROWS(fsr2nRows)};

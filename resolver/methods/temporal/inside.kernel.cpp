@@ -1,0 +1,127 @@
+#include "methods/temporal/inside.h"
+
+#include "kernels/hash.h"
+#include "methods/temporal/temporal_blocks.kernel.h"
+
+namespace AA_ARCH {
+
+// Four bilinear taps at (+-s, +-s); at(i, j) are the window's colours. s = 0.5 px under motion, up to 0.6666 at rest.
+template <class R, class At>
+AA_INLINE Box<R> four_tap_box(const At& at, R s, vec3<R>& mean) {
+    const vec3<R> c = at(0, 0);
+    const auto tap = [&](int i, int j) __attribute__((always_inline)) {
+        const vec3<R> near = mix(c, at(i, 0), s), far = mix(at(0, j), at(i, j), s);
+        return mix(near, far, s);
+    };
+    const vec3<R> a = tap(-1, -1), b = tap(1, -1), d = tap(-1, 1), e = tap(1, 1);
+    mean = a + ((b - a) + (d - a) + (e - a)) * R(Elem<R>(0.25));
+    return {min(min(a, b), min(d, e)), max(max(a, b), max(d, e))};
+}
+
+// The current colours at p + (dx, dy), bilinear, held to the picture.
+template <class R>
+AA_INLINE vec3<R> color_at(TemporalIn in, R dx, R dy, int x, int y) {
+    in.clampOutside = true;
+    const Reprojection<R> q = reproject(in, Motion<R>{-dx, -dy}, x, y);
+    const Offsets<R> k = texel_offsets(q, in.stride);
+    const auto channel = [&](const float* p) __attribute__((always_inline)) {
+        const R top = mix(gather<R>(p, k), gather<R>(p + 1, k), q.fracX),
+                bottom = mix(gather<R>(p + in.stride, k), gather<R>(p + in.stride + 1, k), q.fracX);
+        return mix(top, bottom, q.fracY);
+    };
+    const long o = long(y) * in.stride + x;
+    return {channel(in.color.c[0] + o), channel(in.color.c[1] + o), channel(in.color.c[2] + o)};
+}
+// What the screen shows: seven taps along the motion of the current frame, offset by chance, instead of the result
+// where motion is fast (2 px: none of it, 15 px: all).
+template <class R>
+AA_INLINE vec3<R> blurred_by_motion(const InsideArgs& a, Motion<R> motion, vec3<R> result, int x, int y) {
+    using T = Elem<R>;
+    const R zero(T(0));
+    const R speed = sqrt(motion.x * motion.x + motion.y * motion.y);
+    const R share = clamp(speed - R(T(2)), zero, R(T(13))) * R(T(1) / T(13));
+    const R step = R(T(a.motionBlur) * T(0.5) / T(3));
+    const R chance = noise<R>(noise_seed(NoiseStream::motionBlur, a.frame, uint32_t(y)), uint32_t(x)) - R(T(0.5));
+    const R ownX(a.unjitterColor ? -T(a.in.jitterXPx) : T(0)), ownY(a.unjitterColor ? -T(a.in.jitterYPx) : T(0));
+    vec3<R> sum(zero);
+    for (int tap = -3; tap <= 3; tap++) {
+        const R at = (R(T(tap)) + chance) * step;
+        sum = sum + (color_at(a.in, ownX + motion.x * at, ownY + motion.y * at, x, y) - result);
+    }
+    const vec3<R> blurred = result + sum * (share * R(T(1) / T(7)));
+    // A motion of more than two pictures is no motion (methods/08 s.8.1).
+    const auto known = both(abs(motion.x) <= R(T(2 * a.in.width)), abs(motion.y) <= R(T(2 * a.in.height)));
+    return select(both(known, both(share > zero, finite(blurred))), blurred, result);
+}
+
+template <class R>
+AA_INLINE void insidePixel(const InsideArgs& a, bool ycocg, bool unjitterWindow, int x, int y) {
+    using T = Elem<R>;
+    const TemporalIn& in = a.in;
+    const R zero(T(0));
+    const long o = long(y) * in.stride + x;
+    const UniformFetch<R> unjittered(-in.jitterXPx, -in.jitterYPx);
+    const auto fetch = [&](bool unjitter, int i, int j) __attribute__((always_inline)) {
+        const long n = o + long(j) * in.stride + i;
+        if (!unjitter) return load3<R>(in.color.c, n);
+        return vec3<R>{unjittered(in.color.c[0] + n, in.stride), unjittered(in.color.c[1] + n, in.stride),
+                       unjittered(in.color.c[2] + n, in.stride)};
+    };
+    const auto space = [&](vec3<R> c) __attribute__((always_inline)) { return ycocg ? to_ycocg(c) : c; };
+    const auto luma = [&](vec3<R> c) __attribute__((always_inline)) { return ycocg ? c.x : luminance(c, a.luminance); };
+    const vec3<R> currentRgb = fetch(a.unjitterColor, 0, 0), current = space(currentRgb);
+
+    const Motion<R> motion = a.unjitterReprojection ? Motion<R>{unjittered(in.motionXPx + o, in.stride),
+                                                                unjittered(in.motionYPx + o, in.stride)}
+                                                    : dilated_motion<R>(in, o);
+    const Reprojection<R> q = reproject(in, motion, x, y);
+    const vec3<R> past = fetch_history(in, x, y, q), history = space(past);
+
+    const Window<R> at([&](int i, int j) __attribute__((always_inline)) { return space(fetch(unjitterWindow, i, j)); });
+    Box<R> box;
+    vec3<R> mean(zero);
+    if (a.neighbourhood == InsideNeighbourhood::fourTapVarying) {
+        const R speed = sqrt(motion.x * motion.x + motion.y * motion.y);
+        const R depth = dilated_depth<R>(in, o);
+        // 0 * 1e10 is 0, and a far surface at any speed counts as moving (methods/08 s.8.3).
+        const R still = saturate(R(T(0.5)) / max(speed * depth, R(T(1e-6))));
+        box = four_tap_box<R>(at, R(T(0.5)) + still * R(T(0.1666)), mean);
+    } else {
+        const Neighbourhood kind = Neighbourhood(int(a.neighbourhood));
+        const Neighbours<R> window = neighbours<R>(at);
+        box = box_of(window, kind);
+        mean = mean_of(window, kind);
+    }
+    if (ycocg) {
+        const R chroma = (box.hi.x - box.lo.x) * R(T(0.125));
+        box.lo = {box.lo.x, current.y - chroma, current.z - chroma};
+        box.hi = {box.hi.x, current.y + chroma, current.z + chroma};
+        mean = {mean.x, current.y, current.z};
+    }
+    const vec3<R> held = constrain(box, a.clipTarget, mean, current, history);
+    const R k = min(luminance_feedback(luma(current), luma(held), a.kMin, a.kMax), R(T(in.feedbackCeiling)));
+    const vec3<R> mixed = blend(current, held, k);
+    const vec3<R> rgb = ycocg ? saturate(from_ycocg(mixed)) : mixed;
+
+    const vec3<R> result = sanitised(select(q.inside, rgb, currentRgb), load3<R>(in.color.c, o), past);
+    store_blend(in, x, y, result, R(T(1)));
+    if (a.motionBlur > 0) store3(blurred_by_motion(a, motion, result, x, y), in.out.c, o);
+    store_debug(in.debug, o, motion, q.inside, box, held - history, k);
+}
+template <class R>
+__attribute__((flatten)) void insideRows(const InsideArgs& a, int y0, int y1) {
+    const auto rows = [&](auto usual) __attribute__((always_inline)) {
+        const bool ycocg = !usual && a.ycocg, unjitterWindow = !usual && a.unjitterNeighbourhood;
+        for (int y = y0; y < y1; y++)
+            for (int x = 0; x < a.in.width; x += N<R>)
+                if (a.in.history)
+                    insidePixel<R>(a, ycocg, unjitterWindow, x, y);
+                else
+                    store_first<R>(a.in, x, y);
+    };
+    with_options<R>(rows, !a.ycocg && !a.unjitterNeighbourhood);
+}
+
+}  // namespace AA_ARCH
+
+AA_DEFINE_TABLE(aa::InsideKernels, insideKernels) = {AA_WIDE_ROWS(insideRows)};

@@ -1,0 +1,175 @@
+#include "methods/temporal/karis.h"
+
+#include "kernels/pq.h"
+#include "kernels/ring.h"
+#include "methods/temporal/temporal_blocks.kernel.h"
+
+namespace AA_ARCH {
+
+template <class R>
+AA_INLINE R toneWeight(R y, bool hdr4) {
+    using T = Elem<R>;
+    const R zero(T(0)), one(T(1)), four(T(4));
+    return hdr4 ? four / (four + max(zero, y)) : one / (one + max(zero, y));
+}
+// Public UE4: the speed raises the current weight to 0.2; nearly equal luminance takes the current colour.
+template <class R>
+AA_INLINE R karisWeight(R alpha, Motion<R> motion, R lumaCurrent, R lumaHistory) {
+    using T = Elem<R>;
+    const R speed = sqrt(motion.x * motion.x + motion.y * motion.y);
+    const R moving = mix(alpha, R(T(0.2)), saturate(speed * R(T(1) / T(40))));
+    return max(moving, saturate(lumaHistory * R(T(0.01)) / max(abs(lumaCurrent - lumaHistory), R(T(1e-4)))));
+}
+// Falcor: less of the current colour where history lies near the end of a wide box.
+template <class R>
+AA_INLINE R falcorWeight(R alpha, R low, R high, R lumaHistory) {
+    using T = Elem<R>;
+    const R toClamp = min(abs(low - lumaHistory), abs(high - lumaHistory)), sum = toClamp + (high - low);
+    const auto flat = sum <= R(T(1e-12));
+    return select(flat, alpha, saturate(alpha * toClamp / select(flat, R(T(1)), sum)));
+}
+
+// In the box's space, and weights in the filter: what all nine neighbours of a pixel would compute again is computed
+// once.
+template <class T>
+struct KarisRings {
+    Ring<T, 4> c[3], weight;
+};
+template <class T>
+struct KarisWindow {  // rows y - 1, y, y + 1
+    const T *c[3][3], *weight[3];
+};
+template <class R>
+AA_INLINE vec3<R> karisColor(const KarisArgs& a, bool pq, long o) {
+    const vec3<R> c = load3<R>(a.in.color.c, o);
+    return pq ? vec3<R>{pq_encode(*a.pq, c.x), pq_encode(*a.pq, c.y), pq_encode(*a.pq, c.z)} : c;
+}
+template <class R>
+AA_INLINE void convertRow(const KarisArgs& a, bool ycocg, bool pq, const KarisRings<Elem<R>>& rings, int y) {
+    Elem<R>*const c0 = rings.c[0](y), *const c1 = rings.c[1](y), *const c2 = rings.c[2](y),
+                  *const weight = rings.weight(y);
+    for (int x = 0; x < a.in.width; x += N<R>) {
+        const vec3<R> rgb = karisColor<R>(a, pq, long(y) * a.in.stride + x), c = ycocg ? to_ycocg(rgb) : rgb;
+        store(c.x, c0 + x), store(c.y, c1 + x), store(c.z, c2 + x);
+        const R one(Elem<R>(1));
+        if (a.filtered) store(a.toneWeighted ? toneWeight(ycocg ? c.x : luma709(c), a.hdr4) : one, weight + x);
+    }
+    for (const auto& channel : rings.c) channel.continueBeyond(y);
+    if (a.filtered) rings.weight.continueBeyond(y);
+}
+template <class R>
+AA_INLINE void storeResult(const KarisArgs& a, bool pq, long o, vec3<R> result) {
+    store_rgba(result, R(Elem<R>(1)), a.in.next + 4 * o);
+    if (pq) result = {pq_decode(*a.pq, result.x), pq_decode(*a.pq, result.y), pq_decode(*a.pq, result.z)};
+    store3(result, a.in.out.c, o);
+}
+
+template <class R, class YCoCg, class Pq>
+AA_INLINE void karisPixel(const KarisArgs& a, YCoCg ycocg, Pq pq, const KarisWindow<Elem<R>>& window, int x, int y) {
+    const bool filtered = a.filtered, spread = a.box != BoxKind::minmax;
+    using T = Elem<R>;
+    const TemporalIn& in = a.in;
+    const R zero(T(0)), one(T(1));
+    const long o = long(y) * in.stride + x;
+    const auto at = [&](int i, int j) __attribute__((always_inline)) { return load_own<R>(window.c[j + 1], x + i); };
+    const auto luma = [&](vec3<R> c) __attribute__((always_inline)) { return ycocg ? c.x : luma709(c); };
+    const vec3<R> centre = at(0, 0);
+
+    // 1. filtered current colour and moments, as deviations from the centre: a constant stays exactly itself
+    const auto filterWeight = [&](int i, int j) __attribute__((always_inline)) {
+        return R(T(a.filter[(j + 1) * 3 + i + 1])) * load_own<R>(window.weight[j + 1] + x + i);
+    };
+    vec3<R> sum(zero);
+    R weights(zero);
+    Moments<R> m{centre, centre};
+    const auto filter = [&](int i, int j, vec3<R> d) __attribute__((always_inline)) {
+        const R w = filterWeight(i, j);
+        sum = sum + d * w, weights = weights + w;
+    };
+    if (spread && filtered)
+        m = moments<R>(at, filter);
+    else if (spread)
+        m = moments<R>(at);
+    else if (filtered)
+        for (int j = -1; j <= 1; j++)
+            for (int i = -1; i <= 1; i++)
+                if (i || j) filter(i, j, at(i, j) - centre);
+    const vec3<R> current = filtered ? centre + sum * (one / max(weights + filterWeight(0, 0), R(T(1e-20)))) : centre;
+
+    // 2. box
+    Box<R> box;
+    if (spread) box = variance_box(m, a.gamma);
+    if (!spread || a.box == BoxKind::intersection) {
+        const Box<R> bounds = box_of(neighbours<R>(at), a.neighbourhood);
+        box = spread ? Box<R>{max(box.lo, bounds.lo), min(box.hi, bounds.hi)} : bounds;
+    }
+    box.lo = min(box.lo, box.hi);
+
+    // 3. history
+    const Motion<R> motion = dilated_motion<R>(in, o);
+    const Reprojection<R> q = reproject(in, motion, x, y);
+    const vec3<R> past = fetch_history(in, x, y, q);
+    const vec3<R> history = ycocg ? to_ycocg(past) : past;
+    const vec3<R> held =
+        a.constraint == HistoryConstraint::clamp
+            ? clamp3(history, box.lo, box.hi)
+            : clip_toward(box, a.constraint == HistoryConstraint::clipMean ? m.mean : current, history);
+
+    // 4. weight of the current colour
+    R alpha(T(a.alpha));
+    if (a.antiFlicker == AntiFlicker::karis) alpha = karisWeight(alpha, motion, luma(current), luma(held));
+    if (a.antiFlicker == AntiFlicker::falcor) alpha = falcorWeight(alpha, luma(box.lo), luma(box.hi), luma(history));
+    const R k = min(one - alpha, R(T(in.feedbackCeiling)));
+
+    // 5. blend
+    const vec3<R> mixed = a.inverseLuminance ? inverse_luminance_blend(current, luma(current), held, luma(held), k)
+                                             : blend(current, held, k);
+    const auto toRgb = [&](vec3<R> c) __attribute__((always_inline)) {
+        return max(ycocg ? from_ycocg(c) : c, vec3<R>(zero));
+    };
+    vec3<R> result = toRgb(mixed);
+    if (mask_bits<R>(negate(both(q.inside, finite(result))))) {
+        const vec3<R> raw = karisColor<R>(a, pq, o);
+        result = sanitised(select(q.inside, result, filtered ? toRgb(current) : raw), raw, past);
+    }
+    storeResult(a, pq, o, result);
+    store_debug(in.debug, o, motion, q.inside, box, held - history, k);
+}
+template <class R>
+__attribute__((flatten)) void karisRows(const KarisArgs& a, int y0, int y1) {
+    const TemporalIn& in = a.in;
+    KarisRings<Elem<R>> rings;
+    RingMaker<Elem<R>> maker(a.scratch, in.stride, in.width, in.height);
+    for (auto& channel : rings.c) maker.make(channel);
+    maker.make(rings.weight);
+    const auto rows = [&](auto ycocg, auto pq) __attribute__((always_inline)) {
+        if (!in.history) {
+            for (int y = y0; y < y1; y++)
+                for (int x = 0; x < in.width; x += N<R>) {
+                    const long o = long(y) * in.stride + x;
+                    const vec3<R> current = karisColor<R>(a, pq, o);
+                    storeResult(a, pq, o, sanitised(current, current, vec3<R>(R(Elem<R>(0)))));
+                    store_first_debug(in, o, current);
+                }
+            return;
+        }
+        for (int y = y0 - 2; y < y1; y++) {
+            const int next = y + 1;
+            if (next >= 0 && next < in.height) convertRow<R>(a, ycocg, pq, rings, next);
+            if (y < y0) continue;
+            KarisWindow<Elem<R>> window;
+            for (int j = -1; j <= 1; j++) {
+                for (int i = 0; i < 3; i++) window.c[j + 1][i] = rings.c[i](y + j);
+                window.weight[j + 1] = rings.weight(y + j);
+            }
+            for (int x = 0; x < in.width; x += N<R>) karisPixel<R>(a, ycocg, pq, window, x, y);
+        }
+    };
+    with_options<R>(rows, a.ycocg, a.pq != nullptr);
+}
+
+void fillPqTables(PqTables& t) { fill_tables(t); }
+
+}  // namespace AA_ARCH
+
+AA_DEFINE_TABLE(aa::KarisKernels, karisKernels) = {AA_WIDE_ROWS(karisRows), fillPqTables};

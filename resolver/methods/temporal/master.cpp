@@ -1,0 +1,191 @@
+#include "methods/temporal/master.h"
+
+#include <algorithm>
+#include <array>
+
+#include "methods/method.h"
+#include "methods/temporal/temporal.h"
+
+namespace aa {
+namespace {
+
+constexpr int kRowsPerCall = 64;  // each computes nine rows of its neighbours again, partly
+
+class Master : public Method {
+  public:
+    explicit Master(const Params& params) : params_(params), sharpen_(SharpenKernel(params.choiceIndex("sharpen"))) {}
+
+    void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
+        const Params& p = params_;
+        TemporalIn in = temporal::frameView(frame, frame.colorEncoded);
+        MasterArgs m{};
+        m.depthOfTexel = in.depthView;
+        m.objectId = frame.objectId.row(0);
+        m.expected = expectedDepth(frame);
+        if (p.flag("unjitter")) {
+            const glm::ivec2 texel = temporal::unjitteredTexel(frame);
+            m.texelX = texel.x, m.texelY = texel.y;
+            m.objectId += ptrdiff_t(texel.y) * in.stride + texel.x;
+            m.expected = temporal::moved(m.expected, texel);
+            temporal::unjitter(frame, in);
+        }
+        if (sharpen_ == SharpenKernel::none) in.out = view(out);
+        history_.begin(frame, "master", in);
+        in.feedbackCeiling = temporal::feedbackCeiling(p, history_.framesSinceReset());
+        in.dilation = temporal::dilation(p);
+        in.filter = temporal::historyFilter(p);
+        in.debug = debug_.begin(*this, frame.width, frame.height);
+        fit(frame.width, frame.height);
+        m.in = in;
+        m.albedoEncoded = view(frame.albedoEncoded);
+        std::swap(depth_[0], depth_[1]);
+        m.keptDepth = depth_[0].row(0), m.previousDepth = depth_[1].row(0);
+        m.weightAlbedo = p.realf("wU"), m.weightLit = p.realf("wL");
+        m.depthUnit = DepthUnit(p.choiceIndex("depthUnit"));
+        m.luminance = temporal::luminance(p);
+        m.temporalSobel = p.flag("sobelTemporal");
+        m.samePixelDepth = p.choice("pastDepth") == "samePixel";
+        m.kMin = p.realf("kmin"), m.kMax = p.realf("kmax");
+        m.farDepth = farDepthOf(frame);
+        m.depthThreshold = p.realf("depthThreshold");
+        m.minAlias = p.realf("minAlias");
+        m.clipTarget = temporal::clipTarget(p);
+        m.relativeThreshold = p.flag("relativeThreshold");
+        m.compensate = p.flag("compensate");
+        m.useModel = p.flag("model"), m.useDepth = p.flag("depth"), m.useDepthTemporal = p.flag("depthTemporal");
+        m.useSobel = p.flag("sobel");
+        if (keepDebugLayers) {
+            terms_.resize(5);
+            for (auto& plane : terms_)
+                if (plane.width() != frame.width || plane.height() != frame.height)
+                    plane = PlaneF(frame.width, frame.height);
+            m.debugAliased = terms_[0].row(0), m.debugSobel = terms_[1].row(0), m.debugModel = terms_[2].row(0);
+            m.debugDepth = terms_[3].row(0), m.debugDepthTemporal = terms_[4].row(0);
+        }
+        if (sharpen_ != SharpenKernel::none) {
+            m.sharpened = view(out);
+            m.sharpenGain = sharpenGain(sharpen_);
+        }
+        const std::vector<int> seams = run(m, exec);
+        history_.end(temporal::historyStorage(p), exec);
+        depth_[0].fillBorder();
+        if (sharpen_ != SharpenKernel::none)
+            for (int y : seams) sharpenEncodedRow(history_.latest(), sharpen_, exec, y, out);
+    }
+    size_t stateBytes() const override { return history_.bytes() + depth_[0].bytes() + depth_[1].bytes(); }
+    const PlaneF* rejection() const override { return debug_.rejection(); }
+    std::vector<DebugLayer> debugLayers() const override {
+        std::vector<DebugLayer> layers = debug_.layers();
+        const char* const names[] = {"aliasedValue", "sobelAverage", "modelAverage", "depthPseudoVariance",
+                                     "depthTemporalPseudoVariance"};
+        for (size_t i = 0; i < terms_.size(); i++) layers.push_back({names[i], {terms_[i]}});
+        return layers;
+    }
+
+  private:
+    // Returns the rows beside which another call ended, which are not yet sharpened.
+    std::vector<int> run(const MasterArgs& all, const Exec& exec) {
+        const auto fn = rowsOf(masterKernelsFor(exec).resolve, exec.precision);
+        const int height = all.in.height;
+        std::vector<uint8_t> seam(size_t(height), 0);
+        Scratch scratch(kMasterScratchRows, all.in.stride);
+        forRows(
+            exec, height,
+            [&](int y0, int y1) {
+                MasterArgs m = all;
+                m.scratch = scratch.local();
+                fn(m, y0, y1);
+                if (y0 > 0) seam[size_t(y0)] = 1;
+                if (y1 < height) seam[size_t(y1 - 1)] = 1;
+            },
+            kRowsPerCall);
+        std::vector<int> rows;
+        for (int y = 0; y < height; y++)
+            if (seam[size_t(y)]) rows.push_back(y);
+        return rows;
+    }
+    void fit(int width, int height) {
+        if (depth_[0].width() == width && depth_[0].height() == height) return;
+        for (PlaneF& p : depth_) p = PlaneF(width, height);
+    }
+    // The camera's far plane, or the largest depth that is not background.
+    static float farDepthOf(const Frame& frame) {
+        static constexpr float kFar = 1e9f;
+        if (frame.camera && frame.camera->farClip > 0) return float(frame.camera->farClip);
+        // Several maxima side by side: one alone would wait for itself at every pixel.
+        constexpr size_t kLanes = 16;
+        std::array<float, kLanes> lanes{};
+        for (int y = 0; y < frame.height; y++) {
+            const float* row = frame.depthView.row(y);  // padded with its last value to a multiple of kLanes
+            for (int x = 0; x < frame.width; x += int(kLanes))
+                for (size_t i = 0; i < kLanes; i++) {
+                    const float z = row[x + int(i)];
+                    lanes[i] = z < kFar && z > lanes[i] ? z : lanes[i];
+                }
+        }
+        const float farthest = *std::max_element(lanes.begin(), lanes.end());
+        return farthest > 0 ? farthest : 1.0f;
+    }
+
+    Params params_;
+    SharpenKernel sharpen_;
+    ColourHistory history_;
+    PlaneF depth_[2];  // of this frame and of the last one
+    TemporalDebugLayers debug_;
+    std::vector<PlaneF> terms_;
+};
+}  // namespace
+
+MethodDescriptor masterDescriptor() {
+    return {
+        .id = "master",
+        .title = "Sobel-improved TAA",
+        .family = "temporal",
+        .summary =
+            "Uncharted TAA whose colour box opens only where Sobel, depth and object ids say that a pixel is aliased.",
+        .source = "seed 000 s.4.3 (Oliveros 2018); methods/06 s.6.5",
+        .passes = Pass::color | Pass::albedo | Pass::depth | Pass::object | Pass::motion,
+        .input = Space::encoded,
+        .output = Space::encoded,
+        .temporal = true,
+        .params = {temporal::unjitterParam(true, "seed 000 App. B; methods/06 B0"),
+                   temporal::kMinParam("0.925", "the author's public program; methods/11 nr 5"),
+                   temporal::kMaxParam("0.979", "the author's public program; methods/11 nr 5"),
+                   temporal::luminanceParam("quarter", "the author's public program; methods/11 nr 9"),
+                   temporal::sharpenParam("norm", "seed 000 eq 4.17"),
+                   flagParam("model", true, "use the share of neighbours with another object id", "seed 000 eq 4.1"),
+                   flagParam("depth", true, "use the depth pseudo-variance", "seed 000 eq 4.5"),
+                   flagParam("depthTemporal", true, "use the temporal depth pseudo-variance", "seed 000 eq 4.6"),
+                   flagParam("sobel", true, "use the Sobel value", "seed 000 eq 4.10"),
+                   flagParam("sobelTemporal", true, "filter the Sobel value over time", "seed 000 s.4.3.3", "sobel=on"),
+                   realParam("wU", "0.3", 0, 10, "weight of the albedo's Sobel magnitude", "seed 000 eq 4.9",
+                             "sobel=on"),
+                   realParam("wL", "0.7", 0, 10, "weight of the lit colour's Sobel magnitude", "seed 000 eq 4.9",
+                             "sobel=on"),
+                   choiceParam("depthUnit", "normalised", {"normalised", "zfar", "world"},
+                               "unit of all depths here: 2z/(z+far) in 0..1, z/far in 0..1, scene units",
+                               "the author's public program; methods/11 nr 8, 9"),
+                   realParam("depthThreshold", "0.002", 0, 1e6, "least depth difference that is an edge, in depthUnit",
+                             "seed 000 s.4.3.2"),
+                   flagParam("relativeThreshold", false, "depthThreshold times the mean depth, if that exceeds 1",
+                             "methods/06 s.6.5 (ours)", "depthUnit=world"),
+                   choiceParam("pastDepth", "samePixel", {"samePixel", "reprojected"},
+                               "where the depth of the last frame is read",
+                               "the author's public program; methods/11 nr 8", "depthTemporal=on"),
+                   flagParam("compensate", false, "subtract the depth change that the camera alone makes",
+                             "methods/11 nr 8 (recommended; off as printed)", "depthTemporal=on"),
+                   realParam("minAlias", "0", 0, 1, "floor of aliasedValue; 0 lets flat interiors keep the jitter",
+                             "methods/06 s.6.5 (ours)"),
+                   temporal::clipTargetParam("aabbCentre", "methods/11 nr 6"),
+                   temporal::dilationParam("closest3x3", "seed 000 s.3.6.2"),
+                   temporal::historyFilterParam("bilinear", "methods/06 B1"),
+                   temporal::historyClampParam(),
+                   temporal::warmupParam(),
+                   temporal::historyBitsParam(Space::encoded),
+                   temporal::ditherParam()},
+        .create = [](const Params& p, const ShotInfo&) {
+            temporal::requireOrdered("master", p);
+            return std::make_unique<Master>(p);
+        }};
+}
+}  // namespace aa

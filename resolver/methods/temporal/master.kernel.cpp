@@ -1,0 +1,307 @@
+#include "methods/temporal/master.h"
+
+#include "kernels/ring.h"
+#include "methods/temporal/master_terms.kernel.h"
+#include "methods/temporal/temporal_sharpen.kernel.h"
+
+// All steps row by row, each as far ahead of the next one as that one's window reaches; what lies between them is a few
+// rows long and stays in the second-level cache.
+namespace AA_ARCH {
+
+template <class T>
+struct MasterRings {
+    Ring<T, 4> luminanceAlbedo, luminanceLit, sobel, filtered;
+    Ring<T, 8> depth;                // in its unit, at the texels of the jittered frame
+    Ring<T, 4> current[3], sobelAt;  // read at p - jitter; of a picture that has a row and a column more on each side
+    Ring<T, 2> past[3], pastDepth;   // colour, and depth: NaN where history is outside
+};
+
+template <class R>
+AA_INLINE R in_depth_unit(const MasterArgs& a, R depthView) {
+    using T = Elem<R>;
+    const R far(T(a.farDepth)), z = min(far, depthView);
+    if (a.depthUnit == DepthUnit::world) return z;
+    return a.depthUnit == DepthUnit::zfar ? z * R(T(1) / T(a.farDepth)) : (z + z) / (z + far);
+}
+template <class R>
+AA_INLINE void depth_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
+    Elem<R>* const row = rings.depth(y);
+    for (int x = 0; x < a.in.width; x += N<R>)
+        store(in_depth_unit(a, load<R>(a.depthOfTexel + long(y) * a.in.stride + x)), row + x);
+    rings.depth.continueBeyond(y);
+}
+// Calls one(x) for one value at x = -1 and x = width, and lanes(x) for all between.
+template <class R, class Lanes, class One>
+AA_INLINE void with_both_ends(int width, const Lanes& lanes, const One& one) {
+    for (int x = 0; x < width; x += N<R>) lanes(x);
+    one(-1), one(width);
+}
+// B0 of the colours, row y of -1 .. height.
+template <class R>
+AA_INLINE void current_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
+    using T = Elem<R>;
+    const UniformFetch<R> fetch(a.in.readXPx, a.in.readYPx);
+    const UniformFetch<T> fetchOne(a.in.readXPx, a.in.readYPx);
+    for (int c = 0; c < 3; c++) {
+        T* const row = rings.current[c](y + 1);
+        const float* const from = a.in.color.c[c] + long(y) * a.in.stride;
+        with_both_ends<R>(
+            a.in.width, [&](int x) __attribute__((always_inline)) { store(fetch(from + x, a.in.stride), row + x); },
+            [&](int x) __attribute__((always_inline)) { row[x] = fetchOne(from + x, a.in.stride); });
+    }
+}
+// And of the Sobel values.
+template <class R>
+AA_INLINE void sobel_at_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
+    using T = Elem<R>;
+    const UniformFetch<R> fetch(a.in.readXPx, a.in.readYPx);
+    const UniformFetch<T> fetchOne(a.in.readXPx, a.in.readYPx);
+    T* const row = rings.sobelAt(y + 1);
+    const T *const upper = rings.sobel(y + fetch.dy), *const lower = rings.sobel(y + fetch.dy + 1);
+    with_both_ends<R>(
+        a.in.width, [&](int x) __attribute__((always_inline)) { store(fetch(upper + x, lower + x), row + x); },
+        [&](int x) __attribute__((always_inline)) { row[x] = fetchOne(upper + x, lower + x); });
+}
+
+template <class R>
+AA_INLINE void luminance_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
+    Elem<R>*const albedo = rings.luminanceAlbedo(y), *const lit = rings.luminanceLit(y);
+    for (int x = 0; x < a.in.width; x += N<R>) {
+        const long o = long(y) * a.in.stride + x;
+        store(luminance(load3<R>(a.albedoEncoded.c, o), a.luminance), albedo + x);
+        store(luminance(load3<R>(a.in.color.c, o), a.luminance), lit + x);
+    }
+    rings.luminanceAlbedo.continueBeyond(y);
+    rings.luminanceLit.continueBeyond(y);
+}
+// S: one Sobel value per pixel.
+template <class R>
+AA_INLINE void sobel_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
+    using T = Elem<R>;
+    T* const sobel = rings.sobel(y);
+    const T *const albedo[3] = {rings.luminanceAlbedo(y - 1), rings.luminanceAlbedo(y), rings.luminanceAlbedo(y + 1)},
+                   *const lit[3] = {rings.luminanceLit(y - 1), rings.luminanceLit(y), rings.luminanceLit(y + 1)},
+                   *const depth[3] = {rings.depth(y - 1), rings.depth(y), rings.depth(y + 1)};
+    for (int x = 0; x < a.in.width; x += N<R>) {
+        if (!a.useSobel) {
+            store(R(T(0)), sobel + x);
+            continue;
+        }
+        const auto magnitude = [&](const T* const(&rows)[3]) __attribute__((always_inline)) {
+            return sobel_magnitude<R>([&](int i, int j)
+                                          __attribute__((always_inline)) { return load_own<R>(rows[j + 1] + x + i); });
+        };
+        const R sum = magnitude(albedo) * R(T(a.weightAlbedo)) + magnitude(lit) * R(T(a.weightLit)) + magnitude(depth);
+        store(sobel_curve(sum), sobel + x);
+    }
+    rings.sobel.continueBeyond(y);
+}
+
+// T: the Sobel value over time, and the past of colour and depth.
+template <class R>
+AA_INLINE void past_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
+    using T = Elem<R>;
+    const TemporalIn& in = a.in;
+    T* const filteredRow = rings.filtered(y);
+    const T* const sobel[3] = {rings.sobelAt(y), rings.sobelAt(y + 1), rings.sobelAt(y + 2)};
+    T *const pastX = rings.past[0](y), *const pastY = rings.past[1](y), *const pastZ = rings.past[2](y),
+             *const pastDepth = rings.pastDepth(y);
+    for (int x = 0; x < in.width; x += N<R>) {
+        const long o = long(y) * in.stride + x;
+        const Motion<R> motion = dilated_motion<R>(in, o);
+        const Reprojection<R> q = reproject(in, motion, x, y);
+        const Texel<R> past = fetch_bilinear<R>(in.history + 4 * o, in.stride, q);
+
+        const auto at = [&](int i, int j) __attribute__((always_inline)) { return load_own<R>(sobel[j + 1] + x + i); };
+        const R now = at(0, 0);
+        R filtered = now;
+        if (a.temporalSobel) {
+            const R plusLow = min(min(min(now, at(-1, 0)), min(at(1, 0), at(0, -1))), at(0, 1));
+            const R plusHigh = max(max(max(now, at(-1, 0)), max(at(1, 0), at(0, -1))), at(0, 1));
+            const R low = min(plusLow, min(min(at(-1, -1), at(1, -1)), min(at(-1, 1), at(1, 1))));
+            const R high = max(plusHigh, max(max(at(-1, -1), at(1, -1)), max(at(-1, 1), at(1, 1))));
+            const R half(T(0.5)), held = clamp(past.a, (low + plusLow) * half, (high + plusHigh) * half);
+            const R k = min(luminance_feedback(now, held, a.kMin, a.kMax), R(T(in.feedbackCeiling)));
+            filtered = select(q.inside, held + (now - held) * (R(T(1)) - k), now);
+        }
+        store(filtered, filteredRow + x);
+
+        const Offsets<R> k = nearest_offsets(q, in.stride);
+        const R depth = a.samePixelDepth ? load<R>(a.previousDepth + o) : gather<R>(a.previousDepth + o, k);
+        store(select(q.inside, depth, R(T(__builtin_nanf("")))), pastDepth + x);
+        const vec3<R> color = in.filter == HistoryFilter::bilinear ? past.rgb : fetch_history(in, x, y, q);
+        store(color.x, pastX + x), store(color.y, pastY + x), store(color.z, pastZ + x);
+    }
+    rings.filtered.continueBeyond(y);
+}
+
+// Rows y - 1, y, y + 1 of the current colours, of the depth nearest to them and of the filtered Sobel value, row y of
+// the past.
+template <class T>
+struct MasterWindow {
+    const T *current[3][3], *depth[3], *filtered[3], *past[3], *pastDepth;
+    AA_INLINE MasterWindow(const MasterArgs& a, const MasterRings<T>& rings, int y)
+        : filtered{rings.filtered(y - 1), rings.filtered(y), rings.filtered(y + 1)},
+          past{rings.past[0](y), rings.past[1](y), rings.past[2](y)},
+          pastDepth(rings.pastDepth(y)) {
+        for (int j = 0; j < 3; j++) {
+            for (int c = 0; c < 3; c++) current[j][c] = rings.current[c](y + j);
+            depth[j] = rings.depth(y + a.texelY + j - 1) + a.texelX;
+        }
+    }
+};
+template <class R>
+AA_INLINE void masterPixel(const MasterArgs& a, const MasterWindow<Elem<R>>& rows, int x, int y) {
+    using T = Elem<R>;
+    const TemporalIn& in = a.in;
+    const R zero(T(0)), one(T(1));
+    const long o = long(y) * in.stride + x;
+    const auto colour = [&](int i, int j) __attribute__((always_inline)) {
+        return load_own<R>(rows.current[j + 1], x + i);
+    };
+    const vec3<R> current = colour(0, 0);
+    const vec3<R> history = load_own<R>(rows.past, x);
+    const R pastDepth = load_own<R>(rows.pastDepth + x);
+    const auto inside = pastDepth == pastDepth;
+
+    // How aliased is this pixel?
+    R model(zero), sobel(zero);
+    PseudoVariances<R> variance{zero, zero};
+    if (a.useModel)
+        model = model_average<R>([&](int i, int j) __attribute__((always_inline)) {
+            return ids_differ<R>(a.objectId + o + long(j) * in.stride + i, a.objectId + o);
+        });
+    if (a.useDepth || a.useDepthTemporal) {
+        const R depth = load_own<R>(rows.depth[1] + x);
+        const DepthWindow<R> window = depth_window<R>([&](int i, int j) __attribute__((always_inline)) {
+            return load_own<R>(rows.depth[j + 1] + x + i);
+        });
+        R past = pastDepth - depth;
+        if (a.compensate)
+            past = pastDepth - in_depth_unit(a, expected_previous_depth(a.expected, load<R>(in.depthView + o), x, y));
+        R threshold(T(a.depthThreshold));
+        if (a.relativeThreshold) threshold = threshold * max(depth + window.mean, one);
+        variance = pseudo_variances(window, past, threshold);
+        if (!a.useDepth) variance.depth = zero;
+        variance.depthTemporal = a.useDepthTemporal ? select(inside, variance.depthTemporal, one) : zero;
+    }
+    if (a.useSobel) {
+        const auto s = [&](int i, int j) __attribute__((always_inline)) {
+            return load_own<R>(rows.filtered[j + 1] + x + i);
+        };
+        const R plus = s(0, 0) + ((s(-1, 0) + s(1, 0)) + (s(0, -1) + s(0, 1)));
+        const R square = plus + ((s(-1, -1) + s(1, -1)) + (s(-1, 1) + s(1, 1)));
+        sobel = mix(plus * R(T(1) / T(5)), square * R(T(1) / T(9)), saturate(model + s(0, 0)));  // eqs 4.12, 4.13
+    }
+    const R aliased = max(saturate(sobel + variance.depth + variance.depthTemporal + model), R(T(a.minAlias)));
+
+    // The box: loose where aliased, the current colour alone where not (eqs 4.15, 4.16).
+    const Neighbours<R> window = neighbours<R>(colour);
+    const vec3<R> low = mix(window.plus.lo, window.square.lo, aliased),
+                  high = mix(window.plus.hi, window.square.hi, aliased),
+                  mean = mix(window.meanPlus, window.meanSquare, aliased);
+    const Box<R> box{mix(current, low, aliased), mix(current, high, aliased)};
+    const vec3<R> clipped = constrain(box, a.clipTarget, mean, current, history);
+
+    const R k =
+        min(luminance_feedback(luminance(current, a.luminance), luminance(clipped, a.luminance), a.kMin, a.kMax),
+            R(T(in.feedbackCeiling)));
+    const vec3<R> mixed = select(inside, blend(current, clipped, k), current);
+
+    store_blend(in, x, y, sanitised(mixed, current, history), load_own<R>(rows.filtered[1] + x));
+    if (!in.debug.feedback) {
+        store_debug(in.debug, o, Motion<R>{k, k}, inside, box, history, k);
+    } else {
+        store_debug(in.debug, o, dilated_motion<R>(in, o), inside, box, clipped - history, k);
+        store(aliased, a.debugAliased + o), store(sobel, a.debugSobel + o), store(model, a.debugModel + o);
+        store(variance.depth, a.debugDepth + o), store(variance.depthTemporal, a.debugDepthTemporal + o);
+    }
+}
+// Brings in what the next row of each step will be the first to read or write, while this one computes.
+template <class R>
+AA_INLINE void prefetch_next_rows(const MasterArgs& a, int x, int y) {
+    if constexpr (N<R> == 1) return;
+    const TemporalIn& in = a.in;
+    const auto at = [&](int row) __attribute__((always_inline)) {
+        return long(row < in.height ? row : in.height - 1) * in.stride + x;
+    };
+    const long first = at(y + 4), sobel = at(y + 3), past = at(y + 2), own = at(y + 1);
+    for (int c = 0; c < 3; c++) {
+        __builtin_prefetch(a.albedoEncoded.c[c] + first, 0, 2);
+        __builtin_prefetch(in.color.c[c] + first, 0, 2);
+        if (a.sharpened.c[c]) __builtin_prefetch(a.sharpened.c[c] + own, 0, 2);
+    }
+    __builtin_prefetch(a.depthOfTexel + first, 0, 2);
+    __builtin_prefetch(in.depthView + sobel, 0, 2);
+    __builtin_prefetch(in.motionXPx + past + in.stride, 0, 2);
+    __builtin_prefetch(in.motionYPx + past + in.stride, 0, 2);
+    __builtin_prefetch(a.previousDepth + past + in.stride, 0, 2);
+    __builtin_prefetch(a.objectId + past, 0, 2);
+    for (int i = 0; i < 4; i++) {
+        __builtin_prefetch(in.history + 4 * (past + in.stride) + i * N<R>, 0, 2);
+        __builtin_prefetch(in.next + 4 * own + i * N<R>, 0, 2);
+    }
+    __builtin_prefetch(a.keptDepth + own, 0, 2);
+}
+template <class R>
+AA_INLINE void resolve_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
+    const TemporalIn& in = a.in;
+    const long o = long(y) * in.stride;
+    const MasterWindow<Elem<R>> rows(a, rings, y);
+    const Elem<R>* const sobel = rings.sobelAt(y + 1);
+    for (int x = 0; x < in.width; x += N<R>) {
+        if (in.history) {
+            prefetch_next_rows<R>(a, x, y);
+            masterPixel<R>(a, rows, x, y);
+        } else
+            store_first<R>(in, x, y, load_own<R>(rows.current[1], x), load_own<R>(sobel + x));
+        store(load_own<R>(rows.depth[1] + x), a.keptDepth + o + x);
+    }
+    float* const row = in.next + 4 * o;
+    for (int c = 0; c < 4; c++) row[c - 4] = row[c], row[4 * in.width + c] = row[4 * in.width - 4 + c];
+}
+template <class R>
+AA_INLINE void sharpen_resolved_row(const MasterArgs& a, int y) {
+    const TemporalIn& in = a.in;
+    const auto row = [&](int r) __attribute__((always_inline)) {
+        return in.next + 4l * in.stride * (r < 0 ? 0 : r >= in.height ? in.height - 1 : r);
+    };
+    sharpen_row<R>(row(y - 1), row(y), row(y + 1), a.sharpenGain, a.sharpened, long(y) * in.stride, in.width);
+}
+template <class R>
+__attribute__((flatten)) void masterRows(const MasterArgs& a, int y0, int y1) {
+    using T = Elem<R>;
+    const TemporalIn& in = a.in;
+    const int width = in.width, height = in.height;
+    MasterRings<T> rings;
+    RingMaker<T> maker(a.scratch, in.stride, width, height);
+    maker.make(rings.luminanceAlbedo), maker.make(rings.luminanceLit);
+    maker.make(rings.sobel), maker.make(rings.filtered), maker.make(rings.depth);
+    for (auto& channel : rings.past) maker.make(channel);
+    maker.make(rings.pastDepth);
+    maker.height = height + 2;
+    for (auto& channel : rings.current) maker.make(channel);
+    maker.make(rings.sobelAt);
+
+    // A step runs ahead of the last one by the margin that the windows between them add up to.
+    const int past = in.history ? 1 : 0, sobelAt = 2 * past, sobel = sobelAt + 1, luminance = sobel + 1;
+    const auto within = [&](int y, int margin, int beyond = 0) __attribute__((always_inline)) {
+        return y >= -beyond && y < height + beyond && y >= y0 - margin && y < y1 + margin;
+    };
+    for (int y = y0 - 2 * luminance; y <= y1; y++) {
+        if (a.useSobel && within(y + luminance, luminance)) luminance_row<R>(a, rings, y + luminance);
+        if (within(y + luminance, luminance)) depth_row<R>(a, rings, y + luminance);
+        if (within(y + sobel, sobel)) sobel_row<R>(a, rings, y + sobel);
+        if (within(y + sobelAt, sobelAt, 1)) sobel_at_row<R>(a, rings, y + sobelAt);
+        if (within(y + 1, 1, 1)) current_row<R>(a, rings, y + 1);
+        if (in.history && within(y + past, past)) past_row<R>(a, rings, y + past);
+        if (within(y, 0)) resolve_row<R>(a, rings, y);
+        const int r = y - 1;
+        if (a.sharpened.c[0] && r >= y0 && (r > y0 || r == 0) && (r + 1 < y1 || r + 1 == height))
+            sharpen_resolved_row<R>(a, r);
+    }
+}
+
+}  // namespace AA_ARCH
+
+AA_DEFINE_TABLE(aa::MasterKernels, masterKernels) = {AA_WIDE_ROWS(masterRows)};

@@ -1,0 +1,155 @@
+#include "methods/temporal/raptor.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "methods/method.h"
+#include "methods/sharpen.h"
+#include "methods/temporal/temporal.h"
+
+namespace aa {
+namespace {
+
+// Mitchell & Netravali 1988, x >= 0, zero from 2 on.
+double cubic(double x, double b, double c) {
+    if (x < 1) return ((12 - 9 * b - 6 * c) * x * x * x + (-18 + 12 * b + 6 * c) * x * x + (6 - 2 * b)) / 6;
+    if (x < 2)
+        return ((-b - 6 * c) * x * x * x + (6 * b + 30 * c) * x * x + (-12 * b - 48 * c) * x + 8 * b + 24 * c) / 6;
+    return 0;
+}
+// Blackman-Harris window centred at 0, first zero at 1; periodic beyond as printed.
+double blackmanHarris(double x) {
+    const double t = std::numbers::pi * x;
+    return 0.35875 + 0.48829 * std::cos(t) + 0.14128 * std::cos(2 * t) + 0.01168 * std::cos(3 * t);
+}
+enum class CurrentFilter { none, mitchell, blackmanHarris, catmullRom };
+double filterWeight(CurrentFilter filter, bool printed, double dx, double dy, glm::dvec2 jitterPx) {
+    // printed: distance of the pixels, doubled; fixed: distance of the sample from the pixel centre, radius 1.5 px.
+    const double distance = printed ? std::hypot(dx, dy) : std::hypot(dx + jitterPx.x, dy + jitterPx.y);
+    const double argument = printed ? 2 * distance : distance * 2 / 1.5;
+    switch (filter) {
+        case CurrentFilter::none:
+            return printed ? distance : dx == 0 && dy == 0;
+        case CurrentFilter::mitchell:
+            return cubic(argument, 1.0 / 3, 1.0 / 3);
+        case CurrentFilter::catmullRom:
+            return cubic(argument, 0, 0.5);
+        case CurrentFilter::blackmanHarris:
+            return printed ? blackmanHarris(argument) : argument < 2 ? blackmanHarris(argument / 2) : 0;
+    }
+    return 0;
+}
+
+class Raptor : public Method {
+  public:
+    explicit Raptor(const Params& params) : params_(params) {}
+
+    void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
+        const Params& p = params_;
+        const float sharpen = p.realf("sharpen");
+        if (sharpen > 0 && (blend_.width() != frame.width || blend_.height() != frame.height))
+            blend_ = Rgb(frame.width, frame.height);
+        Rgb& blend = sharpen > 0 ? blend_ : out;
+        RaptorArgs args{};
+        args.in = temporal::frameView(frame, frame.colorLinear);
+        if (p.flag("unjitter")) temporal::unjitter(frame, args.in);
+        args.in.out = view(blend);
+        history_.begin(frame, "raptor", args.in);
+        args.in.feedbackCeiling = temporal::feedbackCeiling(p, history_.framesSinceReset());
+        args.in.dilation = temporal::dilation(p);
+        args.in.filter = temporal::historyFilter(p);
+        for (int j = -1; j <= 1; j++)
+            for (int i = -1; i <= 1; i++)
+                args.filter[(j + 1) * 3 + i + 1] = float(filterWeight(CurrentFilter(p.choiceIndex("currentFilter")),
+                                                                      p.choice("filterDomain") == "printed", i, j,
+                                                                      {args.in.jitterXPx, args.in.jitterYPx}));
+        args.constraint = RaptorConstraint(p.choiceIndex("constraint"));
+        args.luminanceDifference = LuminanceDifference(p.choiceIndex("lumaDiff"));
+        args.temporalFiltering = p.flag("temporalFiltering");
+        args.luminanceWeights = p.flag(p.choice("lumaDiff") == "off" ? "inverseLuminance" : "lumaDiffWeights");
+        args.clampCurrent = p.flag("currentClamp");
+        args.signedDivisor = p.choice("contrastDivisor") == "printed";
+        args.ycocg = p.flag("ycocg");
+        args.gamma = p.realf("gamma");
+        args.kMin = p.realf("kmin"), args.kMax = p.realf("kmax");
+        args.in.debug = debug_.begin(*this, frame.width, frame.height);
+        temporal::runTemporal(raptorKernelsFor(exec).resolve, exec, args);
+        history_.end(temporal::historyStorage(p), exec);
+        if (sharpen > 0) {
+            blend_.fillBorder();
+            sharpenLuma(blend_, sharpen, exec, out);
+        }
+    }
+    size_t stateBytes() const override { return history_.bytes() + blend_.bytes(); }
+    const PlaneF* rejection() const override { return debug_.rejection(); }
+    std::vector<DebugLayer> debugLayers() const override { return debug_.layers(); }
+
+  private:
+    Params params_;
+    ColourHistory history_;
+    Rgb blend_;  // before sharpening
+    TemporalDebugLayers debug_;
+};
+}  // namespace
+
+MethodDescriptor raptorDescriptor() {
+    return {
+        .id = "raptor",
+        .title = "Full TAA of the Vulkan book",
+        .family = "temporal",
+        .summary =
+            "Closest-depth motion, Catmull-Rom history, clamped variance clip, three adaptive weights, sharpening.",
+        .source = "seed 002 (Vulkan book ch. 11); methods/06 s.6.2",
+        .passes = Pass::color | Pass::motion,
+        .temporal = true,
+        .params = {temporal::unjitterParam(false, "methods/06 B0; not in the source"),
+                   temporal::dilationParam("closest3x3", "seed 002"),
+                   temporal::historyFilterParam("catmullRom", "seed 002"),
+                   temporal::historyClampParam(),
+                   choiceParam("constraint", "varianceClipClamp",
+                               {"none", "clamp", "clip", "varianceClip", "varianceClipClamp"},
+                               "how history is held to the 3x3 window's colours", "seed 002"),
+                   realParam("gamma", "1", 0, 8, "half width of the variance box in standard deviations", "seed 002",
+                             "constraint=varianceClip|varianceClipClamp"),
+                   choiceParam("currentFilter", "mitchell", {"none", "mitchell", "blackmanHarris", "catmullRom"},
+                               "filter of the current colour over 3x3", "seed 002"),
+                   choiceParam("filterDomain", "fixed", {"fixed", "printed"},
+                               "distance under that filter: of the sample from the pixel centre, radius 1.5 px; or as "
+                               "printed",
+                               "methods/11 nr 26"),
+                   flagParam("currentClamp", true,
+                             "hold that filter's result within the window's bounds: negative lobes overshoot them; off "
+                             "as in the book, whose printed domain has no such lobes",
+                             "ours: methods/08", "filterDomain=fixed"),
+                   flagParam("temporalFiltering", true, "more history where the window has contrast", "seed 002",
+                             "lumaDiff=off"),
+                   choiceParam("contrastDivisor", "guarded", {"guarded", "printed"},
+                               "what temporalFiltering divides the contrast by: the colour, at least 1e-4; or the "
+                               "colour as printed, with the sign of chroma in YCoCg",
+                               "methods/11 nr 29", "temporalFiltering=on"),
+                   flagParam("inverseLuminance", true, "weights 1/(1+L) of compressed colours", "seed 002",
+                             "lumaDiff=off"),
+                   choiceParam("lumaDiff", "corrected", {"off", "corrected", "printed"},
+                               "weight from the luminance difference; printed has history and current exchanged",
+                               "methods/11 nr 25"),
+                   flagParam("lumaDiffWeights", true,
+                             "weights 1/(1+L) with the luminance difference, too, as the book has them; off is ours",
+                             "seed 002", "lumaDiff=corrected|printed"),
+                   realParam("kmin", "0.88", 0, 1, "weight of history where its luminance differs most",
+                             "Pedersen 2016", "lumaDiff=corrected"),
+                   realParam("kmax", "0.97", 0, 1, "weight of history where its luminance is equal", "Pedersen 2016",
+                             "lumaDiff=corrected"),
+                   flagParam("ycocg", false, "work in YCoCg", "seed 002"),
+                   realParam("sharpen", "1", 0, 4, "luminance sharpening of the output, never fed back; 0 = none",
+                             "seed 002: 1 is standard; the sample program has 0.1 (methods/11 nr 30)"),
+                   temporal::warmupParam(),
+                   temporal::historyBitsParam(Space::linear),
+                   temporal::ditherParam()},
+        .create =
+            [](const Params& p, const ShotInfo&) {
+                temporal::requireOrdered("raptor", p);
+                return std::make_unique<Raptor>(p);
+            },
+        .morePasses = temporal::dilationPasses};
+}
+}  // namespace aa

@@ -1,0 +1,285 @@
+#include <optional>
+#include <utility>
+
+#include "image/error.h"
+#include "methods/spatial/smaa.h"
+#include "methods/temporal/smaa_temporal_kernels.h"
+#include "methods/temporal/temporal.h"
+
+namespace aa {
+namespace {
+
+using SamplePair = std::array<size_t, 2>;
+// Indices of the shot's sub-samples at a position and at its opposite; nothing when one of them is not there.
+std::optional<SamplePair> opposites(const ShotInfo& shot, glm::dvec2 positionPx) {
+    SamplePair found{};
+    for (size_t i = 0; i < 2; i++) {
+        const glm::dvec2 wanted = i == 0 ? positionPx : -positionPx;
+        size_t k = 0;
+        for (; k < shot.subSamplePositionsPx.size(); k++) {
+            const glm::dvec2 d = shot.subSamplePositionsPx[k] - wanted;
+            if (d.x * d.x + d.y * d.y < 1e-8) break;
+        }
+        if (k == shot.subSamplePositionsPx.size()) return {};
+        found[i] = k;
+    }
+    return found;
+}
+[[noreturn]] void refuse(const ShotInfo& shot, const std::string& method, const std::string& patterns) {
+    throw InputError(method + ": needs sub-samples at the " + patterns +
+                     " standard positions; the shot's manifest lists " +
+                     (shot.subSamplePositionsPx.empty() ? "none" : "others") + "; export the shot with that pattern");
+}
+constexpr glm::dvec2 kTwo{0.25, 0.25};                                  // d3d2
+constexpr glm::dvec2 kFourEven{0.375, -0.125}, kFourOdd{0.125, 0.375};  // d3d4
+// Two sub-samples of a frame, each through SMAA 1x with its edges moved back, averaged.
+class TwoSamples {
+  public:
+    explicit TwoSamples(const Params& p) : linear_(p.choice("blendSpace") == "linear"), smaa_(p) {}
+    // Averages into `out` and, when asked, the motion blended with the same weights into `velocity`.
+    void resolve(const Frame& frame, const ShotInfo& shot, SamplePair samples, bool debug, const Exec& exec, Rgb& out,
+                 Rgb* velocity) {
+        debugLayers_.clear();
+        smaa_.keepDebugLayers = debug;
+        for (size_t k = 0; k < 2; k++) {
+            const Rgb& color = frame.subSamples[samples[k]].colorLinear;
+            encode(color, frame.display, exec, encoded_);
+            smaa_.findEdges(frame, encoded_, frame.jitterPx + shot.subSamplePositionsPx[samples[k]], exec);
+            blend(frame, linear_ ? color : encoded_, k == 0 ? out : sized(second_, frame),
+                  !velocity ? nullptr
+                  : k == 0  ? velocity
+                            : &sized(secondVelocity_, frame),
+                  exec);
+            for (auto& layer : smaa_.debugLayers()) {
+                layer.name = "s" + std::to_string(k) + "." + layer.name;
+                debugLayers_.push_back(std::move(layer));
+            }
+        }
+        average(out, second_, 3, exec);
+        if (velocity) average(*velocity, secondVelocity_, 2, exec);
+    }
+    static Rgb& sized(Rgb& image, const Frame& frame) {
+        if (image.width() != frame.width || image.height() != frame.height) image = Rgb(frame.width, frame.height);
+        return image;
+    }
+    // By the weights of the edges found last; `velocity` (null: not wanted) gets the motion.
+    void blend(const Frame& frame, const Rgb& in, Rgb& out, Rgb* velocity, const Exec& exec) {
+        const PlaneF* const motion[2] = {&frame.motionXPx, &frame.motionYPx};
+        PlaneF* const blended[2] = {velocity ? &velocity->c[0] : nullptr, velocity ? &velocity->c[1] : nullptr};
+        smaa_.blend(in, out, velocity ? motion : nullptr, blended, exec);
+    }
+    Smaa& smaa() { return smaa_; }
+    const Smaa& smaa() const { return smaa_; }
+    bool linear() const { return linear_; }
+    size_t bytes() const { return smaa_.bytes() + encoded_.bytes() + second_.bytes() + secondVelocity_.bytes(); }
+    std::vector<DebugLayer> debugLayers() const { return debugLayers_; }
+
+  private:
+    static void average(Rgb& a, const Rgb& b, size_t channels, const Exec& exec) {
+        forRows(exec, a.height(), [&](int y0, int y1) {
+            for (size_t c = 0; c < channels; c++)
+                for (int y = y0; y < y1; y++)
+                    for (int x = 0; x < a.width(); x++) a.c[c].at(x, y) += (b.c[c].at(x, y) - a.c[c].at(x, y)) * 0.5f;
+        });
+    }
+    bool linear_;
+    Smaa smaa_;
+    Rgb encoded_, second_, secondVelocity_;
+    std::vector<DebugLayer> debugLayers_;
+};
+
+class SmaaS2x : public Method {
+  public:
+    SmaaS2x(const Params& p, const ShotInfo& shot) : shot_(shot), two_(p) {
+        if (const auto pair = opposites(shot, kTwo))
+            samples_ = *pair;
+        else
+            refuse(shot, "smaaS2x", "2x");
+    }
+    void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
+        two_.resolve(frame, shot_, samples_, keepDebugLayers, exec, out, nullptr);
+    }
+    size_t stateBytes() const override { return two_.bytes(); }
+    std::vector<DebugLayer> debugLayers() const override { return two_.debugLayers(); }
+
+  private:
+    ShotInfo shot_;
+    SamplePair samples_{};
+    TwoSamples two_;
+};
+
+// The anti-aliased frame before and the velocities that it showed.
+class VelocityWeightedPair {
+  public:
+    explicit VelocityWeightedPair(const Params& p)
+        : rejection_(p.realf("rejection")),
+          reproject_(p.flag("reproject")),
+          pixels1080_(p.choice("velocityUnit") == "px1080"),
+          unjitter_(p.flag("unjitter")) {}
+    Rgb& current(const Frame& frame) { return TwoSamples::sized(current_, frame); }
+    Rgb& velocity(const Frame& frame) { return TwoSamples::sized(velocity_, frame); }
+    // Mixes the current frame with the previous one and keeps the current one for the next.
+    void resolve(const Frame& frame, bool debug, const Exec& exec, Rgb& out) {
+        if (unjitter_) {
+            current_.fillBorder();
+            temporal::unjitter(current_, frame.jitterPx, exec, unjittered_);
+            std::swap(current_, unjittered_);
+        }
+        const bool first = frame.reset || previous_.width() != frame.width || previous_.height() != frame.height;
+        const Rgb& previous = first ? current_ : previous_;
+        const Rgb& previousVelocity = first ? velocity_ : previousVelocity_;
+        if (debug) weight_ = PlaneF(frame.width, frame.height);
+        const SmaaTemporalArgs args{view(std::as_const(current_)),
+                                    view(previous),
+                                    velocity_.c[0].row(0),
+                                    velocity_.c[1].row(0),
+                                    frame.motionXPx.row(0),
+                                    frame.motionYPx.row(0),
+                                    previousVelocity.c[0].row(0),
+                                    previousVelocity.c[1].row(0),
+                                    pixels1080_ ? 1.0f / 1080 : 1.0f / float(frame.width),
+                                    pixels1080_ ? 1.0f / 1080 : 1.0f / float(frame.height),
+                                    rejection_,
+                                    reproject_ && !first,
+                                    view(out),
+                                    debug ? weight_.row(0) : nullptr,
+                                    out.stride(),
+                                    frame.width,
+                                    frame.height};
+        runKernel(smaaTemporalKernelsFor(exec).resolve, exec, args, frame.height);
+        std::swap(previous_, current_);
+        std::swap(previousVelocity_, velocity_);
+    }
+    size_t bytes() const {
+        return current_.bytes() + unjittered_.bytes() + previous_.bytes() + velocity_.bytes() +
+               previousVelocity_.bytes();
+    }
+    DebugLayer debugLayer() const { return {"weight.previous", {weight_}}; }
+
+  private:
+    float rejection_;
+    bool reproject_, pixels1080_, unjitter_;
+    Rgb unjittered_;
+    Rgb current_, previous_, velocity_, previousVelocity_;
+    PlaneF weight_;
+};
+
+class SmaaT2x : public Method {
+  public:
+    explicit SmaaT2x(const Params& p) : one_(p), pair_(p) {}
+    void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
+        Smaa& smaa = one_.smaa();
+        smaa.keepDebugLayers = keepDebugLayers;
+        smaa.findEdges(frame, frame.colorEncoded, frame.jitterPx, exec);
+        one_.blend(frame, one_.linear() ? frame.colorLinear : frame.colorEncoded, pair_.current(frame),
+                   &pair_.velocity(frame), exec);
+        pair_.resolve(frame, keepDebugLayers, exec, out);
+    }
+    size_t stateBytes() const override { return one_.bytes() + pair_.bytes(); }
+    std::vector<DebugLayer> debugLayers() const override {
+        if (!keepDebugLayers) return {};
+        auto layers = one_.smaa().debugLayers();
+        layers.push_back(pair_.debugLayer());
+        return layers;
+    }
+
+  private:
+    TwoSamples one_;
+    VelocityWeightedPair pair_;
+};
+
+// As published: two sub-samples (2x) in frames whose jitter alternates (sequence `smaa4x`). From a shot with the 4x
+// pattern frames alternate between two opposite ones of the four, which are nearly the same places without jitter.
+class Smaa4x : public Method {
+  public:
+    Smaa4x(const Params& p, const ShotInfo& shot) : shot_(shot), two_(p), pair_(p) {
+        if (const auto even = opposites(shot, kFourEven), odd = opposites(shot, kFourOdd); even && odd)
+            even_ = *even, odd_ = *odd;
+        else if (const auto both = opposites(shot, kTwo))
+            even_ = odd_ = *both;
+        else
+            refuse(shot, "smaa4x", "2x or 4x");
+    }
+    void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
+        two_.resolve(frame, shot_, frame.number % 2 == 0 ? even_ : odd_, keepDebugLayers, exec, pair_.current(frame),
+                     &pair_.velocity(frame));
+        pair_.resolve(frame, keepDebugLayers, exec, out);
+    }
+    size_t stateBytes() const override { return two_.bytes() + pair_.bytes(); }
+    std::vector<DebugLayer> debugLayers() const override {
+        if (!keepDebugLayers) return {};
+        auto layers = two_.debugLayers();
+        layers.push_back(pair_.debugLayer());
+        return layers;
+    }
+
+  private:
+    ShotInfo shot_;
+    SamplePair even_{}, odd_{};
+    TwoSamples two_;
+    VelocityWeightedPair pair_;
+};
+
+Space outputSpaceOf(const Params& p) { return p.choice("blendSpace") == "linear" ? Space::linear : Space::encoded; }
+
+std::vector<ParamSpec> temporalParams() {
+    auto params = smaaParams();
+    params.push_back(temporal::unjitterParam(false, "methods/06 B0; the pair of places is the filter"));
+    params.push_back(flagParam("reproject", true, "fetch the previous frame where the pixel was", "SMAA v2.8"));
+    params.push_back(realParam("rejection", "30", 0, 80, "K: how soon a difference in speed rejects the previous frame",
+                               "SMAA v2.8", "reproject=on"));
+    params.push_back(choiceParam("velocityUnit", "uv", {"uv", "px1080"},
+                                 "unit of that speed: the image's size, or 1080 px at any resolution",
+                                 "seed 001 eq. 3.1", "reproject=on"));
+    return params;
+}
+
+}  // namespace
+
+MethodDescriptor smaaS2xDescriptor() {
+    return {.id = "smaaS2x",
+            .title = "SMAA S2x",
+            .family = "spatial",
+            .summary = "SMAA 1x on each of two sub-samples, with the edges of each moved back, averaged.",
+            .source = "Jimenez et al. 2012; methods/03 s.3.4",
+            .passes = Pass::subsamples | Pass::subsampleColor,
+            .params = smaaParams(),
+            .create = [](const Params& p, const ShotInfo& shot) { return std::make_unique<SmaaS2x>(p, shot); },
+            .morePasses = smaaPasses,
+            .outputSpace = outputSpaceOf,
+            .reachPx = 66,
+            .patterns = {"d3d2"}};
+}
+
+MethodDescriptor smaaT2xDescriptor() {
+    return {.id = "smaaT2x",
+            .title = "SMAA T2x",
+            .family = "temporal",
+            .summary = "SMAA 1x on jittered frames, mixed with the frame before where the speed agrees.",
+            .source = "Jimenez et al. 2012; methods/03 s.3.3",
+            .passes = Pass::color | Pass::motion,
+            .input = Space::encoded,
+            .temporal = true,
+            .params = temporalParams(),
+            .create = [](const Params& p, const ShotInfo&) { return std::make_unique<SmaaT2x>(p); },
+            .morePasses = smaaPasses,
+            .outputSpace = outputSpaceOf};
+}
+
+MethodDescriptor smaa4xDescriptor() {
+    return {
+        .id = "smaa4x",
+        .title = "SMAA 4x",
+        .family = "temporal",
+        .summary = "SMAA S2x on two of four sub-samples per frame, mixed with the frame before where the speed agrees.",
+        .source = "Jimenez et al. 2012; methods/03 s.3.5",
+        .passes = Pass::subsamples | Pass::subsampleColor | Pass::motion,
+        .temporal = true,
+        .params = temporalParams(),
+        .create = [](const Params& p, const ShotInfo& shot) { return std::make_unique<Smaa4x>(p, shot); },
+        .morePasses = smaaPasses,
+        .outputSpace = outputSpaceOf,
+        .patterns = {"d3d4", "d3d2"}};
+}
+
+}  // namespace aa

@@ -1,0 +1,168 @@
+// Host side shared by the temporal methods: the colour history, their common parameters, the display-space sharpening
+// and the debug layers. The steps themselves are kernel text in temporal_blocks.kernel.h. Source: methods/06 s.6.0.
+//
+// The history holds the blend before sharpening (methods/06), RGBA float, two planes that swap roles. A frame with
+// `reset` set, and the first frame, drop it; a change of size without reset is an InputError (methods/08 s.8.3).
+#pragma once
+#include <algorithm>
+#include <glm/vec3.hpp>
+
+#include "methods/method.h"
+#include "methods/temporal/temporal_kernels.h"
+
+namespace aa {
+
+// How the history is kept from one frame to the next: parameters historyBits and dither.
+struct HistoryStorage {
+    HistoryFormat format = HistoryFormat::float32;
+    bool dither = false;
+};
+
+class ColourHistory {
+  public:
+    // Fills the history members of `in` for this frame: in.history stays null when there is none.
+    void begin(const Frame& frame, std::string_view method, TemporalIn& in);
+    // The blend of this frame is complete: fills its border and makes it the history of the next one, which finds it
+    // as `storage` keeps it. What this frame shows is not narrowed.
+    void end(const HistoryStorage& storage, const Exec& exec);
+    size_t bytes() const { return planes_[0].bytes() + planes_[1].bytes(); }
+    int framesSinceReset() const { return frames_; }  // 0 on the first frame
+    const RgbaPlane& latest() const { return planes_[current_]; }
+
+  private:
+    void narrow();
+
+    RgbaPlane planes_[2];
+    size_t current_ = 0;
+    int frames_ = -1;
+    uint32_t frameNumber_ = 0;
+    HistoryStorage storage_;
+    Exec exec_;
+};
+
+// Parameters that several methods share, each declared once.
+namespace temporal {
+ParamSpec unjitterParam(bool def, std::string_view source);
+ParamSpec luminanceParam(std::string_view def, std::string_view source, std::string_view onlyWhen = {});
+ParamSpec dilationParam(std::string_view def, std::string_view source);
+ParamSpec historyFilterParam(std::string_view def, std::string_view source);
+ParamSpec historyClampParam();  // every method with historyFilterParam has it
+ParamSpec neighbourhoodParam(std::string_view def, std::string_view source);
+ParamSpec clipTargetParam(std::string_view def, std::string_view source);
+ParamSpec warmupParam();
+ParamSpec historyBitsParam(Space space);  // eight bits hold display-encoded colours only
+ParamSpec ditherParam();
+ParamSpec outsideParam();
+ParamSpec sharpenParam(std::string_view def, std::string_view source);
+// The two ends of the luminance feedback B8.
+ParamSpec kMinParam(std::string_view def, std::string_view source);
+ParamSpec kMaxParam(std::string_view def, std::string_view source);
+// Thresholds of the rejection by geometry B3: read together by rejectionTest().
+ParamSpec depthToleranceParam(std::string_view onlyWhen = {});
+ParamSpec bothSidesParam(std::string_view onlyWhen = {});
+ParamSpec magnificationParam(std::string_view def, std::string_view source);
+// Where the sample count of the last frame is read: countAtPixel().
+ParamSpec countAtParam(std::string_view source, std::string_view onlyWhen = {});
+void requireOrdered(std::string_view method, const Params& p);  // kmin <= kmax, else UsageError
+
+Dilation dilation(const Params& p);
+HistoryFilter historyFilter(const Params& p);
+Neighbourhood neighbourhood(const Params& p);
+ClipTarget clipTarget(const Params& p);
+HistoryStorage historyStorage(const Params& p);
+Luminance luminance(const Params& p);
+RejectionTest rejectionTest(const Params& p);
+bool countAtPixel(const Params& p);
+
+// Depth is read only to dilate motion by it.
+PassSet dilationPasses(const Params& p);
+
+// The members of TemporalIn that come from the frame alone; `color` in the method's working space.
+TemporalIn frameView(const Frame& frame, const Rgb& color);
+
+// ---- methods/06 B0: the current frame read at p - jitter ----
+// A jittered frame holds at texel m the scene at centre(m) + jitter, so what lies at p is read at p - jitter: colours
+// bilinear, depth, id and motion at the nearest texel, beyond the picture its edge. Without jitter nothing changes.
+// The nearest texel as offset from the pixel: 0 but for a jitter of half a pixel.
+glm::ivec2 unjitteredTexel(const Frame& frame);
+// Makes `in` see the frame so: moves depth and motion, and asks runTemporal() for the colours.
+void unjitter(const Frame& frame, TemporalIn& in);
+// Expectation for a pixel whose surface is that of another texel.
+ExpectedDepth moved(ExpectedDepth expected, glm::ivec2 texel);
+// A whole picture un-jittered, into `out`; for methods that filter the current frame before they blend it.
+void unjitter(const Rgb& in, glm::dvec2 jitterPx, const Exec& exec, Rgb& out);
+
+// A few rows of un-jittered colour per thread, so that no picture of them is ever written.
+class UnjitteredRows {
+  public:
+    // Of blocks of at most `rows` rows.
+    UnjitteredRows(const TemporalIn& in, const Exec& exec, int rows);
+    // What rows y0 - 1 .. y1 of `in.color` are, at the addresses that a kernel expects; until this thread's next call.
+    RgbIn around(int y0, int y1);
+
+  private:
+    UnjitterArgs args_;
+    void (*run_)(const UnjitterArgs&, int, int);
+    size_t rows_;
+    Scratch scratch_;
+};
+// runKernel for arguments that have a TemporalIn `in`, of whose colours the kernel reads a 3x3 window. `scratchRows`:
+// rows of working memory for arguments with a member `scratch` (kernels/ring.h).
+template <class Args>
+void runTemporal(const RowKernel<Args>& kernel, const Exec& exec, const Args& args, int grain = 8,
+                 int scratchRows = 0) {
+    const auto fn = rowsOf(kernel, exec.precision);
+    const TemporalIn& in = args.in;
+    const bool unjitters = in.readXPx != 0 || in.readYPx != 0;
+    Scratch scratch(scratchRows, in.stride);
+    UnjitteredRows current(in, exec, unjitters ? grain : 0);
+    forRows(
+        exec, in.height,
+        [&](int y0, int y1) {
+            Args own = args;
+            if constexpr (requires { own.scratch; }) own.scratch = scratch.local();
+            if (!unjitters) return fn(own, y0, y1);
+            for (int y = y0; y < y1; y += grain) {
+                const int end = std::min(y + grain, y1);
+                own.in.color = current.around(y, end);
+                fn(own, y, end);
+            }
+        },
+        grain);
+}
+
+// Largest weight that history may have in the frame t after a reset: warmup=ramp gives each of the first frames the
+// weight 1/(t+1), as a running mean.
+float feedbackCeiling(const Params& p, int framesSinceReset);
+}  // namespace temporal
+
+// From frame.camera and frame.previousCamera; unknown without both, after a reset, and for other projections.
+ExpectedDepth expectedDepth(const Frame& frame);
+// In any other camera.
+ExpectedDepth expectedDepth(const Frame& frame, const Camera& before);
+
+// View position of the sample at pixel position p and depth z: x and y = z * (perDepth . (p, 1)) + constant . (p, 1).
+struct ViewRays {
+    glm::dvec3 perDepth[2], constant[2];
+};
+std::optional<ViewRays> viewRays(const Frame& frame);  // nothing without a perspective or orthographic camera
+
+// Sharpened copy of a display-encoded blend (methods/06 s.6.10); never fed back. `kernel` is not none.
+void sharpenEncoded(const RgbaPlane& blend, SharpenKernel kernel, const Exec& exec, Rgb& out);
+void sharpenEncodedRow(const RgbaPlane& blend, SharpenKernel kernel, const Exec& exec, int y, Rgb& out);
+float sharpenGain(SharpenKernel kernel);  // as of SharpenHistoryArgs
+
+// Planes behind TemporalDebug and their names.
+class TemporalDebugLayers {
+  public:
+    // What `method` was asked to keep: everything, the rejection alone, or nothing.
+    TemporalDebug begin(const Method& method, int width, int height);
+    std::vector<DebugLayer> layers() const;
+    const PlaneF* rejection() const { return rejection_.empty() ? nullptr : &rejection_; }
+
+  private:
+    Rgb boxLow_, boxHigh_;
+    PlaneF motionX_, motionY_, rejection_, clipAmount_, feedback_;
+};
+
+}  // namespace aa

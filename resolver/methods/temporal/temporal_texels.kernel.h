@@ -1,0 +1,56 @@
+// Small helpers of the temporal kernels: planes in and out of lanes, ranges, colour axes. Include from *.kernel.cpp
+// only.
+#pragma once
+#include "kernels/texels.h"
+#include "methods/temporal/temporal_kernels.h"
+
+namespace AA_ARCH {
+using namespace aa;
+
+template <class R>
+AA_INLINE vec3<R> load3(const float* const (&c)[3], long offset) {
+    return {load<R>(c[0] + offset), load<R>(c[1] + offset), load<R>(c[2] + offset)};
+}
+template <class R>
+AA_INLINE void store3(vec3<R> v, float* const (&c)[3], long offset) {
+    store(v.x, c[0] + offset), store(v.y, c[1] + offset), store(v.z, c[2] + offset);
+}
+template <class R>
+AA_INLINE Mask<R> all(bool value) {
+    return value ? R(Elem<R>(0)) == R(Elem<R>(0)) : R(Elem<R>(0)) != R(Elem<R>(0));
+}
+// x - x is NaN for NaN and for both infinities.
+template <class R>
+AA_INLINE Mask<R> finite(R x) {
+    return x - x == R(Elem<R>(0));
+}
+template <class R>
+AA_INLINE Mask<R> finite(vec3<R> c) {
+    return finite(c.x - c.x + (c.y - c.y) + (c.z - c.z));
+}
+template <class R>
+AA_INLINE vec3<R> clamp3(vec3<R> c, vec3<R> lo, vec3<R> hi) {
+    return min(max(c, lo), hi);
+}
+
+// Y, Co, Cg (methods/00 s.4). The inverse does not clamp.
+template <class R>
+AA_INLINE vec3<R> to_ycocg(vec3<R> c) {
+    using T = Elem<R>;
+    const R half(T(0.5)), quarter(T(0.25)), rb = (c.x + c.z) * quarter;
+    return {rb + c.y * half, (c.x - c.z) * half, c.y * half - rb};
+}
+template <class R>
+AA_INLINE vec3<R> from_ycocg(vec3<R> c) {
+    const R t = c.x - c.z;
+    return {t + c.y, c.x + c.z, t - c.y};
+}
+template <class R>
+AA_INLINE R luminance(vec3<R> c, Luminance kind) {
+    using T = Elem<R>;
+    if (kind == Luminance::quarter) return c.x * R(T(0.25)) + c.y * R(T(0.5)) + c.z * R(T(0.25));
+    if (kind == Luminance::inside) return c.x * R(T(0.22)) + c.y * R(T(0.707)) + c.z * R(T(0.071));
+    return kind == Luminance::bt601 ? luma601(c) : luma709(c);
+}
+
+}  // namespace AA_ARCH

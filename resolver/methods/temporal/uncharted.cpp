@@ -1,0 +1,88 @@
+#include "methods/temporal/uncharted.h"
+
+#include "methods/method.h"
+#include "methods/temporal/temporal.h"
+
+namespace aa {
+namespace {
+
+class Uncharted : public Method {
+  public:
+    explicit Uncharted(const Params& params)
+        : params_(params), sharpen_(SharpenKernel(params.choiceIndex("sharpen"))) {}
+
+    void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
+        UnchartedArgs args{temporal::frameView(frame, frame.colorEncoded),
+                           params_.realf("kmin"),
+                           params_.realf("kmax"),
+                           temporal::neighbourhood(params_),
+                           temporal::clipTarget(params_),
+                           temporal::luminance(params_)};
+        if (params_.flag("unjitter")) temporal::unjitter(frame, args.in);
+        if (sharpen_ == SharpenKernel::none) args.in.out = view(out);
+        history_.begin(frame, "uncharted", args.in);
+        args.in.feedbackCeiling = temporal::feedbackCeiling(params_, history_.framesSinceReset());
+        args.in.dilation = temporal::dilation(params_);
+        args.in.filter = temporal::historyFilter(params_);
+        args.in.debug = debug_.begin(*this, frame.width, frame.height);
+        temporal::runTemporal(unchartedKernelsFor(exec).resolve, exec, args);
+        history_.end(temporal::historyStorage(params_), exec);
+        if (sharpen_ != SharpenKernel::none) sharpenEncoded(history_.latest(), sharpen_, exec, out);
+    }
+    size_t stateBytes() const override { return history_.bytes(); }
+    const PlaneF* rejection() const override { return debug_.rejection(); }
+    std::vector<DebugLayer> debugLayers() const override { return debug_.layers(); }
+
+  private:
+    Params params_;
+    SharpenKernel sharpen_;
+    ColourHistory history_;
+    TemporalDebugLayers debug_;
+};
+
+MethodDescriptor descriptor(std::string_view id, std::string_view title, std::string_view summary,
+                            std::string_view sharpen, std::string_view sharpenSource) {
+    return {.id = id,
+            .title = title,
+            .family = "temporal",
+            .summary = summary,
+            .source = "seed 000 s.3.6 (Xu 2016, Pedersen 2016); methods/06 s.6.4",
+            .passes = Pass::color | Pass::motion,
+            .input = Space::encoded,
+            .output = Space::encoded,
+            .temporal = true,
+            .params = {temporal::unjitterParam(true, "seed 000 App. B; methods/06 B0"),
+                       temporal::kMinParam("0.925", "the author's public program; methods/11 nr 5"),
+                       temporal::kMaxParam("0.979", "the author's public program; methods/11 nr 5"),
+                       temporal::luminanceParam("quarter", "the author's public program; methods/06 s.6.4"),
+                       temporal::sharpenParam(sharpen, sharpenSource),
+                       temporal::dilationParam("closest3x3", "seed 000 s.3.6.2"),
+                       temporal::historyFilterParam("bilinear", "methods/06 B1"), temporal::historyClampParam(),
+                       temporal::neighbourhoodParam("rounded", "seed 000 s.3.6.3"),
+                       temporal::clipTargetParam("aabbCentre", "methods/11 nr 6"), temporal::warmupParam(),
+                       temporal::historyBitsParam(Space::encoded), temporal::ditherParam()},
+            .create =
+                [id](const Params& p, const ShotInfo&) {
+                    temporal::requireOrdered(id, p);
+                    return std::make_unique<Uncharted>(p);
+                },
+            .morePasses = temporal::dilationPasses};
+}
+}  // namespace
+
+MethodDescriptor unchartedDescriptor() {
+    return descriptor("uncharted", "Uncharted TAA",
+                      "Clipped and luminance-weighted history, sharpened with Xu's kernel as in the thesis.", "xu",
+                      "seed 000 eq 3.1");
+}
+MethodDescriptor unchartedNormDescriptor() {
+    return descriptor("unchartedNorm", "Uncharted TAA, normalised sharpening",
+                      "As uncharted, sharpened with a quarter of the gain: the fair baseline.", "norm",
+                      "seed 000 eq 4.17, table 5.1");
+}
+MethodDescriptor unchartedNoSharpenDescriptor() {
+    return descriptor("unchartedNoSharpen", "Uncharted TAA, not sharpened",
+                      "As uncharted without its sharpening: what the temporal part alone does.", "none",
+                      "methods/06 s.6.4");
+}
+}  // namespace aa

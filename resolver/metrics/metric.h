@@ -1,0 +1,63 @@
+// One row per metric: what `--metrics` names, results hold, tables show and reports explain. A new metric is one pair of
+// files (x.h, x.cpp: its function and its Metric) and one line in metrics/registry.cpp.
+#pragma once
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "metrics/metrics.h"
+
+namespace aa {
+
+enum class FigureForm { significant, decibels, similarity };  // how it is written (report/format.h)
+enum class ColourSpace { encoded, linear };                   // display-encoded values in [0,1], or linear light
+
+// A number that a metric gives.
+struct Figure {
+    std::string_view name;   // in JSON, in CSV and on the command line
+    std::string_view title;  // head of a column
+    std::string_view help;   // one line
+    FigureForm form = FigureForm::significant;
+    bool higherIsBetter = false;
+    // Of squared error: pooled over frames it comes from the mean squares, so that a PSNR is never a mean of decibels.
+    // Null: the mean over the frames.
+    double (*ofSquares)(const SquaredError&) = nullptr;
+};
+
+// Two images of one size with filled borders. The linear ones are null where there is no linear light: 8-bit files,
+// methods that give encoded colour.
+struct ImagePair {
+    const Rgb& testEncoded;
+    const Rgb& referenceEncoded;
+    const Rgb* testLinear = nullptr;
+    const Rgb* referenceLinear = nullptr;
+};
+
+struct Metric {
+    std::vector<Figure> figures;
+    ColourSpace space = ColourSpace::encoded;
+    bool always = false;  // in every run; others when they are asked for
+    int nsPerPixel = 0;   // about, on one AVX2 core: what asking for it costs
+    std::string_view source;
+    // One value per figure, of one frame. Empty where every figure is of squared error, which is always there.
+    std::function<std::vector<double>(const ImagePair&, const Exec&)> measure = {};
+    bool isPossible(const ImagePair& images) const {
+        return space == ColourSpace::encoded || (images.testLinear && images.referenceLinear);
+    }
+};
+
+// All of them, in the order of tables.
+const std::vector<Metric>& metrics();
+
+struct FigureChoice {
+    const Metric* metric = nullptr;
+    const Figure* figure = nullptr;
+};
+// "ssim" is ssimLuma. Throws UsageError: unknown, with a suggestion.
+FigureChoice findFigure(std::string_view name);
+const Figure* figureByName(std::string_view name);  // null: no such figure
+// For help: "\n  name  explanation" of every figure, or of those that not every run has.
+std::string listOfFigures(bool optionalAlone = false);
+
+}  // namespace aa

@@ -1,0 +1,475 @@
+#include "shot/synth/synth.h"
+
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "image/error.h"
+#include "image/io.h"
+#include "kernels/dispatch.h"
+#include "shot/patterns.h"
+#include "shot/synth/scenes.h"
+#include "shot/writer.h"
+
+namespace aa {
+using glm::dvec2;
+using glm::dvec3;
+
+namespace {
+constexpr int kStrata = 32;  // of the zone plate's truth, per axis and half
+
+dvec2 turned(dvec2 p, double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return {c * p.x - s * p.y, s * p.x + c * p.y};
+}
+bool rests(const RigidMotion& m) { return m.velocityPx == dvec2(0.0) && m.turn == 0; }
+
+// A shape where it is at one time.
+struct Placed {
+    const SynthShape* shape;
+    Region region;
+    Bounds bounds;
+};
+std::vector<Placed> placedAt(const std::vector<SynthShape>& shapes, double time) {
+    std::vector<Placed> r;
+    for (const SynthShape& s : shapes) {
+        Placed p{&s, s.region, {}};
+        if (!rests(s.motion)) {
+            if (auto* disc = std::get_if<Disc>(&p.region)) disc->centre = s.motion.apply(disc->centre, time);
+            if (auto* polygon = std::get_if<Polygon>(&p.region))
+                for (dvec2& corner : *polygon) corner = s.motion.apply(corner, time);
+        }
+        p.bounds = bounds(p.region);
+        r.push_back(std::move(p));
+    }
+    return r;
+}
+// Those that reach into a row of pixels, front to back.
+std::vector<const Placed*> ofRow(const std::vector<Placed>& placed, int y) {
+    std::vector<const Placed*> r;
+    for (const Placed& p : placed)
+        if (p.bounds.min.y <= y + 1 && p.bounds.max.y >= y) r.push_back(&p);
+    return r;
+}
+bool holds(const Placed& shape, dvec2 p) {
+    return p.x >= shape.bounds.min.x && p.x <= shape.bounds.max.x && p.y >= shape.bounds.min.y &&
+           p.y <= shape.bounds.max.y && contains(shape.region, p);
+}
+const Placed* frontMost(const std::vector<const Placed*>& row, dvec2 p) {
+    for (const Placed* c : row)
+        if (holds(*c, p)) return c;
+    return nullptr;
+}
+const Placed* frontMost(const std::vector<Placed>& all, dvec2 p) {
+    for (const Placed& c : all)
+        if (holds(c, p)) return &c;
+    return nullptr;
+}
+
+bool isSeam(const SynthShape& shape, size_t edge) { return edge < 32 && (shape.seams >> edge & 1); }
+
+// Signed distance along its major axis from p to the line of the shape's nearest edge (methods/05 s.5.1).
+dvec2 nearestEdgePx(const Placed& placed, dvec2 p) {
+    const auto& polygon = std::get<Polygon>(placed.region);
+    double nearest = INFINITY;
+    dvec2 r(0.5);
+    for (size_t i = 0; i < polygon.size(); i++) {
+        const dvec2 a = polygon[i], d = polygon[(i + 1) % polygon.size()] - a;
+        if (d == dvec2(0.0) || isSeam(*placed.shape, i)) continue;
+        const dvec2 n(-d.y, d.x);
+        const bool alongX = std::abs(n.x) > std::abs(n.y);
+        const double s = glm::dot(a - p, n) / (alongX ? n.x : n.y);
+        if (!(std::abs(s) < nearest)) continue;
+        nearest = std::abs(s);
+        r = alongX ? dvec2(s, 0.5) : dvec2(0.5, s);
+    }
+    return r;
+}
+
+void put(Rgb& to, int x, int y, dvec3 v) {
+    for (int c = 0; c < 3; c++) to.c[size_t(c)].at(x, y) = float(v[c]);
+}
+
+bool polygonsOnly(const std::vector<SynthShape>& shapes) {
+    return std::all_of(shapes.begin(), shapes.end(),
+                       [](const auto& s) { return std::holds_alternative<Polygon>(s.region); });
+}
+
+// Everything that a sample at one position of one frame sees.
+class Sampler {
+  public:
+    // All shapes moved by `shiftView` in view space.
+    Sampler(const SynthSceneContents& scene, int width, int height, double time, dvec3 shiftView = dvec3(0.0))
+        : scene_(scene),
+          shiftView_(shiftView),
+          width_(width),
+          height_(height),
+          time_(time),
+          toWorld_(glm::transpose(glm::dmat3(scene.camera.view))) {}
+
+    dvec3 color(const Placed* hit, dvec2 p) const {
+        if (scene_.zonePlate) return dvec3(zonePlateValue(p, width_, height_));
+        return hit ? hit->shape->color : scene_.backgroundColor;
+    }
+    float depth(const Placed* hit, dvec2 p) const {
+        if (!hit) return kBackgroundDepth;
+        const SynthShape& s = *hit->shape;
+        const glm::dmat4& m = scene_.camera.projection;
+        const dvec2 ndc(2 * p.x / width_ - 1, 1 - 2 * p.y / height_);
+        const dvec2 ray(ndc.x / m[0][0], ndc.y / m[1][1]);  // both cameras are centred
+        const dvec3 n = s.normalView;
+        const double distance = s.distance + glm::dot(n, shiftView_);
+        return float(scene_.camera.kind == "perspective" ? distance / (n.x * ray.x + n.y * ray.y - n.z)
+                                                         : (n.x * ray.x + n.y * ray.y - distance) / n.z);
+    }
+    dvec3 normal(const Placed* hit) const { return hit ? toWorld_ * hit->shape->normalView : dvec3(0.0); }
+    static uint32_t object(const Placed* hit) { return hit ? hit->shape->object : 0; }
+    dvec2 motionPx(const Placed* hit, dvec2 p) const {
+        if (!hit || rests(hit->shape->motion)) return dvec2(0.0);
+        const RigidMotion& m = hit->shape->motion;
+        return p - m.apply(m.invert(p, time_), time_ - 1);
+    }
+
+  private:
+    const SynthSceneContents& scene_;
+    dvec3 shiftView_;
+    int width_, height_;
+    double time_;
+    glm::dmat3 toWorld_;
+};
+
+// Seed 001 s.3.7.1: the jitter's translation in clip space, multiplied to the wrong side of the projection, moves the
+// geometry in view space instead. It is a translation parallel to the picture's plane, so every depth stays.
+dvec3 premultipliedShift(dvec2 jitterPx, int width, int height) {
+    return {-2 * jitterPx.x / width, 2 * jitterPx.y / height, 0.0};
+}
+
+// The same shapes, seen by a perspective camera after a movement by `shiftView` in view space.
+void moveInView(std::vector<Placed>& placed, const Sampler& before, const Manifest& m, dvec3 shiftView) {
+    const glm::dmat4& projection = m.frames[0].camera->projection;
+    const dvec2 pxAtUnitDepth(shiftView.x * projection[0][0] * m.width / 2,
+                              -shiftView.y * projection[1][1] * m.height / 2);
+    for (Placed& shape : placed) {
+        for (dvec2& corner : std::get<Polygon>(shape.region))
+            corner += pxAtUnitDepth / double(before.depth(&shape, corner));
+        shape.bounds = bounds(shape.region);
+    }
+}
+
+// All edges of a polygon but its seams, hidden ones too.
+void addSegments(const Placed& shape, const Sampler& sampler, std::vector<EdgeSegment>& to) {
+    const auto& corners = std::get<Polygon>(shape.region);
+    for (size_t i = 0; i < corners.size(); i++) {
+        const dvec2 a = corners[i], b = corners[(i + 1) % corners.size()];
+        if (a == b || isSeam(*shape.shape, i)) continue;
+        to.push_back(
+            {float(a.x), float(a.y), sampler.depth(&shape, a), float(b.x), float(b.y), sampler.depth(&shape, b)});
+    }
+}
+
+// Exact: each visible shape counts by its area in the pixel.
+void areaTruth(const std::vector<Placed>& placed, dvec3 background, Rgb& to) {
+    forRows({}, to.height(), [&](int y0, int y1) {
+        for (int y = y0; y < y1; y++) {
+            const auto row = ofRow(placed, y);
+            for (int x = 0; x < to.width(); x++) {
+                const Polygon pixel = rectangle(x, y, x + 1, y + 1);
+                const auto holdsPixel = [&](const Placed* p) {
+                    return std::all_of(pixel.begin(), pixel.end(),
+                                       [&](dvec2 corner) { return contains(p->region, corner); });
+                };
+                std::vector<const Region*> regions;
+                std::vector<dvec3> colors;
+                bool covered = false;
+                for (const Placed* p : row) {
+                    if (p->bounds.min.x >= x + 1 || p->bounds.max.x <= x) continue;
+                    regions.push_back(&p->region);
+                    colors.push_back(p->shape->color);
+                    if ((covered = holdsPixel(p))) break;
+                }
+                if (regions.size() <= size_t(covered)) {  // one shape, or none: no rounding of areas
+                    put(to, x, y, covered ? colors[0] : background);
+                    continue;
+                }
+                const std::vector<double> areas = visibleAreas(pixel, regions);
+                dvec3 sum = areas.back() * (covered ? colors.back() : background);
+                for (size_t i = 0; i < colors.size(); i++) sum += areas[i] * colors[i];
+                put(to, x, y, glm::max(sum, dvec3(0.0)));
+            }
+        }
+    });
+}
+
+// Repeatable offset of a stratum's sample, in [0,1)^2.
+dvec2 stratumOffset(uint32_t x, uint32_t y, uint32_t stratum, uint32_t half) {
+    uint32_t h =
+        x * 0x9E3779B1u ^ y * 0x85EBCA77u ^ stratum * 0xC2B2AE3Du ^ (half + 1) * 0x27D4EB2Fu;  // xxHash's primes
+    const auto next = [&h] {
+        h ^= h >> 15;
+        h *= 0x2C1B3C6Du;
+        h ^= h >> 12;
+        h *= 0x297A2D39u;
+        h ^= h >> 15;
+        return h / 4294967296.0;
+    };
+    const double u = next(), v = next();
+    return {u, v};
+}
+void zonePlateTruth(int width, int height, uint32_t half, Rgb& to) {
+    forRows({}, height, [&](int y0, int y1) {
+        for (int y = y0; y < y1; y++)
+            for (int x = 0; x < width; x++) {
+                double sum = 0;
+                for (uint32_t k = 0; k < kStrata * kStrata; k++) {
+                    const dvec2 o = stratumOffset(uint32_t(x), uint32_t(y), k, half);
+                    sum += zonePlateValue({x + (k % kStrata + o.x) / kStrata, y + (k / kStrata + o.y) / kStrata}, width,
+                                          height);
+                }
+                put(to, x, y, dvec3(sum / (kStrata * kStrata)));
+            }
+    });
+}
+
+// Planar z of each object's geometry, nearest and farthest: what `check` holds a scaled depth against.
+nlohmann::json depthBounds(const SynthSceneContents& scene, int width, int height, double time) {
+    std::map<uint32_t, std::pair<double, double>> range;
+    const Sampler sampler(scene, width, height, time);
+    for (const Placed& p : placedAt(scene.shapes, time)) {
+        const auto add = [&](dvec2 corner) {
+            const double z = sampler.depth(&p, corner);
+            auto [it, isNew] = range.emplace(p.shape->object, std::pair(z, z));
+            it->second = {std::min(it->second.first, z), std::max(it->second.second, z)};
+        };
+        if (const auto* polygon = std::get_if<Polygon>(&p.region))
+            for (const dvec2& corner : *polygon) add(corner);
+        else
+            add(std::get<Disc>(p.region).centre);  // discs face the camera
+    }
+    nlohmann::json j = nlohmann::json::object();
+    for (const auto& [id, z] : range) j[std::to_string(id)] = {z.first, z.second};
+    return j;
+}
+
+std::string numbered(const char* folder, int frame) {
+    char text[48];
+    std::snprintf(text, sizeof text, "%s/%06d.exr", folder, frame);
+    return text;
+}
+}  // namespace
+
+dvec2 RigidMotion::apply(dvec2 p, double time) const {
+    return pivotPx + turned(p - pivotPx, turn * time) + velocityPx * time;
+}
+dvec2 RigidMotion::invert(dvec2 p, double time) const {
+    return pivotPx + turned(p - velocityPx * time - pivotPx, -turn * time);
+}
+
+struct SynthShot::Scene {
+    SynthSceneContents contents;
+};
+
+SynthShot::SynthShot(const SynthOptions& o) {
+    if (o.width < 1 || o.height < 1 || o.width > kMaxResolution || o.height > kMaxResolution)
+        throw UsageError("synth: resolution " + std::to_string(o.width) + "x" + std::to_string(o.height) +
+                         ": expected 1..16384 a side");
+    if (o.frames < 1 || o.frames > 1000000)
+        throw UsageError("synth: " + std::to_string(o.frames) + " frames: expected 1..1000000");
+    if (o.subsampleColor && o.subsamples.empty())
+        throw UsageError("synth: colour at sub-samples needs a sub-sample pattern");
+    auto scene = std::make_shared<Scene>();
+    scene->contents = makeScene(o);
+    scene_ = scene;
+    const bool canPremultiply = scene->contents.camera.kind == "perspective" && scene->contents.isStatic;
+    if (o.premultiplied && (!canPremultiply || o.jitter == "none"))
+        throw UsageError(
+            "synth: premultiplied jitter errs with the depth, so it needs a jitter and a perspective scene at rest, "
+            "such as two_planes");
+    const JitterInfo& sequence = jitterSequence(o.jitter);
+    const JitterSpec jitter{o.jitter, o.jitterStart, sequence.naturalPeriod ? sequence.naturalPeriod : o.period,
+                            o.centred};
+
+    passes_ = Pass::color | Pass::albedo | Pass::depth | Pass::normal | Pass::object | Pass::motion;
+    if (!o.subsamples.empty()) passes_ |= Pass::subsamples;
+    if (o.subsampleColor) passes_ |= Pass::subsampleColor;
+    if (polygonsOnly(scene_->contents.shapes) && !scene_->contents.zonePlate) passes_ |= Pass::edges | Pass::segments;
+
+    Manifest& m = manifest_;
+    m.name = o.scene;
+    m.width = o.width;
+    m.height = o.height;
+    m.jitterSequence = o.jitter;
+    m.jitterStart = o.jitterStart >= 0 ? o.jitterStart : sequence.start;
+    m.jitterPeriod = jitter.period;
+    m.jitterPremultiplied = o.premultiplied;
+    m.isStatic = scene_->contents.isStatic;
+    m.objects = scene_->contents.objects;
+    if (!o.subsamples.empty()) {
+        m.subsamplePattern = o.subsamples;
+        m.subsamplePositionsPx = patternPositionsPx(o.subsamples);
+    }
+    m.truthSamplesPerHalf = scene_->contents.zonePlate ? kStrata * kStrata : 0;
+    m.extra["producer"] = {{"name", "aaresolve synth"}, {"version", AA_VERSION}};
+    m.extra["jitter"]["centred"] = o.centred;
+    m.extra["truth"]["exact"] = !scene_->contents.zonePlate;  // areas by formula: no samples, no error bar
+    for (int i = 0; i < o.frames; i++) {
+        FrameEntry f;
+        f.frame = i + 1;
+        f.file = numbered("frames", f.frame);
+        f.truth = numbered("truth", m.isStatic ? 1 : f.frame);
+        if (o.jitter != "none" && !(o.centreWanted && o.centreWanted->empty()))
+            f.centre = numbered("centre", m.isStatic ? 1 : f.frame);
+        f.reset = i == 0;
+        f.jitterPx = jitterPx(jitter, uint64_t(i));
+        f.camera = scene_->contents.camera;
+        f.extra["depth_bounds"] = depthBounds(scene_->contents, o.width, o.height, i);
+        m.frames.push_back(std::move(f));
+    }
+}
+
+const std::vector<SynthShape>& SynthShot::shapes() const { return scene_->contents.shapes; }
+
+std::function<dvec3(dvec2)> SynthShot::picture(size_t index) const {
+    return [this, index, placed = placedAt(shapes(), double(index))](dvec2 p) {
+        const Sampler sampler(scene_->contents, manifest_.width, manifest_.height, double(index));
+        return sampler.color(frontMost(placed, p), p);
+    };
+}
+
+Frame SynthShot::frame(size_t index, Sampling sampling) const {
+    const FrameEntry& entry = manifest_.frames.at(index);
+    const int w = manifest_.width, h = manifest_.height;
+    Frame f;
+    f.number = entry.frame;
+    f.width = w;
+    f.height = h;
+    f.reset = entry.reset;
+    f.jitterPx = sampling == Sampling::centre ? dvec2(0.0) : entry.jitterPx;
+    f.camera = entry.camera;
+    if (index > 0 && !entry.reset) f.previousCamera = manifest_.frames[index - 1].camera;
+    f.passes = passes_;
+    f.colorLinear = f.normalWorld = Rgb(w, h);
+    f.depthView = f.motionXPx = f.motionYPx = PlaneF(w, h);
+    f.objectId = PlaneU(w, h);
+    const bool edges = passes_.has(Pass::edges), subSamples = passes_.has(Pass::subsamples);
+    if (edges) f.edgeXPx = f.edgeYPx = PlaneF(w, h, 0.5f);
+    if (subSamples) {
+        f.subSamplePositionsPx = manifest_.subsamplePositionsPx;
+        f.subSampleMask = PlaneU(w, h);
+        for (size_t k = 0; k < f.subSamplePositionsPx.size(); k++)
+            f.subSamples.push_back(
+                {PlaneF(w, h), Rgb(w, h), PlaneU(w, h), passes_.has(Pass::subsampleColor) ? Rgb(w, h) : Rgb()});
+    }
+
+    const double time = double(index);
+    const auto atRest = placedAt(shapes(), time);
+    const Sampler unmoved(scene_->contents, w, h, time);
+    dvec2 samplePx = f.jitterPx;
+    dvec3 shiftView(0.0);
+    auto placed = atRest;
+    if (manifest_.jitterPremultiplied) {
+        shiftView = premultipliedShift(f.jitterPx, w, h);
+        moveInView(placed, unmoved, manifest_, shiftView);
+        samplePx = dvec2(0.0);
+    }
+    const Sampler sampler(scene_->contents, w, h, time, shiftView);
+    forRows({}, h, [&](int y0, int y1) {
+        for (int y = y0; y < y1; y++) {
+            const auto row = ofRow(placed, y);
+            for (int x = 0; x < w; x++) {
+                const dvec2 centre(x + 0.5, y + 0.5), p = centre + samplePx;
+                const Placed* hit = frontMost(row, p);
+                put(f.colorLinear, x, y, sampler.color(hit, p));
+                put(f.normalWorld, x, y, sampler.normal(hit));
+                f.depthView.at(x, y) = sampler.depth(hit, p);
+                f.objectId.at(x, y) = sampler.object(hit);
+                const dvec2 motion = sampler.motionPx(hit, p);
+                f.motionXPx.at(x, y) = float(motion.x);
+                f.motionYPx.at(x, y) = float(motion.y);
+                if (edges && hit) {
+                    const dvec2 e = nearestEdgePx(*hit, p);
+                    f.edgeXPx.at(x, y) = float(e.x);
+                    f.edgeYPx.at(x, y) = float(e.y);
+                }
+                for (size_t k = 0; k < f.subSamples.size(); k++) {
+                    const dvec2 q = p + f.subSamplePositionsPx[k];
+                    const Placed* subHit = frontMost(row, q);
+                    SubSample& s = f.subSamples[k];
+                    s.depthView.at(x, y) = sampler.depth(subHit, q);
+                    put(s.normalWorld, x, y, sampler.normal(subHit));
+                    s.objectId.at(x, y) = sampler.object(subHit);
+                    if (k < 32 && sampler.object(subHit) == sampler.object(hit)) f.subSampleMask.at(x, y) |= 1u << k;
+                    if (!s.colorLinear.empty()) put(s.colorLinear, x, y, sampler.color(subHit, q));
+                }
+            }
+        }
+    });
+    if (passes_.has(Pass::segments))
+        for (const Placed& shape : atRest) addSegments(shape, unmoved, f.segments);
+    f.albedoLinear = f.colorLinear;  // nothing is lit
+    f.colorLinear.fillBorder();
+    f.albedoLinear.fillBorder();
+    f.normalWorld.fillBorder();
+    for (PlaneF* p : {&f.depthView, &f.motionXPx, &f.motionYPx, &f.edgeXPx, &f.edgeYPx}) p->fillBorder();
+    f.objectId.fillBorder();
+    f.subSampleMask.fillBorder();
+    for (SubSample& s : f.subSamples) {
+        s.depthView.fillBorder();
+        s.normalWorld.fillBorder();
+        s.objectId.fillBorder();
+        if (!s.colorLinear.empty()) s.colorLinear.fillBorder();
+    }
+    return f;
+}
+
+Truth SynthShot::truth(size_t index) const {
+    Truth t{Rgb(manifest_.width, manifest_.height), {}};
+    if (scene_->contents.zonePlate) {
+        t.b = t.a;
+        zonePlateTruth(manifest_.width, manifest_.height, 0, t.a);
+        zonePlateTruth(manifest_.width, manifest_.height, 1, t.b);
+    } else {
+        areaTruth(placedAt(shapes(), double(index)), scene_->contents.backgroundColor, t.a);
+        t.b = t.a;
+    }
+    t.a.fillBorder();
+    t.b.fillBorder();
+    return t;
+}
+
+Manifest writeSynth(const SynthOptions& options, const std::filesystem::path& folder,
+                    const std::function<bool(const FrameEntry&)>& goOn) {
+    const SynthShot shot(options);
+    Manifest m = shot.manifest();
+    m.folder = folder;
+    const PassSet wanted = options.wanted.value_or(shot.passes()),
+                  centreWanted = options.centreWanted.value_or(shot.passes());
+    for (const PassSet& p : {wanted, centreWanted})
+        if (const auto missing = names(p.without(shot.passes())); !missing.empty())
+            throw UsageError("synth: scene " + m.name + " has no pass '" + std::string(missing[0]) +
+                             "'; choose another scene");
+    if (const auto at = options.nanPixel; at && !(at->x >= 0 && at->y >= 0 && at->x < m.width && at->y < m.height))
+        throw UsageError("synth: the pixel for the NaN lies outside of the picture");
+    makeWritableFolder(folder / "frames");
+    makeWritableFolder(folder / "truth");
+    if (!m.frames[0].centre.empty()) makeWritableFolder(folder / "centre");
+    // An older manifest would describe the files that now change; the new one comes last.
+    std::filesystem::remove(folder / "shot.json");
+    const auto write = [&](const std::string& file, Frame frame, PassSet passes) {
+        frame.passes = passes;
+        if (options.nanPixel)
+            for (auto& plane : frame.colorLinear.c) plane.at(options.nanPixel->x, options.nanPixel->y) = NAN;
+        writeFrame(folder / file, frame, !m.isStatic);
+    };
+    for (size_t i = 0; i < m.frames.size(); i++) {
+        const bool shared = m.isStatic && i > 0;
+        write(m.frames[i].file, shot.frame(i), wanted);
+        if (!m.frames[i].centre.empty() && !shared)
+            write(m.frames[i].centre, shot.frame(i, Sampling::centre), centreWanted);
+        if (!shared) writeTruth(folder / m.frames[i].truth, shot.truth(i));
+        if (goOn && !goOn(m.frames[i])) m.frames.resize(i + 1);
+    }
+    writeManifest(m);
+    return m;
+}
+
+}  // namespace aa
