@@ -25,10 +25,11 @@ if __package__ in (None, ""):
 
     __package__ = "aa_resolve"
 
-from . import ADDON_VERSION, exr, jitter, lighting, registry  # noqa: E402
+from . import ADDON_VERSION, exr, jitter, registry  # noqa: E402
+from .scene import lighting  # noqa: E402
 from .errors import Cancelled, SceneError, UsageError  # noqa: E402
 from .export import Exporter  # noqa: E402
-from .report import Reporter  # noqa: E402
+from .progress import Progress  # noqa: E402
 from .settings import Settings, parse_frames  # noqa: E402
 from .store import Store  # noqa: E402
 
@@ -67,7 +68,7 @@ def build_parser() -> argparse.ArgumentParser:
         "--passes",
         default="",
         metavar="LIST",
-        help=f"passes to write in addition to those of --for, of {', '.join(registry.PASSES)}",
+        help=f"passes to write in addition to those of --for, of {', '.join(registry.load_passes())}",
     )
     add("--resolution", nargs=2, type=int, metavar=("W", "H"), help="pixels (default: the scene's)")
     add(
@@ -187,9 +188,9 @@ def settings_from(arguments: argparse.Namespace, scene: bpy.types.Scene) -> Sett
         passes |= centre_passes
         centre_passes = set()
     for name in filter(None, (part.strip() for part in arguments.passes.split(","))):
-        if name not in registry.PASSES:
+        if name not in registry.load_passes():
             raise UsageError(
-                f"--passes: unknown pass '{name}'; known: {', '.join(registry.PASSES)}"
+                f"--passes: unknown pass '{name}'; known: {', '.join(registry.load_passes())}"
             )
         passes.add(name)
     if arguments.jitter not in jitter.SEQUENCES:
@@ -221,7 +222,7 @@ def settings_from(arguments: argparse.Namespace, scene: bpy.types.Scene) -> Sett
         raise UsageError(
             f"--subsamples: expected {known} or grid1 to grid8, found '{pattern}'"
         ) from None
-    if arguments.subsamples and not both & {"subsamples", "subsampleColor"}:
+    if arguments.subsamples and not registry.reads_subsamples(both):
         raise UsageError("--subsamples: has no effect, none of the methods reads sub-samples")
     frames = (
         parse_frames(arguments.frames, "--frames")
@@ -275,7 +276,7 @@ def file_identity(path: str) -> str:
 _PROBE_SAMPLES = 8
 
 
-def _estimate(scene: bpy.types.Scene, settings: Settings, reporter: Reporter) -> int:
+def _estimate(scene: bpy.types.Scene, settings: Settings, progress: Progress) -> int:
     """Measures one frame and ``_PROBE_SAMPLES`` samples of truth, and scales them up."""
     frames = settings.frames
     truth = frames if settings.truth_frames == "all" else settings.truth_frames
@@ -287,7 +288,7 @@ def _estimate(scene: bpy.types.Scene, settings: Settings, reporter: Reporter) ->
             truth_frames=[frames[0]],
             truth_samples=min(settings.truth_samples, _PROBE_SAMPLES),
         )
-        exporter = Exporter(scene, probe, reporter, ADDON_VERSION)
+        exporter = Exporter(scene, probe, progress, ADDON_VERSION)
         exporter.prepare()
         store = Store(probe.out, 1.0)
         store.open(probe.fingerprint(), False)
@@ -299,7 +300,7 @@ def _estimate(scene: bpy.types.Scene, settings: Settings, reporter: Reporter) ->
     centres = 1 if exporter.static else len(frames)
     per_truth = truth_seconds * settings.truth_samples / probe.truth_samples
     total = frame_seconds * len(frames) + centre_seconds * centres + per_truth * truths
-    reporter.say(
+    progress.say(
         "estimate",
         f"about {_duration(total)}: {len(frames)} frames of {frame_seconds + centre_seconds:.2g} s, "
         f"{truths} truths of {per_truth:.2g} s, {size * len(frames) / 1e6:.0f} MB",
@@ -321,13 +322,13 @@ def run(argv: list[str]) -> int:
     """Exports the open file; returns the exit code."""
     try:
         arguments = build_parser().parse_args(argv)
-        reporter = Reporter(arguments.json)
+        progress = Progress(arguments.json)
         scene = bpy.context.scene
         settings = settings_from(arguments, scene)
         if arguments.estimate:
-            return _estimate(scene, settings, reporter)
+            return _estimate(scene, settings, progress)
         started = time.perf_counter()
-        exporter = Exporter(scene, settings, reporter, ADDON_VERSION)
+        exporter = Exporter(scene, settings, progress, ADDON_VERSION)
         exporter.prepare()
         store = Store(settings.out, arguments.claim_timeout)
         store.open(
@@ -347,12 +348,12 @@ def run(argv: list[str]) -> int:
         )
         for name, cost in summary.costs.items():
             size = f", {cost.bytes / 1e6:.2f} MB" if cost.bytes else ""
-            reporter.say(
+            progress.say(
                 "cost",
                 f"{name}: {cost.seconds:.2f} s{size}",
                 **{"pass": name, "seconds": round(cost.seconds, 3), "bytes": cost.bytes},
             )
-        reporter.say(
+        progress.say(
             "done",
             f"{os.path.join(settings.out, 'shot.json')}: {summary.rendered} pictures in {seconds:.1f} s"
             f"{finished}{elsewhere}",

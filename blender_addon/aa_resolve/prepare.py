@@ -1,118 +1,70 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What an export renders, decided before its first picture: the scene is checked, brought to the light model, and
-every pass that it cannot need is left out."""
+"""From the open scene to a plan: the scene is checked, brought (in memory) to the light model, and every pass that it
+cannot need is left out, with a note that says why."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import bpy
 
-from . import analysis
-from . import camera as cam
-from . import instances, jitter, lighting, rendering, subsamples
+from . import jitter, registry
 from .errors import SceneError
-from .report import Reporter
+from .passes.geometry import ObjectId
+from .passes.table import passes_named
+from .plan import Plan
+from .progress import Progress
+from .scene import camera as cam
+from .scene import instances, lighting, movement, rendering, suitability, surfaces
+from .scene.cuts import CameraCuts
 from .settings import Settings
 
 
-@dataclass
-class Plan:
-    """The decisions; ``passes_of`` holds the shot's passes of jittered frames and of those at the pixel centres."""
+def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) -> Plan:
+    """Checks the scene, brings it to the light model and says what is left out, and why.
 
-    scene: bpy.types.Scene
-    settings: Settings
-    view_layer: bpy.types.ViewLayer
-    frame: cam.Frame
-    cuts: cam.CameraCuts
-    passes_of: dict[str, set[str]]
-    static: bool
-    cutout: str | None  # material through which rays pass or that displaces its surface
-    positions: list[tuple[float, float]]
-    light: lighting.LightPlan
-    ids: instances.ObjectIds
-    folder: str
-
-    @property
-    def passes(self) -> set[str]:
-        """Passes of either kind of frame."""
-        return self.passes_of["frames"] | self.passes_of["centre"]
-
-    @property
-    def has_subsamples(self) -> bool:
-        """True when the shot holds sub-samples."""
-        return bool(self.passes & {"subsamples", "subsampleColor"})
-
-    def cycles_passes(self, passes: set[str]) -> set[str]:
-        """Passes of Cycles that colour and these passes of the shot are made from."""
-        needed = set(self.light.passes)
-        if passes & {"depth", "motion", "albedo", "subsamples", "edges"} or not self.static:
-            needed.add("Depth")
-        if passes & {"normal", "subsamples"}:
-            needed.add("Normal")
-        if passes & {"object", "subsamples", "edges", "segments"}:
-            needed.add("IndexOB")
-        if "motion" in passes:
-            needed |= {"Vector", "IndexOB"}
-        if "albedo" in passes:
-            needed |= rendering.ALBEDO_PASSES
-        return needed - self.light.empty_passes
-
-
-def make_plan(scene: bpy.types.Scene, settings: Settings, reporter: Reporter) -> Plan:
-    """Checks the scene, brings it (in memory) to the light model and says what is left out, and why."""
-    view_layer, notes = analysis.refuse_unsuitable(scene, settings.view_layer)
+    Raises SceneError for what a shot cannot hold."""
+    view_layer, notes = suitability.refuse_unsuitable(scene, settings.view_layer)
     if settings.resolution:
         scene.render.resolution_x, scene.render.resolution_y = settings.resolution
         scene.render.resolution_percentage = 100
     frame = cam.frame_of(scene)
-    cuts = cam.CameraCuts(scene)
+    cuts = CameraCuts(scene)
     cuts.at(settings.frames[0])
     if settings.jitter_projection == "pre":
-        for number in settings.frames:
-            if cuts.at(number).data.type != "PERSP":
-                raise SceneError(
-                    f"--jitter-projection pre: camera '{cuts.at(number).name}' is not a perspective one, "
-                    "and the error that it reproduces is one of perspective"
-                )
-    analysis.show_what_renders(scene)
+        _refuse_other_than_perspective(cuts, settings.frames)
+    suitability.show_what_renders(scene)
+    motion = movement.find_motion(scene, settings.frames, frame, cuts)
     passes_of = {"frames": set(settings.passes), "centre": set(settings.centre_passes)}
-    motion = analysis.find_motion(scene, settings.frames, frame, cuts)
-    left_out = []
-    if motion.static:
-        if any("motion" in passes for passes in passes_of.values()):
-            left_out.append(
-                f"motion ({motion.reason}: the shot is static, one truth serves all frames)"
-            )
-        for passes in passes_of.values():
-            passes.discard("motion")
-    cutout = analysis.has_cutouts()
+    left_out = _drop_what_rests(passes_of, motion) if motion.static else []
     wanted = passes_of["frames"] | passes_of["centre"]
-    if wanted & {"subsamples", "subsampleColor"}:
-        if subsamples.uses_override("subsampleColor" in wanted, cutout):
+    passes = passes_named(wanted)
+    cutout = surfaces.has_cutouts()
+    if registry.reads_subsamples(wanted) and not any(
+        item.shaded and item.facts.per_sub_sample for item in passes
+    ):
+        if cutout is None:
             left_out.append(
                 "shading of sub-samples (override material: no cut-outs, no displacement)"
             )
-        elif "subsampleColor" not in wanted:
+        else:
             notes.append(
                 f"sub-samples use the real materials: '{cutout}' has cut-outs or displacement"
             )
-    if wanted & {"edges", "segments"}:
-        notes += analysis.notes_on_edges()
-    notes += analysis.semi_transparent_note()
+    if any(item.from_meshes for item in passes):
+        notes += surfaces.notes_on_edges()
+    notes += surfaces.semi_transparent_note()
     scene.frame_set(settings.frames[0])
     rendering.prepare(scene, view_layer)
-    folder = lighting.temporary_folder()
+    folder = rendering.temporary_folder()
     light = lighting.set_up(scene, settings.lighting, settings.ambient, folder)
     lighting.check_visibility_animation(light)
-    left_out += light.left_out("albedo" in wanted)
+    left_out += light.left_out(frozenset().union(*(item.cycles for item in passes)))
     ids = instances.ObjectIds(scene, view_layer, settings.instance_ids)
-    if settings.instance_ids and not ids.tells_instances and "object" in wanted:
+    if settings.instance_ids and not ids.tells_instances and ObjectId.name in wanted:
         left_out.append("ids of instances (nothing is instanced)")
     if left_out:
         notes.append("left out: " + "; ".join(left_out))
     for note in notes + light.notes + ids.notes:
-        reporter.say("note", f"note: {note}", note=note)
+        progress.say("note", f"note: {note}", note=note)
     positions = jitter.pattern_positions(settings.pattern)
     plan = Plan(
         scene,
@@ -129,5 +81,27 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, reporter: Reporter) ->
         folder,
     )
     known = sorted(plan.passes)
-    reporter.say("plan", f"passes: {', '.join(known)}", passes=known, static=plan.static)
+    progress.say("plan", f"passes: {', '.join(known)}", passes=known, static=plan.static)
     return plan
+
+
+def _refuse_other_than_perspective(cuts: CameraCuts, frames: list[int]) -> None:
+    for number in frames:
+        if cuts.at(number).data.type != "PERSP":
+            raise SceneError(
+                f"--jitter-projection pre: camera '{cuts.at(number).name}' is not a perspective one, "
+                "and the error that it reproduces is one of perspective"
+            )
+
+
+def _drop_what_rests(passes_of: dict[str, set[str]], motion: movement.Motion) -> list[str]:
+    """Takes the passes out that say nothing of a shot at rest; returns what was left out."""
+    left_out = []
+    for item in passes_named(passes_of["frames"] | passes_of["centre"]):
+        if item.from_frame_before:
+            left_out.append(
+                f"{item.name} ({motion.reason}: the shot is static, one truth serves all frames)"
+            )
+            for passes in passes_of.values():
+                passes.discard(item.name)
+    return left_out

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import glob
 import hashlib
 import json
 import os
@@ -115,9 +116,12 @@ def test_manifests_agree() -> None:
 def test_only_compat_knows_versions() -> None:
     """Names that differ between Blender versions are asked for in one file."""
     folder = os.path.join(t.ROOT, "blender_addon", "aa_resolve")
-    for name in sorted(os.listdir(folder)):
-        if name.endswith(".py") and name != "compat.py":
-            with open(os.path.join(folder, name), encoding="utf-8") as file:
+    paths = sorted(glob.glob(os.path.join(folder, "**", "*.py"), recursive=True))
+    assert len(paths) > 30, paths
+    for path in paths:
+        name = os.path.relpath(path, folder)
+        if name != "compat.py":
+            with open(path, encoding="utf-8") as file:
                 text = file.read()
             assert "app.version " not in text and "app.version[" not in text, name
             assert "hasattr(" not in text, f"{name}: ask compat.py"
@@ -189,7 +193,7 @@ def test_installed_from_zip() -> None:
 
 def test_job_reports_and_cancels() -> None:
     """What the modal operator relies on: progress comes in without blocking, cancel leaves finished frames."""
-    from aa_resolve import job
+    from aa_resolve.panel import job
 
     scene = t.new_scene(32, 18)
     t.add_camera(scene)

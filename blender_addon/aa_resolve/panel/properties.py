@@ -12,7 +12,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import jitter, registry
+from .. import jitter, registry
 
 
 def method_property(identity: str) -> str:
@@ -196,4 +196,4 @@ def add_method_properties() -> None:
 def reads_subsamples(methods: list[str]) -> bool:
     """True when one of the methods reads sub-samples."""
     known = registry.load_methods()
-    return any({"subsamples", "subsampleColor"} & set(known[name]["passes"]) for name in methods)
+    return any(registry.reads_subsamples(known[name]["passes"]) for name in methods)

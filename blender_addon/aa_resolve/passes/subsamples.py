@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Part ``subsamples`` of a frame: geometry, mask and colour at the positions of the shot's pattern.
+"""Passes ``subsamples`` and ``subsampleColor``: geometry, mask and colour at the positions of the shot's pattern.
 
 Sub-sample k lies at the pixel centre + the frame's jitter + position k, as a GPU jitters all samples of a pixel
-together; in frames at the pixel centres the jitter is 0."""
+together; in frames at the pixel centres the jitter is 0. Both passes come from the same views and share one part.
+Where colour is not asked for, lights are off, and an override material without emission replaces all shading unless
+the scene has cut-outs or displacement, which an override would lose.
+"""
 
 from __future__ import annotations
 
@@ -11,30 +14,95 @@ import contextlib
 import bpy
 import numpy as np
 
-from . import camera as cam
-from . import exr, lighting, rendering, subsamples
-from .plan import Plan
+from ..scene import lighting, rendering
+from ..scene.views import ViewSet
+from .base import Pass
+from .exposure import Exposure
+from .geometry import ids_of
+from .surface_mask import surface_mask
 
 
-def render(
-    plan: Plan, views: subsamples.ViewSet, passes: set[str], offset: tuple[float, float]
-) -> list[rendering.Layers]:
-    """All sub-samples of the current frame: one render, or one per light where they are shaded."""
-    bpy.context.view_layer.update()
-    shift, movement = plan.settings.shift_and_movement(offset)
-    views.aim(plan.frame, bpy.context.evaluated_depsgraph_get(), shift, movement)
-    wants_color = "subsampleColor" in passes
-    geometry = {"Depth", "Normal", "IndexOB"} if "subsamples" in passes else set()
-    if not wants_color:
-        rendering.request_passes(plan.view_layer, geometry)
-        own_override = plan.view_layer.material_override
-        with subsamples.no_lights(plan.light, plan.scene):
-            if subsamples.uses_override(wants_color, plan.cutout):
-                plan.view_layer.material_override = plan.ids.override()
-            try:
-                return [views.render(plan.view_layer, plan.folder)]
-            finally:
-                plan.view_layer.material_override = own_override
+class Subsamples(Pass):
+    """Depth, normal and id of every sub-sample, and the mask of those on the surface of the frame's own sample."""
+
+    name = "subsamples"
+    cycles = frozenset({"Depth", "Normal", "IndexOB"})
+
+    def planes(self, exposure: Exposure) -> dict[str, np.ndarray]:
+        plan, main = exposure.plan, exposure.main
+        centre = {"depth": exposure.depth, "normal": main.get("Normal"), "id": ids_of(exposure)}
+        with exposure.watch.of(self.facts.part):
+            views, renders = _views(exposure), _renders(exposure)
+            samples = [
+                {
+                    "depth": renders[0].get("Depth", view)[:, :, 0],
+                    "normal": renders[0].get("Normal", view),
+                    "id": plan.ids.resolve(renders[0], view),
+                }
+                for view in views.names
+            ]
+            camera, offset = exposure.now.camera, exposure.offset
+            mask = surface_mask(centre, samples, plan.frame, camera, offset, plan.positions)
+            planes = dict(zip(self.facts.shared, (mask,)))
+            for view, sample in zip(views.names, samples):
+                values = (sample["depth"], *np.moveaxis(sample["normal"], -1, 0), sample["id"])
+                planes.update(zip(self.facts.channels_of(view), values))
+        return planes
+
+
+class SubsampleColor(Pass):
+    """Lit colour of every sub-sample."""
+
+    name = "subsampleColor"
+    shaded = True
+    in_color_type = True
+
+    def planes(self, exposure: Exposure) -> dict[str, np.ndarray]:
+        planes = {}
+        with exposure.watch.of(self.facts.part):
+            renders = _renders(exposure)
+            for view in _views(exposure).names:
+                color = lighting.compose(exposure.plan.light, renders, view)
+                values = np.moveaxis(color[:, :, :3], -1, 0)
+                planes.update(zip(self.facts.channels_of(view), values))
+        return planes
+
+
+def _views(exposure: Exposure) -> ViewSet:
+    return exposure.stage.views(exposure.number, exposure.plan.positions)
+
+
+def _renders(exposure: Exposure) -> list[rendering.Layers]:
+    """All sub-samples of the frame, rendered when a pass first asks."""
+    if exposure.samples is None:
+        wanted = [item for item in exposure.wanted if item.facts.per_sub_sample]
+        views = _views(exposure)
+        bpy.context.view_layer.update()
+        shift, movement = exposure.plan.settings.shift_and_movement(exposure.offset)
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        views.aim(exposure.plan.frame, depsgraph, shift, movement)
+        geometry = set().union(*(item.cycles for item in wanted))
+        shaded = any(item.shaded for item in wanted)
+        render = render_shaded if shaded else render_geometry
+        exposure.samples = render(exposure.plan, views, geometry)
+    return exposure.samples
+
+
+def render_geometry(plan, views: ViewSet, geometry: set[str]) -> list[rendering.Layers]:
+    """One render of the views of Plan ``plan`` with these passes of Cycles, without light."""
+    rendering.request_passes(plan.view_layer, geometry)
+    own_override = plan.view_layer.material_override
+    with lighting.no_light(plan.light, plan.scene):
+        if plan.cutout is None:
+            plan.view_layer.material_override = plan.ids.override()
+        try:
+            return [views.render(plan.view_layer, plan.folder)]
+        finally:
+            plan.view_layer.material_override = own_override
+
+
+def render_shaded(plan, views: ViewSet, geometry: set[str]) -> list[rendering.Layers]:
+    """One render of the views, or one per light; the first holds the passes of ``geometry`` as well."""
     renders = []
     lights = plan.light.lights if len(plan.light.lights) > 1 else [None]
     for index, light in enumerate(lights):
@@ -44,45 +112,3 @@ def render(
         with one:
             renders.append(views.render(plan.view_layer, plan.folder))
     return renders
-
-
-def make(
-    plan: Plan,
-    views: subsamples.ViewSet,
-    renders: list[rendering.Layers],
-    passes: set[str],
-    centre: dict[str, np.ndarray],
-    camera: cam.CameraState,
-    offset: tuple[float, float],
-) -> exr.Part:
-    """The part from what ``render`` gave; ``centre`` holds depth, normal and id of the frame's own samples."""
-    names: list[str] = []
-    kinds: list[str] = []
-    planes: list[np.ndarray] = []
-    samples: list[dict[str, np.ndarray]] = []
-    if "subsamples" in passes:
-        samples = [
-            {
-                "depth": renders[0].get("Depth", view)[:, :, 0],
-                "normal": renders[0].get("Normal", view),
-                "id": plan.ids.resolve(renders[0], view),
-            }
-            for view in views.names
-        ]
-        names.append("mask")
-        kinds.append("uint")
-        planes.append(
-            subsamples.surface_mask(centre, samples, plan.frame, camera, offset, plan.positions)
-        )
-    for index, view in enumerate(views.names):
-        if samples:
-            sample = samples[index]
-            names += [f"{view}.Z", f"{view}.N.X", f"{view}.N.Y", f"{view}.N.Z", f"{view}.id"]
-            kinds += ["float", "float", "float", "float", "uint"]
-            planes += [sample["depth"], *np.moveaxis(sample["normal"], -1, 0), sample["id"]]
-        if "subsampleColor" in passes:
-            color = lighting.compose(plan.light, renders, view)
-            names += [f"{view}.R", f"{view}.G", f"{view}.B"]
-            kinds += [plan.settings.color_type] * 3
-            planes += list(np.moveaxis(color[:, :, :3], -1, 0))
-    return exr.Part("subsamples", tuple(names), tuple(kinds), planes, plan.settings.compression)
