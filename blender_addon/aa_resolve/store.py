@@ -19,8 +19,8 @@ import time
 from typing import Iterator
 
 from .errors import SceneError, UsageError
+from .fingerprint import difference
 from .manifest import content_of
-from .settings import difference
 
 
 def write_json(path: str, content: dict) -> None:

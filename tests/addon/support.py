@@ -27,7 +27,7 @@ HEADLESS = os.path.join(ROOT, "blender_addon", "aa_resolve", "headless.py")
 sys.path.insert(0, os.path.join(ROOT, "blender_addon"))
 
 import aa_resolve  # noqa: E402,F401
-from aa_resolve import headless  # noqa: E402
+from aa_resolve.command_line import build_parser, settings_from  # noqa: E402
 from aa_resolve.export import Exporter  # noqa: E402
 from aa_resolve.store import Store  # noqa: E402
 
@@ -133,8 +133,8 @@ def key(owner, path, values: dict[int, object], index: int = -1) -> None:
 
 def export(out: str, *options: str) -> dict:
     """Exports the open scene in this process; returns shot.json. The scene is changed by it."""
-    arguments = headless.build_parser().parse_args(["--out", out, *options])
-    settings = headless.settings_from(arguments, bpy.context.scene)
+    arguments = build_parser().parse_args(["--out", out, *options])
+    settings = settings_from(arguments, bpy.context.scene)
     reporter = Silent()
     exporter = Exporter(bpy.context.scene, settings, reporter, "test")
     exporter.prepare()

@@ -31,7 +31,8 @@ import numpy as np
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path.insert(0, os.path.join(ROOT, "blender_addon"))
 
-from aa_resolve import headless, picture  # noqa: E402
+from aa_resolve import picture  # noqa: E402
+from aa_resolve.command_line import build_parser, settings_from  # noqa: E402
 from aa_resolve.export import Exporter  # noqa: E402
 from aa_resolve.passes import subsamples  # noqa: E402
 from aa_resolve.passes.albedo import unlit_albedo  # noqa: E402
@@ -129,7 +130,7 @@ def main() -> None:
     parser.add_argument("--animated", action="store_true", help="all balls move in every frame")
     options = parser.parse_args(sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else [])
     triangles = make_scene(options.triangles, options.animated)
-    arguments = headless.build_parser().parse_args(
+    arguments = build_parser().parse_args(
         [
             "--out", "unused", "--frames", f"2-{_LAST - 1}", "--passes", "albedo,depth,normal,object,motion,subsamples",
             "--subsamples", options.pattern, "--resolution", *options.resolution, "--truth-frames", "none",
@@ -137,7 +138,7 @@ def main() -> None:
     )  # fmt: skip
     scene = bpy.context.scene
     progress = Progress(False)
-    exporter = Exporter(scene, headless.settings_from(arguments, scene), progress, "bench")
+    exporter = Exporter(scene, settings_from(arguments, scene), progress, "bench")
     exporter.prepare()
     plan = exporter.plan
     pictures = picture.Pictures(plan)

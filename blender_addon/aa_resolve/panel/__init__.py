@@ -8,7 +8,7 @@ from bpy.props import PointerProperty
 
 from . import operators, panels
 from .operators import State
-from .properties import AAResolveSettings, add_method_properties
+from .properties import AAResolveSettings
 
 _CLASSES = (
     AAResolveSettings,
@@ -27,7 +27,6 @@ _CLASSES = (
 
 def register() -> None:
     """Registers every class and the scene's settings."""
-    add_method_properties()
     for item in _CLASSES:
         bpy.utils.register_class(item)
     bpy.types.Scene.aa_resolve = PointerProperty(type=AAResolveSettings)

@@ -16,7 +16,7 @@ from .operators import (
     AA_RESOLVE_OT_open_report,
     State,
 )
-from .properties import AAResolveSettings, method_property, reads_subsamples
+from .properties import AAResolveSettings, method_property
 
 _PRESETS = "aa_resolve"
 
@@ -150,13 +150,12 @@ class AA_RESOLVE_PT_quality(_Panel, bpy.types.Panel):
         layout.prop(settings, "truth")
         layout.prop(settings, "truth_samples", text="Samples")
         layout.prop(settings, "samples", text="Shading")
-        chosen = [registry.MethodChoice(name) for name in settings.chosen()]
         column = layout.column()
-        column.enabled = bool(registry.required_passes(chosen, "jittered"))
+        column.enabled = settings.applies("jitter")
         column.prop(settings, "jitter")
         column.prop(settings, "period")
         layout.prop(settings, "lighting")
-        if settings.lighting == "noise-free":
+        if settings.applies("ambient"):
             layout.column(heading="Ambient").prop(settings, "use_ambient", text="Own")
             if settings.use_ambient:
                 layout.prop(settings, "ambient", text="Colour")
@@ -165,7 +164,7 @@ class AA_RESOLVE_PT_quality(_Panel, bpy.types.Panel):
             if causes:
                 draw_text(layout, context, f"Noisy because of {'; '.join(causes)}")
         row = layout.row()
-        row.enabled = reads_subsamples(settings.chosen())
+        row.enabled = settings.applies("pattern")
         row.prop(settings, "pattern", text="Pattern")
         layout.prop(settings, "color_type", text="Type")
         layout.column(heading="Old Shot").prop(settings, "overwrite", text="Replace")

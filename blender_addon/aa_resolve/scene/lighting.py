@@ -23,7 +23,6 @@ from ..errors import SceneError
 from . import rendering
 from .light_sources import emissive_materials, lights_of, noise_causes
 
-MODELS = ("noise-free", "as-is")
 # Along its axis a Blender area light shines with power / 4 per steradian, a spot with power / (4 pi).
 _AREA_TO_SPOT_POWER = math.pi
 

@@ -59,7 +59,7 @@ class Stage:
         shift: tuple[float, float] = (0.0, 0.0),
         movement: tuple[float, float] = (0.0, 0.0),
     ) -> None:
-        """Makes the jittered camera of the current frame the scene's: pixels, y down, as JitterCamera.aim takes them."""
+        """Gives the scene the frame's jittered camera; both in pixels, y down, as JitterCamera.aim takes them."""
         source = self.cuts.at(number)
         if source.name_full not in self._cameras:
             self._cameras[source.name_full] = JitterCamera(self.scene, source, "AA Resolve Camera")
