@@ -105,7 +105,7 @@ def _passes_and_jitter(
     centre_passes = registry.required_passes(choices, "centre")
     sequence = arguments.jitter
     if sequence is None:
-        sequence = "halton23" if passes or not arguments.methods else "none"
+        sequence = Settings.jitter if passes or not arguments.methods else "none"
     if not passes or sequence == "none":
         passes |= centre_passes
         centre_passes = set()

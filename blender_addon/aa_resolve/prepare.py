@@ -9,6 +9,7 @@ import bpy
 from . import jitter, registry
 from .errors import SceneError
 from .passes.geometry import ObjectId
+from .passes.subsamples import are_shaded
 from .passes.table import passes_named
 from .plan import Plan
 from .progress import Progress
@@ -38,9 +39,7 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) ->
     wanted = passes_of["frames"] | passes_of["centre"]
     passes = passes_named(wanted)
     cutout = surfaces.has_cutouts()
-    if registry.reads_subsamples(wanted) and not any(
-        item.shaded and item.facts.per_sub_sample for item in passes
-    ):
+    if registry.reads_subsamples(wanted) and not are_shaded(passes):
         if cutout is None:
             left_out.append(
                 "shading of sub-samples (override material: no cut-outs, no displacement)"

@@ -12,6 +12,7 @@ from dataclasses import asdict, dataclass, field
 from . import exr, jitter, registry
 from .options import Widget, option, options_of
 
+_DEFAULT_SEQUENCE = "halton23"
 _SEQUENCES = "; ".join(f"{name}: {text}" for name, text in jitter.SEQUENCES.items())
 _SEQUENCE_ITEMS = tuple((name, name, text) for name, text in jitter.SEQUENCES.items())
 _PATTERNS = ", ".join(jitter.D3D_PATTERNS)
@@ -147,8 +148,8 @@ class Settings:
     )
     jitter: str = option(
         "--jitter",
-        f"default halton23, or none where no method of --for accumulates frames. {_SEQUENCES}",
-        default="halton23",
+        f"default {_DEFAULT_SEQUENCE}, or none where no method of --for accumulates frames. {_SEQUENCES}",
+        default=_DEFAULT_SEQUENCE,
         metavar="SEQUENCE",
         unsaid=None,
         panel=(

@@ -36,7 +36,7 @@ _folders: list[str] = []
 
 
 class Silent:
-    """A reporter that keeps what was said."""
+    """Progress that keeps what was said."""
 
     def __init__(self) -> None:
         self.notes: list[str] = []
@@ -135,14 +135,14 @@ def export(out: str, *options: str) -> dict:
     """Exports the open scene in this process; returns shot.json. The scene is changed by it."""
     arguments = build_parser().parse_args(["--out", out, *options])
     settings = settings_from(arguments, bpy.context.scene)
-    reporter = Silent()
-    exporter = Exporter(bpy.context.scene, settings, reporter, "test")
+    progress = Silent()
+    exporter = Exporter(bpy.context.scene, settings, progress, "test")
     exporter.prepare()
     store = Store(settings.out, arguments.claim_timeout)
     store.open({**settings.fingerprint(), "static": exporter.static}, settings.overwrite)
     exporter.run(store)
     shot = read_manifest(out)
-    shot["notes"] = reporter.notes
+    shot["notes"] = progress.notes
     return shot
 
 

@@ -21,6 +21,7 @@ import numpy as np
 
 from ..scene import camera as cam
 from ..scene import shapes
+from ..scene.instances import ObjectIds
 from .base import Pass
 from .exposure import Exposure
 from .geometry import ids_of, shown_by
@@ -252,7 +253,9 @@ class Edges(Pass):
         return dict(zip(self.facts.channels, np.moveaxis(distances, -1, 0)))
 
 
-def collect(finder: EdgeFinder, depsgraph: bpy.types.Depsgraph, ids, shown: set[int]) -> None:
-    """Adds everything of the evaluated scene that has triangles and whose id (of ObjectIds ``ids``) is ``shown``."""
+def collect(
+    finder: EdgeFinder, depsgraph: bpy.types.Depsgraph, ids: ObjectIds, shown: set[int]
+) -> None:
+    """Adds everything of the evaluated scene that has triangles and whose id is ``shown``."""
     for triangles, matrix, identity in shapes.visible_shapes(depsgraph, ids, shown, mesh_triangles):
         finder.add(triangles, matrix, identity)

@@ -26,6 +26,7 @@ import numpy as np
 from .. import compat
 from ..scene import camera as cam
 from ..scene import shapes
+from ..scene.instances import ObjectIds
 from .base import Pass
 from .exposure import Exposure
 from .geometry import shown_by
@@ -184,10 +185,10 @@ def find(
     frame: cam.Frame,
     camera: cam.CameraState,
     depsgraph: bpy.types.Depsgraph,
-    ids,
+    ids: ObjectIds,
     shown: set[int],
 ) -> np.ndarray:
-    """Segments of everything in the evaluated scene whose id (of ObjectIds ``ids``) is among ``shown``: an edge of
+    """Segments of everything in the evaluated scene whose id is among ``shown``: an edge of
     what no sample shows could not blend any colour of the picture."""
     finder = SegmentFinder(frame, camera)
     for outline, matrix, _ in shapes.visible_shapes(depsgraph, ids, shown, outline_of):

@@ -10,10 +10,12 @@ the scene has cut-outs or displacement, which an override would lose.
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Collection, Iterable
 
 import bpy
 import numpy as np
 
+from ..plan import Plan
 from ..scene import lighting, rendering
 from ..scene.views import ViewSet
 from .base import Pass
@@ -68,6 +70,11 @@ class SubsampleColor(Pass):
         return planes
 
 
+def are_shaded(passes: Iterable[Pass]) -> bool:
+    """True when one of the passes needs light at the sub-samples; else their geometry alone is rendered."""
+    return any(item.shaded and item.facts.per_sub_sample for item in passes)
+
+
 def _views(exposure: Exposure) -> ViewSet:
     return exposure.stage.views(exposure.number, exposure.plan.positions)
 
@@ -82,14 +89,15 @@ def _renders(exposure: Exposure) -> list[rendering.Layers]:
         depsgraph = bpy.context.evaluated_depsgraph_get()
         views.aim(exposure.plan.frame, depsgraph, shift, movement)
         geometry = set().union(*(item.cycles for item in wanted))
-        shaded = any(item.shaded for item in wanted)
-        render = render_shaded if shaded else render_geometry
+        render = render_shaded if are_shaded(wanted) else render_geometry
         exposure.samples = render(exposure.plan, views, geometry)
     return exposure.samples
 
 
-def render_geometry(plan, views: ViewSet, geometry: set[str]) -> list[rendering.Layers]:
-    """One render of the views of Plan ``plan`` with these passes of Cycles, without light."""
+def render_geometry(
+    plan: Plan, views: ViewSet, geometry: Collection[str]
+) -> list[rendering.Layers]:
+    """One render of the views with these passes of Cycles, without light."""
     rendering.request_passes(plan.view_layer, geometry)
     own_override = plan.view_layer.material_override
     with lighting.no_light(plan.light, plan.scene):
@@ -101,13 +109,13 @@ def render_geometry(plan, views: ViewSet, geometry: set[str]) -> list[rendering.
             plan.view_layer.material_override = own_override
 
 
-def render_shaded(plan, views: ViewSet, geometry: set[str]) -> list[rendering.Layers]:
+def render_shaded(plan: Plan, views: ViewSet, geometry: Collection[str]) -> list[rendering.Layers]:
     """One render of the views, or one per light; the first holds the passes of ``geometry`` as well."""
     renders = []
     lights = plan.light.lights if len(plan.light.lights) > 1 else [None]
     for index, light in enumerate(lights):
         wanted = plan.light.passes if index == 0 else plan.light.further_passes
-        rendering.request_passes(plan.view_layer, wanted | (geometry if index == 0 else set()))
+        rendering.request_passes(plan.view_layer, wanted.union(geometry if index == 0 else ()))
         one = lighting.only_light(plan.light, light) if light else contextlib.nullcontext()
         with one:
             renders.append(views.render(plan.view_layer, plan.folder))

@@ -8,6 +8,7 @@ File Output node drops the fourth component of the motion vectors.
 from __future__ import annotations
 
 import os
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import bpy
@@ -153,7 +154,7 @@ def prepare(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> None:
     view_layer.pass_alpha_threshold = 0.5
 
 
-def request_passes(view_layer: bpy.types.ViewLayer, names: set[str]) -> None:
+def request_passes(view_layer: bpy.types.ViewLayer, names: Collection[str]) -> None:
     """Switches on exactly these passes of Cycles (names of compat.PASS_NAMES)."""
     switches = {
         "Depth": "use_pass_z",
