@@ -16,7 +16,12 @@ SUFFIXES = (".py", ".json", ".toml")
 
 def pack(path: str) -> list[str]:
     """Writes the zip; returns the names in it."""
-    names = sorted(name for name in os.listdir(FOLDER) if name.endswith(SUFFIXES))
+    names = sorted(
+        os.path.relpath(os.path.join(folder, name), FOLDER).replace(os.sep, "/")
+        for folder, _, files in os.walk(FOLDER)
+        for name in files
+        if name.endswith(SUFFIXES)
+    )
     temporary = path + ".tmp"
     with zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
         for name in names:

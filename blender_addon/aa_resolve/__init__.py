@@ -18,13 +18,13 @@ ADDON_VERSION = ".".join(str(part) for part in bl_info["version"])
 
 def register() -> None:
     """Called by Blender when the add-on is switched on."""
-    from . import ui
+    from . import panel
 
-    ui.register()
+    panel.register()
 
 
 def unregister() -> None:
     """Called by Blender when the add-on is switched off; leaves nothing behind."""
-    from . import ui
+    from . import panel
 
-    ui.unregister()
+    panel.unregister()

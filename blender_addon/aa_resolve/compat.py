@@ -54,7 +54,9 @@ def panorama_settings(camera: bpy.types.Camera):
 
 def name_aov_output(node: bpy.types.Node, name: str) -> None:
     """Connects an AOV Output node to the AOV of that name."""
-    if not set_if_present(node, "aov_name", name):  # since 4.2 the label and the output's name are apart
+    if not set_if_present(
+        node, "aov_name", name
+    ):  # since 4.2 the label and the output's name are apart
         node.name = name
 
 
@@ -68,7 +70,9 @@ def strips(scene: bpy.types.Scene) -> list:
 
 def set_multilayer_exr(settings) -> None:
     """Image settings for one multilayer EXR with every pass and view in the same part."""
-    set_if_present(settings, "media_type", "MULTI_LAYER_IMAGE")  # since 5.0 it decides which formats there are
+    set_if_present(
+        settings, "media_type", "MULTI_LAYER_IMAGE"
+    )  # since 5.0 it decides which formats there are
     settings.file_format = "OPEN_EXR_MULTILAYER"
     set_if_present(settings, "use_exr_interleave", True)  # else, since 5.0, a part for every pass
 

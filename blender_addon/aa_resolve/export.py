@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The export itself: plan, render what is neither finished nor claimed by another process, write the shot.
+"""The export itself: prepare, render what is neither finished nor claimed by another process, write the shot.
 
 Works on the open scene in memory and never saves it; whoever calls it owns a Blender process for that purpose.
 """
@@ -12,14 +12,13 @@ from dataclasses import dataclass, field
 
 import bpy
 
-from . import jitter
+from .manifest import head_of
 from .picture import Pictures
-from .plan import Plan, make_plan
-from .report import Reporter
+from .plan import Plan
+from .prepare import make_plan
+from .progress import Progress
 from .settings import Settings
 from .store import Store
-
-FORMAT, FORMAT_VERSION = "aaresolve-shot", 1
 
 
 @dataclass
@@ -54,67 +53,20 @@ class Exporter:
     plan: Plan
 
     def __init__(
-        self, scene: bpy.types.Scene, settings: Settings, reporter: Reporter, version: str
+        self, scene: bpy.types.Scene, settings: Settings, progress: Progress, version: str
     ) -> None:
-        self.scene, self.settings, self.reporter = scene, settings, reporter
+        self.scene, self.settings, self.progress = scene, settings, progress
         self.version = version
         self._seconds: dict[str, list[float]] = {"frames": [], "centre": [], "truth": []}
 
     def prepare(self) -> None:
         """Checks the scene, brings it to the light model and decides what each frame needs."""
-        self.plan = make_plan(self.scene, self.settings, self.reporter)
+        self.plan = make_plan(self.scene, self.settings, self.progress)
 
     @property
     def static(self) -> bool:
         """True when every frame shows the same."""
         return self.plan.static
-
-    def _head(self) -> dict:
-        """Members of shot.json that all frames share."""
-        settings, frame = self.settings, self.plan.frame
-        head = {
-            "format": FORMAT,
-            "version": FORMAT_VERSION,
-            "name": settings.name,
-            "resolution": [frame.width, frame.height],
-            "fps": self.scene.render.fps / self.scene.render.fps_base,
-            "jitter": {
-                "sequence": settings.jitter,
-                "start": jitter.start_of(settings.jitter),
-                "period": settings.period,
-                "centred": settings.jitter_centred,
-                **({"projection": "premultiplied"} if settings.jitter_projection == "pre" else {}),
-            },
-            "static": self.static,
-        }
-        if self.plan.has_subsamples:
-            head["subsamples"] = {
-                "pattern": settings.pattern,
-                "positions": [list(p) for p in self.plan.positions],
-            }
-        if settings.truth_frames != "none":
-            head["truth"] = {
-                "samples_per_half": settings.truth_samples,
-                "filter": "box",
-                "filter_width": 1.0,
-            }
-        head["color"] = {
-            "samples": settings.samples,
-            "lighting": settings.lighting,
-            "ambient": list(self.plan.light.ambient),
-        }
-        if frame.is_cropped:
-            head["window"] = {
-                "full_resolution": [frame.full_width, frame.full_height],
-                "offset": [frame.left, frame.top],
-            }
-        head["methods"] = settings.methods
-        head["producer"] = {
-            "name": "aa_resolve",
-            "version": self.version,
-            "blender": bpy.app.version_string,
-        }
-        return head
 
     def _work(self) -> list[tuple[str, int]]:
         """Every picture of the shot, in the order in which they are made."""
@@ -139,7 +91,7 @@ class Exporter:
     def run(self, store: Store) -> Summary:
         """Renders everything that is not finished and not claimed by another process."""
         settings = self.settings
-        head, work = self._head(), self._work()
+        head, work = head_of(self.plan, self.version), self._work()
         pictures = Pictures(self.plan)
         summary = Summary()
         for position, (kind, number) in enumerate(work):
@@ -185,7 +137,7 @@ class Exporter:
         parts = ", ".join(
             f"{name} {value:.2f} s" for name, value in record["render_seconds"].items()
         )
-        self.reporter.say(
+        self.progress.say(
             label,
             f"{label} {number}: {seconds:.2f} s ({parts}), {size / 1e6:.2f} MB, {left:.0f} s left",
             frame=number,

@@ -267,7 +267,11 @@ def _read(content: memoryview) -> dict[str, np.ndarray]:
         label = 12 if many else 8  # bytes before each block: part, row and size
         pixels, start, step = content, offsets[0] + label, row_bytes + label
         if header.compression or np.any(np.diff(np.array(offsets, np.int64)) != step):
-            pixels, start, step = _unpacked(content, header, offsets, row_bytes, label), 0, row_bytes
+            pixels, start, step = (
+                _unpacked(content, header, offsets, row_bytes, label),
+                0,
+                row_bytes,
+            )
         for name, dtype in header.channels:
             channels[f"{header.name}/{name}" if number else name] = np.ndarray(
                 (header.height, header.width), dtype, pixels, start, (step, dtype.itemsize)

@@ -1,27 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the anti-aliasing methods need, from ``methods.json`` (the output of ``aaresolve list --json``)."""
+"""The passes of a shot and what the anti-aliasing methods need of them, from ``methods.json``.
+
+That file is the output of ``aaresolve list --json``: names, channels and types are the resolver's own."""
 
 from __future__ import annotations
 
 import difflib
+import functools
 import json
 import os
 from dataclasses import dataclass, field
+from typing import Iterable
 
 from .errors import UsageError
-
-PASSES = (
-    "color",
-    "albedo",
-    "depth",
-    "normal",
-    "object",
-    "motion",
-    "subsamples",
-    "subsampleColor",
-    "edges",
-    "segments",
-)
 
 
 @dataclass(frozen=True)
@@ -32,11 +23,70 @@ class MethodChoice:
     parameters: dict[str, str] = field(default_factory=dict)
 
 
-def load_methods() -> dict[str, dict]:
-    """Method id -> its description."""
+@dataclass(frozen=True)
+class PassFacts:
+    """One pass of a shot as the resolver reads it."""
+
+    name: str
+    part: str  # of the EXR
+    meaning: str
+    per_sub_sample: bool  # its channels exist for each sub-sample: sNN.<name> in the file
+    types: dict[str, str]  # channel -> float | uint
+    shared: tuple[str, ...]  # those of a pass per sub-sample that exist once per pixel
+    is_list: bool  # entries of a list, not pixels of the picture
+    bytes_per_pixel: int  # of the channels that are not shared; 0 for a list
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names of the channels that are not shared, in the table's order."""
+        return tuple(name for name in self.types if name not in self.shared)
+
+    def channels_of(self, view: str) -> tuple[str, ...]:
+        """Names in the file of the channels of one sub-sample (``s00``, ``s01`` ...)."""
+        return tuple(f"{view}.{name}" for name in self.channels)
+
+    def kind_of(self, channel: str) -> str:
+        """Type of a channel by its name in the file."""
+        own = not self.per_sub_sample or channel in self.shared
+        return self.types[channel if own else channel.partition(".")[2]]
+
+
+@functools.cache
+def _content() -> dict:
     path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "methods.json")
     with open(path, encoding="utf-8") as file:
-        return {method["id"]: method for method in json.load(file)["methods"]}
+        return json.load(file)
+
+
+@functools.cache
+def load_methods() -> dict[str, dict]:
+    """Method id -> its description, which nobody changes."""
+    return {method["id"]: method for method in _content()["methods"]}
+
+
+@functools.cache
+def load_passes() -> dict[str, PassFacts]:
+    """Pass name -> its facts, in the order of the resolver's table."""
+    return {item["name"]: _facts(item) for item in _content()["passes"]}
+
+
+def _facts(item: dict) -> PassFacts:
+    channels, shared = item["channels"], item.get("shared", [])
+    return PassFacts(
+        item["name"],
+        item["part"],
+        item["meaning"],
+        item["perSubSample"],
+        {channel["name"]: channel["type"] for channel in (*channels, *shared)},
+        tuple(channel["name"] for channel in shared),
+        item.get("list", False),
+        item["bytesPerPixel"],
+    )
+
+
+def reads_subsamples(passes: Iterable[str]) -> bool:
+    """True when one of these passes holds something for every sub-sample."""
+    return any(load_passes()[name].per_sub_sample for name in passes)
 
 
 def parse_choices(texts: list[str]) -> list[MethodChoice]:
@@ -80,13 +130,13 @@ def required_passes(choices: list[MethodChoice], sampling: str | None = None) ->
             more = known[choice.id]["passesWhen"]
             for key, value in choice.parameters.items():
                 needed.update(more.get(f"{key}={value}", ()))
-    return needed & set(PASSES)
+    return needed & set(load_passes())
 
 
 def patterns_of(choice: MethodChoice) -> list[str]:
     """Sub-sample patterns that serve a method, the best first; empty where any does, or where it reads none."""
     method = load_methods()[choice.id]
-    if not {"subsamples", "subsampleColor"} & set(method["passes"]):
+    if not reads_subsamples(method["passes"]):
         return []
     for key in ("S", "samples"):
         if key in choice.parameters:

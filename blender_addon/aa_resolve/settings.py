@@ -1,64 +1,287 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What an export is asked to do, and the fingerprint by which a changed wish is noticed on resume."""
+"""What an export is asked to do: the table of options, and the fingerprint by which a changed wish is noticed.
+
+Each option is declared once, here. Flags, properties of the panel and the command line of its job follow (options.py).
+"""
 
 from __future__ import annotations
 
 import json
 from dataclasses import asdict, dataclass, field
 
-from .errors import UsageError
+from . import exr, jitter, registry
+from .options import Widget, option, options_of
+
+_DEFAULT_SEQUENCE = "halton23"
+_SEQUENCES = "; ".join(f"{name}: {text}" for name, text in jitter.SEQUENCES.items())
+_SEQUENCE_ITEMS = tuple((name, name, text) for name, text in jitter.SEQUENCES.items())
+_PATTERNS = ", ".join(jitter.D3D_PATTERNS)
+_DEFAULT_PATTERN = "d3d8"
+_AUTOMATIC = "AUTO"
+_PATTERN_ITEMS = (
+    (_AUTOMATIC, "Automatic", "The pattern that serves all chosen methods, else 8 points"),
+    *(
+        (name, name.upper(), f"{len(jitter.pattern_positions(name))} points per pixel")
+        for name in jitter.D3D_PATTERNS[1:]
+    ),
+)
+_TRUTH_ITEMS = (
+    ("ALL", "All", "Truth for every frame"),
+    ("ENDS", "Three", "Truth for the first, the middle and the last frame"),
+    ("NONE", "None", "No ground truth: nothing can be measured"),
+)
 
 
-def parse_frames(text: str, option: str) -> list[int]:
-    """Reads ``1-16``, ``5``, ``1,4,8-10`` or ``-3-2`` to an ascending list without repeats."""
-    numbers: set[int] = set()
-    for part in text.split(","):
-        part = part.strip()
-        try:
-            position = part.find("-", 1)
-            if position < 0:
-                numbers.add(int(part))
-                continue
-            first, last = int(part[:position]), int(part[position + 1 :])
-        except ValueError:
-            raise UsageError(
-                f"{option}: expected frames such as 1-16 or 1,4,8, found '{text}'"
-            ) from None
-        if last < first:
-            raise UsageError(f"{option}: the range '{part}' ends before it begins")
-        numbers.update(range(first, last + 1))
-    return sorted(numbers)
+def _truth_words(panel) -> list[str]:
+    first, last = panel.range()
+    ends = f"{first},{(first + last) // 2},{last}"
+    return [{"ALL": "all", "NONE": "none", "ENDS": ends}[panel.truth]]
 
 
 @dataclass
 class Settings:
     """One export. Sizes in pixels, jitter in pixels with y down, colours linear BT.709."""
 
-    out: str
-    methods: list[str]
-    passes: list[str]  # of the jittered frames
-    frames: list[int]
-    centre_passes: list[str] = field(
-        default_factory=list
-    )  # of the same instants at the pixel centres
-    name: str = ""
-    resolution: tuple[int, int] | None = None
-    samples: int = 1
-    truth_samples: int = 256
-    truth_frames: list[int] | str = "all"
-    jitter: str = "halton23"
-    period: int = 16
-    jitter_centred: bool = False
-    jitter_projection: str = "post"  # pre: camera.premultiplied_movement, a labelled variant
-    pattern: str = "d3d8"
-    lighting: str = "noise-free"
-    ambient: tuple[float, float, float] | None = None
-    color_type: str = "float"
-    compression: str = "zip"
-    view_layer: str | None = None
-    instance_ids: bool = True
-    source: str = ""
-    overwrite: bool = False
+    out: str = option(
+        "--out",
+        "folder of the shot; an interrupted export resumes there",
+        metavar="SHOT",
+        decides_content=False,
+        panel=(
+            Widget(
+                "Shot",
+                "Folder of the shot; an interrupted export resumes there",
+                "//shot",
+                subtype="DIR_PATH",
+            ),
+        ),
+    )
+    frames: list[int] = option(
+        "--frames",
+        "frames, e.g. 1-16 or 1,4,8 (default: the scene's range)",
+        metavar="LIST",
+        unsaid=None,
+        panel=(
+            Widget("Scene Range", "Export the scene's frame range", False, name="use_scene_range"),
+            Widget("First", "First frame", 1, name="first"),
+            Widget("Last", "Last frame", 16, name="last"),
+        ),
+        words=lambda panel: ["{}-{}".format(*panel.range())],
+    )
+    methods: list[str] = option(
+        "--for",
+        "methods the shot must serve, e.g. noaa,taaSimplest,rsaa:S=8; decides the passes (default: noaa)",
+        metavar="METHODS",
+        unsaid=[],
+        repeated=True,
+        decides_content=False,  # beyond the passes
+        words=lambda panel: [",".join(panel.chosen())],
+    )
+    passes: list[str] = option(  # of the jittered frames
+        "--passes",
+        f"passes to write in addition to those of --for, of {', '.join(registry.load_passes())}",
+        metavar="LIST",
+        unsaid="",
+        changed="--for/--passes",
+    )
+    # Of the same instants at the pixel centres.
+    centre_passes: list[str] = field(default_factory=list)
+    resolution: tuple[int, int] | None = option(
+        "--resolution",
+        "pixels (default: the scene's)",
+        default=None,
+        metavar=("W", "H"),
+        number=int,
+        span=(4, 65536),  # Blender's own limits
+        panel=(
+            Widget(
+                "Own Size", "Export at another size than the scene's", False, name="use_resolution"
+            ),
+            Widget("Resolution", "Width and height, pixels", (480, 270)),
+        ),
+        words=lambda panel: [*map(str, panel.resolution)] if panel.use_resolution else None,
+    )
+    samples: int = option(
+        "--samples",
+        "shading samples per pixel, all at one point: geometry stays aliased (default %(default)s)",
+        default=1,
+        metavar="N",
+        number=int,
+        span=(1, 1 << 16),
+        panel=(
+            Widget(
+                "Shading Samples",
+                "Samples per pixel, all at one point: geometry stays aliased, shading noise is averaged",
+            ),
+        ),
+    )
+    truth_samples: int = option(
+        "--truth-samples",
+        "samples per pixel and half of the truth (%(default)s)",
+        default=256,
+        metavar="N",
+        number=int,
+        span=(1, 1 << 20),
+        panel=(
+            Widget(
+                "Truth Samples",
+                "Samples per pixel in each of the two halves of the ground truth",
+            ),
+        ),
+    )
+    truth_frames: list[int] | str = option(
+        "--truth-frames",
+        "frames with ground truth: all, none or e.g. 1,8,16 (%(default)s); a static shot has one for all frames",
+        default="all",
+        metavar="LIST",
+        decides_content=False,
+        panel=(
+            Widget(
+                "Truth",
+                "Which frames get ground truth; a shot at rest needs one for all its frames",
+                "ENDS",
+                name="truth",
+                items=_TRUTH_ITEMS,
+            ),
+        ),
+        words=_truth_words,
+    )
+    jitter: str = option(
+        "--jitter",
+        f"default {_DEFAULT_SEQUENCE}, or none where no method of --for accumulates frames. {_SEQUENCES}",
+        default=_DEFAULT_SEQUENCE,
+        metavar="SEQUENCE",
+        unsaid=None,
+        panel=(
+            Widget(
+                "Jitter",
+                "Where in the pixel each frame is sampled",
+                items=_SEQUENCE_ITEMS,
+            ),
+        ),
+        applies=lambda panel: panel.reads_jittered_frames(),
+    )
+    period: int = option(
+        "--period",
+        "frames after which the jitter repeats (%(default)s)",
+        default=16,
+        metavar="N",
+        number=int,
+        span=(1, 1 << 20),
+        panel=(Widget("Period", "Frames after which the jitter repeats"),),
+        applies=lambda panel: panel.reads_jittered_frames(),
+    )
+    jitter_centred: bool = option(
+        "--jitter-centred", "subtract the mean of one period of the jitter", default=False
+    )
+    jitter_projection: str = option(
+        "--jitter-projection",
+        "post: samples move by the jitter; pre: labelled variant, the error of the T2MSAA/ASAA thesis: the camera "
+        "moves by (2 jx / W, -2 jy / H) scene units and the picture by jitter x focal length / depth (%(default)s)",
+        default="post",
+        choices=dict.fromkeys(
+            ("post", "pre"), ("", "")
+        ),  # pre: scene/camera.py, premultiplied_movement
+    )
+    pattern: str = option(
+        "--subsamples",
+        f"sub-sample pattern: {_PATTERNS} or gridN, around pixel centre + jitter (default: what "
+        f"serves the methods, else {_DEFAULT_PATTERN})",
+        default=_DEFAULT_PATTERN,
+        metavar="PATTERN",
+        unsaid=None,
+        panel=(
+            Widget(
+                "Sub-samples",
+                "Pattern of the geometry within a pixel, for methods that read it",
+                _AUTOMATIC,
+                items=_PATTERN_ITEMS,
+            ),
+        ),
+        words=lambda panel: [panel.pattern] if panel.pattern != _AUTOMATIC else None,
+        applies=lambda panel: panel.reads_subsamples(),
+    )
+    lighting: str = option(
+        "--lighting",
+        "noise-free: delta lights, ambient in place of the world's light, no bounces; as-is: the scene's own light",
+        default="noise-free",
+        choices={
+            "noise-free": (
+                "No Noise",
+                "Lights without size, ambient in place of the world's light, no bounces",
+            ),
+            "as-is": (
+                "As It Is",
+                "The scene's own light; noise has to be averaged by samples",
+            ),
+        },
+        panel=(Widget("Light", "Light of colour and truth alike"),),
+    )
+    ambient: tuple[float, float, float] | None = option(
+        "--ambient",
+        "ambient radiance of noise-free light, linear (default: the mean of the world, where it lights surfaces)",
+        default=None,
+        metavar=("R", "G", "B"),
+        number=float,
+        panel=(
+            Widget(
+                "Own Ambient",
+                "Set the ambient instead of taking the mean of the world",
+                False,
+                name="use_ambient",
+            ),
+            Widget("Ambient", "Ambient radiance, linear", (0.2, 0.2, 0.2), subtype="COLOR"),
+        ),
+        words=lambda panel: [f"{value:.6g}" for value in panel.ambient]
+        if panel.use_ambient
+        else None,
+        applies=lambda panel: panel.lighting == "noise-free",
+    )
+    color_type: str = option(
+        "--color-type",
+        "type of colour and albedo (%(default)s)",
+        default="float",
+        choices={
+            "float": ("Float", "32 bits"),
+            "half": ("Half", "16 bits: smaller, error up to 2.4e-4"),
+        },
+        panel=(Widget("Colour", "Type of colour in the files"),),
+    )
+    compression: str = option(
+        "--compression",
+        "of every part (%(default)s)",
+        default="zip",
+        choices=dict.fromkeys(exr.COMPRESSIONS, ("", "")),
+    )
+    view_layer: str | None = option(
+        "--view-layer",
+        "view layer to render (default: the only one in use)",
+        default=None,
+        metavar="NAME",
+    )
+    instance_ids: bool = option(
+        "--no-instance-ids", "instances share the id of their source", default=True
+    )
+    name: str = option(
+        "--name",
+        "name of the shot (default: that of the folder)",
+        default="",
+        decides_content=False,
+    )
+    source: str = option(
+        "--source",
+        "identity of the scene, to notice changes (default: SHA-256 of the .blend)",
+        default="",
+        metavar="HASH",
+        changed="the .blend file",
+    )
+    overwrite: bool = option(
+        "--overwrite",
+        "replace an export with other settings",
+        default=False,
+        decides_content=False,
+        panel=(Widget("Replace Old", "Replace an export with other settings"),),
+    )
 
     def shift_and_movement(
         self, offset: tuple[float, float]
@@ -73,45 +296,27 @@ class Settings:
         The number of frames may grow between runs, the first one (where the jitter begins) may not.
         """
         wishes = asdict(self)
-        for name in ("out", "methods", "truth_frames", "overwrite", "name"):
-            wishes.pop(name)
+        for item, known in options_of(Settings):
+            if not known.decides_content:
+                wishes.pop(item.name)
         wishes["first_frame"] = wishes.pop("frames")[0]
         return json.loads(json.dumps(wishes))
 
 
-_FLAGS = {
-    "passes": "--for/--passes",
-    "centre_passes": "--for",
-    "resolution": "--resolution",
-    "samples": "--samples",
-    "truth_samples": "--truth-samples",
-    "jitter": "--jitter",
-    "period": "--period",
-    "jitter_centred": "--jitter-centred",
-    "jitter_projection": "--jitter-projection",
-    "pattern": "--subsamples",
-    "lighting": "--lighting",
-    "ambient": "--ambient",
-    "color_type": "--color-type",
-    "compression": "--compression",
-    "view_layer": "--view-layer",
-    "instance_ids": "--no-instance-ids",
-    "first_frame": "the first of --frames",
-    "source": "the .blend file",
-    "version": "the version of the add-on",
-    "blender": "the version of Blender",
-}
+@dataclass
+class Invocation:
+    """Options of one run of the command line that say nothing of the shot."""
 
-
-def difference(old: dict, new: dict) -> str | None:
-    """First difference of two fingerprints in words, or None."""
-    for key in sorted(set(old) | set(new)):
-        if old.get(key) != new.get(key):
-            if key == "source":
-                return f"{_FLAGS[key]} has changed"
-            return f"{_FLAGS.get(key, key)} was {_shown(old.get(key))} and now is {_shown(new.get(key))}"
-    return None
-
-
-def _shown(value) -> str:
-    return ",".join(map(str, value)) if isinstance(value, list) else str(value)
+    claim_timeout: float = option(
+        "--claim-timeout",
+        "after this time work claimed by a process on another machine is taken over (%(default)g)",
+        default=3600.0,
+        metavar="SECONDS",
+        number=float,
+    )
+    estimate: bool = option(
+        "--estimate",
+        "render one frame and a little of its truth elsewhere, say how long the export would take, write nothing",
+        default=False,
+    )
+    json: bool = option("--json", "progress as one JSON object per line", default=False)

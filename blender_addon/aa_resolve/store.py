@@ -19,7 +19,8 @@ import time
 from typing import Iterator
 
 from .errors import SceneError, UsageError
-from .settings import difference
+from .fingerprint import difference
+from .manifest import content_of
 
 
 def write_json(path: str, content: dict) -> None:
@@ -190,33 +191,4 @@ class Store:
 
     def write_manifest(self, head: dict, frames: list[int]) -> None:
         """shot.json from the records of all finished frames. Call it under the lock."""
-        entries = []
-        objects: dict[str, str] = {}
-        for number in frames:
-            record = self.record("frames", number)
-            if record is None:
-                continue
-            entry = dict(record["entry"])
-            objects.update(record["objects"])
-            truth_frame = frames[0] if head["static"] else number
-            centre = self.record("centre", truth_frame)
-            if centre is not None:
-                entry["centre"] = self.picture("centre", truth_frame)
-                objects.update(centre["objects"])
-                if truth_frame == number:
-                    spent = {f"centre.{k}": v for k, v in centre["render_seconds"].items()}
-                    entry["render_seconds"] = {**entry["render_seconds"], **spent}
-                    size = sum(centre["bytes"].values())
-                    entry["bytes"] = {**entry["bytes"], "centre": size}
-            truth = self.record("truth", truth_frame)
-            if truth is not None:
-                entry["truth"] = self.picture("truth", truth_frame)
-                if truth_frame == number:
-                    entry["render_seconds"] = {**entry["render_seconds"], **truth["render_seconds"]}
-                    entry["bytes"] = {**entry["bytes"], **truth["bytes"]}
-            entries.append(entry)
-        content = {key: value for key, value in head.items() if key != "producer"}
-        content["objects"] = dict(sorted(objects.items(), key=lambda pair: int(pair[0])))
-        content["frames"] = entries
-        content["producer"] = head["producer"]
-        write_json(os.path.join(self.folder, "shot.json"), content)
+        write_json(os.path.join(self.folder, "shot.json"), content_of(self, head, frames))

@@ -142,7 +142,7 @@ def _identity(shot: Shot, shop: Workshop) -> str:
         sources = [shop.program]
     else:
         sources = [ROOT / f"scenes/{shot.scene}.py", ROOT / "scenes/common.py"]
-        sources += sorted((ROOT / "blender_addon/aa_resolve").glob("*.py"))
+        sources += sorted((ROOT / "blender_addon/aa_resolve").rglob("*.py"))
         # Of the registry only what decides the passes: a better help text renders nothing anew.
         registry = json.loads((ROOT / "blender_addon/aa_resolve/methods.json").read_text())["methods"]
         ids = {m.split(":")[0].split("+")[0] for m in shot.methods.split()}

@@ -27,7 +27,7 @@ HEADLESS = os.path.join(ROOT, "blender_addon", "aa_resolve", "headless.py")
 sys.path.insert(0, os.path.join(ROOT, "blender_addon"))
 
 import aa_resolve  # noqa: E402,F401
-from aa_resolve import headless  # noqa: E402
+from aa_resolve.command_line import build_parser, settings_from  # noqa: E402
 from aa_resolve.export import Exporter  # noqa: E402
 from aa_resolve.store import Store  # noqa: E402
 
@@ -36,7 +36,7 @@ _folders: list[str] = []
 
 
 class Silent:
-    """A reporter that keeps what was said."""
+    """Progress that keeps what was said."""
 
     def __init__(self) -> None:
         self.notes: list[str] = []
@@ -133,16 +133,16 @@ def key(owner, path, values: dict[int, object], index: int = -1) -> None:
 
 def export(out: str, *options: str) -> dict:
     """Exports the open scene in this process; returns shot.json. The scene is changed by it."""
-    arguments = headless.build_parser().parse_args(["--out", out, *options])
-    settings = headless.settings_from(arguments, bpy.context.scene)
-    reporter = Silent()
-    exporter = Exporter(bpy.context.scene, settings, reporter, "test")
+    arguments = build_parser().parse_args(["--out", out, *options])
+    settings = settings_from(arguments, bpy.context.scene)
+    progress = Silent()
+    exporter = Exporter(bpy.context.scene, settings, progress, "test")
     exporter.prepare()
     store = Store(settings.out, arguments.claim_timeout)
     store.open({**settings.fingerprint(), "static": exporter.static}, settings.overwrite)
     exporter.run(store)
     shot = read_manifest(out)
-    shot["notes"] = reporter.notes
+    shot["notes"] = progress.notes
     return shot
 
 

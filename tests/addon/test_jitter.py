@@ -12,9 +12,10 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import support as t  # noqa: E402
 from support import Vector, bpy, np  # noqa: E402
 
-from aa_resolve import analysis, jitter, lighting, rendering  # noqa: E402
-from aa_resolve import camera as cam  # noqa: E402
+from aa_resolve import jitter  # noqa: E402
 from aa_resolve.errors import SceneError, UsageError  # noqa: E402
+from aa_resolve.scene import camera as cam  # noqa: E402
+from aa_resolve.scene import rendering, suitability  # noqa: E402
 
 FACTOR = 8
 CELLS = ((1, 6), (7, 0), (3, 3))  # column and row of the sub-sample, of 8
@@ -41,13 +42,13 @@ def scattered_cubes(width: int, height: int):
 
 def recorder(scene):
     """Renders id and depth of the current camera at a jitter, the way the exporter does."""
-    layer, _ = analysis.refuse_unsuitable(scene, None)
+    layer, _ = suitability.refuse_unsuitable(scene, None)
     rendering.prepare(scene, layer)
     rendering.request_passes(layer, {"Depth", "IndexOB"})
     rendering.sample_points(scene, 1)
     for index, item in enumerate(sorted(bpy.data.objects, key=lambda item: item.name), 1):
         item.pass_index = index
-    folder = lighting.temporary_folder()
+    folder = rendering.temporary_folder()
 
     def record(jittered, x, y, premultiplied=(0.0, 0.0)):
         frame = cam.frame_of(scene)

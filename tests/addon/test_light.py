@@ -10,7 +10,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import support as t  # noqa: E402
 from support import bpy, np  # noqa: E402
 
-from aa_resolve import rendering  # noqa: E402
+from aa_resolve.scene import rendering  # noqa: E402
 
 
 def add_light(scene, kind: str, location, energy: float, **values):

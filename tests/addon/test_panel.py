@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+import glob
 import hashlib
 import json
 import os
 import subprocess
 import sys
 import types
+import zipfile
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import support as t  # noqa: E402
@@ -105,7 +107,11 @@ def test_manifests_agree() -> None:
     assert tuple(map(int, manifest["version"].split("."))) == aa_resolve.bl_info["version"]
     assert tuple(map(int, manifest["blender_version_min"].split("."))) >= (4, 2, 0)
     assert all(text.startswith("SPDX:") for text in manifest["license"])
-    assert set(manifest["tags"]) <= {"Animation", "Import-Export", "Render"}  # of Blender's own list
+    assert set(manifest["tags"]) <= {
+        "Animation",
+        "Import-Export",
+        "Render",
+    }  # of Blender's own list
     for permission, reason in manifest["permissions"].items():
         assert permission in ("files", "network", "clipboard", "camera", "microphone")
         assert len(reason) <= 64 and reason[-1].isalnum(), reason
@@ -115,9 +121,12 @@ def test_manifests_agree() -> None:
 def test_only_compat_knows_versions() -> None:
     """Names that differ between Blender versions are asked for in one file."""
     folder = os.path.join(t.ROOT, "blender_addon", "aa_resolve")
-    for name in sorted(os.listdir(folder)):
-        if name.endswith(".py") and name != "compat.py":
-            with open(os.path.join(folder, name), encoding="utf-8") as file:
+    paths = sorted(glob.glob(os.path.join(folder, "**", "*.py"), recursive=True))
+    assert len(paths) > 30, paths
+    for path in paths:
+        name = os.path.relpath(path, folder)
+        if name != "compat.py":
+            with open(path, encoding="utf-8") as file:
                 text = file.read()
             assert "app.version " not in text and "app.version[" not in text, name
             assert "hasattr(" not in text, f"{name}: ask compat.py"
@@ -158,6 +167,41 @@ def test_settings_of_later_versions() -> None:
     assert compat.displacement_method(material) == "DISPLACEMENT"
 
 
+def test_the_panel_says_what_it_shows() -> None:
+    """The command line of the panel's job, parsed, holds the values of the properties, and what has no effect is unsaid."""
+    import aa_resolve
+    from aa_resolve.command_line import build_parser, settings_from
+
+    aa_resolve.register()
+    scene = bpy.context.scene
+    shown = scene.aa_resolve
+
+    def said() -> object:
+        return settings_from(build_parser().parse_args(shown.options("/out")), scene)
+
+    plain = said()
+    assert (plain.out, plain.frames[-1], plain.truth_frames) == ("/out", 16, [1, 8, 16])
+    assert (plain.samples, plain.truth_samples, plain.pattern) == (1, 256, "d3d8")
+    assert plain.resolution is None and plain.ambient is None and not plain.overwrite
+    shown.first, shown.last, shown.truth = 3, 5, "ALL"
+    shown.use_resolution, shown.resolution = True, (64, 40)
+    shown.samples, shown.truth_samples, shown.period, shown.jitter = 2, 7, 5, "r2"
+    shown.use_ambient, shown.ambient, shown.color_type = True, (0.25, 0.5, 0.125), "half"
+    shown.pattern, shown.overwrite, shown.method_rsaa = "d3d4", True, True
+    full = said()
+    assert full.frames == [3, 4, 5] and full.truth_frames == "all" and full.resolution == (64, 40)
+    assert (full.samples, full.truth_samples, full.period, full.jitter) == (2, 7, 5, "r2")
+    assert (full.ambient, full.color_type) == ((0.25, 0.5, 0.125), "half")
+    assert (full.pattern, full.overwrite) == ("d3d4", True)
+    assert set(full.methods) == {"noaa", "rsaa", "taaSimplest"}
+    shown.lighting, shown.method_rsaa, shown.method_taaSimplest = "as-is", False, False
+    words = shown.options("/out")
+    for flag in ("--ambient", "--subsamples", "--jitter", "--period"):
+        assert flag not in words, words
+    assert "--color-type" in words and said().lighting == "as-is"
+    aa_resolve.unregister()
+
+
 def test_installed_from_zip() -> None:
     scene = t.new_scene(32, 18)
     t.add_camera(scene)
@@ -168,6 +212,12 @@ def test_installed_from_zip() -> None:
     packer = os.path.join(t.ROOT, "blender_addon", "make_zip.py")
     archive = os.path.join(FOLDER, "aa_resolve.zip")
     subprocess.run([sys.executable, packer, archive], check=True, capture_output=True)
+    sources = glob.glob(
+        os.path.join(t.ROOT, "blender_addon", "aa_resolve", "**", "*.py"), recursive=True
+    )
+    with zipfile.ZipFile(archive) as file:
+        packed = [name for name in file.namelist() if name.endswith(".py")]
+    assert len(packed) == len(sources) and "aa_resolve/passes/table.py" in packed, packed
     with open(archive, "rb") as file:
         first = hashlib.sha256(file.read()).digest()
     subprocess.run([sys.executable, packer, archive], check=True, capture_output=True)
@@ -189,7 +239,7 @@ def test_installed_from_zip() -> None:
 
 def test_job_reports_and_cancels() -> None:
     """What the modal operator relies on: progress comes in without blocking, cancel leaves finished frames."""
-    from aa_resolve import job
+    from aa_resolve.panel import job
 
     scene = t.new_scene(32, 18)
     t.add_camera(scene)
@@ -232,6 +282,7 @@ if __name__ == "__main__":
         test_manifests_agree,
         test_only_compat_knows_versions,
         test_settings_of_later_versions,
+        test_the_panel_says_what_it_shows,
         test_installed_from_zip,
         test_job_reports_and_cancels,
     )

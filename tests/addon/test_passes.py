@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import sys
@@ -283,6 +284,41 @@ def test_truth_is_the_box_mean() -> None:
         ), f"half {half} is shifted: mean error {error[partial].mean()}"
 
 
+def test_the_table_of_passes() -> None:
+    """Every pass of methods.json can be exported and holds the channels and types that stand there."""
+    with open(
+        os.path.join(t.ROOT, "blender_addon/aa_resolve/methods.json"), encoding="utf-8"
+    ) as file:
+        table = json.load(file)["passes"]
+    scene, _, _ = floor_scene()
+    t.add_sun(scene)
+    t.key(t.add_object(scene, "Cube"), "location", {1: (-1, 0, 0.5), 11: (1, 0.4, 0.8)})
+    names = [row["name"] for row in table]
+    sizes = {"float": 4, "uint": 4}
+    expected: dict[str, dict[str, str]] = {}
+    for row in table:
+        part = expected.setdefault(row["part"], {})
+        views = ("s00.", "s01.") if row["perSubSample"] else ("",)
+        own = {item["name"]: item["type"] for item in row["channels"]}
+        size = 0 if row.get("list") else sum(sizes[kind] for kind in own.values())
+        assert row["bytesPerPixel"] == size, row
+        part.update({view + name: kind for view in views for name, kind in own.items()})
+        part.update({item["name"]: item["type"] for item in row.get("shared", ())})
+    expected["color"]["A"] = "float"  # as Cycles gives it; no method reads it
+    shot, out = exported(
+        "--frames", "2", "--truth-frames", "none", "--passes", ",".join(names), "--subsamples", "d3d2"
+    )  # fmt: skip
+    path = os.path.join(out, "frames/000002.exr")
+    assert set(t.part_names(path)) == set(expected), t.part_names(path)
+    for name, channels in expected.items():
+        found = t.read_part(path, name)
+        assert set(found) == set(channels), (name, sorted(found))
+        for channel, pixels in found.items():
+            kind = "uint" if pixels.dtype == np.uint32 else "float"
+            assert kind == channels[channel], (name, channel)
+    assert not shot["static"] and set(expected) <= set(shot["frames"][0]["bytes"])
+
+
 def test_half_floats() -> None:
     scene, _, _ = floor_scene()
     t.add_sun(scene)
@@ -301,5 +337,6 @@ if __name__ == "__main__":
         test_static_is_found_by_evaluation,
         test_color_and_truth_share_one_light,
         test_truth_is_the_box_mean,
+        test_the_table_of_passes,
         test_half_floats,
     )

@@ -41,16 +41,14 @@ def exported(*options: str) -> tuple[dict, dict[str, np.ndarray], str]:
 
 def rendered_at(offset: tuple[float, float]) -> str:
     """Path of a plain frame of the same scene, one sample per pixel at ``offset``."""
-    from aa_resolve import picture
-
     scene_with_edges()
-    original = picture.jitter.jitter_at
-    picture.jitter.jitter_at = lambda *_arguments: offset
+    original = jitter.jitter_at
+    jitter.jitter_at = lambda *_arguments: offset
     try:
         out = os.path.join(t.temporary_folder(), "single")
         t.export(out, "--frames", "1", "--truth-frames", "none", "--passes", "depth,normal,object")
     finally:
-        picture.jitter.jitter_at = original
+        jitter.jitter_at = original
     return os.path.join(out, "frames/000001.exr")
 
 
@@ -168,17 +166,17 @@ def scalar_mask(centre, others) -> int:
 
 
 def test_mask() -> None:
-    from aa_resolve import subsamples
+    from aa_resolve.passes import surface_mask
 
     scene = scene_with_edges()
     projection = t.Projection(scene.camera, 48, 32)
-    pixels, subsamples._BAND_PIXELS = subsamples._BAND_PIXELS, 5 * 48  # six bands and a smaller one
+    pixels, surface_mask._BAND_PIXELS = surface_mask._BAND_PIXELS, 5 * 48  # six bands and a smaller one
     try:
         shot, samples, path = exported(
             "--passes", "subsamples,depth,normal,object", "--subsamples", "d3d8"
         )
     finally:
-        subsamples._BAND_PIXELS = pixels
+        surface_mask._BAND_PIXELS = pixels
     mask = samples["mask"]
     assert mask.dtype == np.uint32
     depth, ids = t.read_part(path, "depth")["Z"], t.read_part(path, "object")["id"]
@@ -307,7 +305,8 @@ def test_uint_channels_are_exact() -> None:
 
 def test_passes_with_and_without_a_copy() -> None:
     """Passes of a render are views of the file where its channels allow; their values are the same either way."""
-    from aa_resolve import exr, rendering
+    from aa_resolve import exr
+    from aa_resolve.scene import rendering
 
     path = os.path.join(t.temporary_folder(), "layers.exr")
     pixels = np.random.default_rng(2).normal(size=(19, 7, 9)).astype(np.float32)

@@ -31,9 +31,15 @@ import numpy as np
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path.insert(0, os.path.join(ROOT, "blender_addon"))
 
-from aa_resolve import headless, lighting, picture, rendering, sample_part  # noqa: E402
+from aa_resolve import picture  # noqa: E402
+from aa_resolve.command_line import build_parser, settings_from  # noqa: E402
 from aa_resolve.export import Exporter  # noqa: E402
-from aa_resolve.report import Reporter  # noqa: E402
+from aa_resolve.passes import subsamples  # noqa: E402
+from aa_resolve.passes.albedo import unlit_albedo  # noqa: E402
+from aa_resolve.passes.exposure import Exposure  # noqa: E402
+from aa_resolve.passes.geometry import ids_of  # noqa: E402
+from aa_resolve.passes.table import passes_named  # noqa: E402
+from aa_resolve.progress import Progress  # noqa: E402
 
 
 _LAST = 4  # frame; the bench stays between its neighbours
@@ -45,7 +51,9 @@ def sphere(rings: int, sides: int) -> bpy.types.Mesh:
     height = np.arange(1, rings) * math.pi / rings
     points = [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0)]
     points += [
-        (math.sin(h) * math.cos(a), math.sin(h) * math.sin(a), math.cos(h)) for h in height for a in angle
+        (math.sin(h) * math.cos(a), math.sin(h) * math.sin(a), math.cos(h))
+        for h in height
+        for a in angle
     ]
 
     def at(ring: int, side: int) -> int:
@@ -56,7 +64,8 @@ def sphere(rings: int, sides: int) -> bpy.types.Mesh:
         faces.append((0, at(0, side), at(0, side + 1)))
         faces.append((1, at(rings - 2, side + 1), at(rings - 2, side)))
         faces += [
-            (at(r, side), at(r + 1, side), at(r + 1, side + 1), at(r, side + 1)) for r in range(rings - 2)
+            (at(r, side), at(r + 1, side), at(r + 1, side + 1), at(r, side + 1))
+            for r in range(rings - 2)
         ]
     mesh = bpy.data.meshes.new("Ball")
     mesh.from_pydata(points, [], faces)
@@ -94,7 +103,9 @@ def make_scene(triangles: int, animated: bool) -> int:
     scene.collection.objects.link(sun)
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     camera.location, camera.rotation_euler = (0.0, -15.0, 7.0), (1.15, 0.0, 0.0)
-    camera.keyframe_insert("location", frame=1)  # it moves, so that the main pass has motion vectors
+    camera.keyframe_insert(
+        "location", frame=1
+    )  # it moves, so that the main pass has motion vectors
     camera.location.x = 2.0
     camera.keyframe_insert("location", frame=11)
     scene.collection.objects.link(camera)
@@ -119,37 +130,34 @@ def main() -> None:
     parser.add_argument("--animated", action="store_true", help="all balls move in every frame")
     options = parser.parse_args(sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else [])
     triangles = make_scene(options.triangles, options.animated)
-    arguments = headless.build_parser().parse_args(
+    arguments = build_parser().parse_args(
         [
             "--out", "unused", "--frames", f"2-{_LAST - 1}", "--passes", "albedo,depth,normal,object,motion,subsamples",
             "--subsamples", options.pattern, "--resolution", *options.resolution, "--truth-frames", "none",
         ]
     )  # fmt: skip
     scene = bpy.context.scene
-    reporter = Reporter(False)
-    exporter = Exporter(scene, headless.settings_from(arguments, scene), reporter, "bench")
+    progress = Progress(False)
+    exporter = Exporter(scene, settings_from(arguments, scene), progress, "bench")
     exporter.prepare()
     plan = exporter.plan
     pictures = picture.Pictures(plan)
     every = {"albedo", "depth", "normal", "object", "motion"}
     number = 2
-    pictures._go_to(number)
-    rendering.sample_points(scene, 1)
     file = os.path.join(bpy.app.tempdir, "frame.exr")
 
     def main_pass(passes: set[str], offset: tuple[float, float] = (0.0, 0.0)) -> None:
-        pictures._aim(number, offset)
-        renders = pictures._render_lights(plan.cycles_passes(passes))
-        lighting.compose(plan.light, renders)
+        exposure = Exposure(plan, pictures.stage, number, offset, passes_named(passes))
         if "albedo" in passes:
-            rendering.unlit_albedo(renders[0])
+            unlit_albedo(exposure.main)
         if "motion" in passes:
-            renders[0].get("Vector")
-        renders[0].get("Depth"), renders[0].get("Normal"), plan.ids.resolve(renders[0])
+            exposure.main.get("Vector")
+        exposure.main.get("Depth"), exposure.main.get("Normal"), ids_of(exposure)
 
     def multi_view() -> None:
-        views = pictures._views(number)
-        layers = sample_part.render(plan, views, {"subsamples"}, (0.0, 0.0))[0]
+        views = pictures.stage.views(number, plan.positions)
+        views.aim(plan.frame, bpy.context.evaluated_depsgraph_get(), (0.0, 0.0))
+        layers = subsamples.render_geometry(plan, views, subsamples.Subsamples.cycles)[0]
         for name in views.names:
             layers.get("Depth", name), layers.get("Normal", name), plan.ids.resolve(layers, name)
 
@@ -185,7 +193,7 @@ def main() -> None:
             work()  # brings Cycles to where the frame before would have left it
             if options.animated:
                 number = _LAST + 1 - number
-                pictures._go_to(number)
+                pictures.stage.go_to(number)
             seconds[name].append(cpu_seconds(work))
     added = {
         name: [both - one for both, one in zip(seconds[f"{name}+"], seconds[name])]
@@ -215,7 +223,7 @@ def main() -> None:
         line("frame", seconds["frame"], "frame", "main pass, packed and written"),
         line(f"{count} sub-samples in a frame", added["frame"], "frame", "added to it: mask, packing and writing too"),
     ):  # fmt: skip
-        reporter.say("bench", text)
+        progress.say("bench", text)
 
 
 main()

@@ -106,15 +106,15 @@ class FromBlender(ProgramTest):
 import sys, bpy
 sys.path.insert(0, {str(ROOT / "blender_addon")!r})
 import aa_resolve
-from aa_resolve import job, ui_operators
+from aa_resolve.panel import job, operators
 aa_resolve.register()
 job.find_resolver = lambda _preferred: {str(PROGRAM)!r}
 settings = bpy.context.scene.aa_resolve
 settings.out, settings.first, settings.last = {str(shot)!r}, 1, 3
 settings.use_resolution, settings.resolution = True, (96, 54)
 settings.truth_samples, settings.method_fxaa311 = 4, True
-assert bpy.ops.aa_resolve.compare() == {{"FINISHED"}}, ui_operators.State.result
-assert ui_operators.State.report.endswith("report.html"), ui_operators.State.report
+assert bpy.ops.aa_resolve.compare() == {{"FINISHED"}}, operators.State.result
+assert operators.State.report.endswith("report.html"), operators.State.report
 sheet = [image for image in bpy.data.images if image.name.startswith("sheet")]
 assert sheet and sheet[0].size[0] > 96, list(bpy.data.images)
 assert bpy.ops.aa_resolve.open_report.poll()

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a scene contains that an export must know: what moves, what has cut-outs, what must be refused.
+"""What moves: whether all frames of a shot show the same, and the state of one frame by which wrong motion is found.
 
-Every decision is made from the open scene alone and comes with the sentence that explains it.
-"""
+Decided from the open scene alone, with the sentence that explains it."""
 
 from __future__ import annotations
 
@@ -13,8 +12,7 @@ import bpy
 import numpy as np
 
 from . import camera as cam
-from . import compat
-from .errors import SceneError
+from .cuts import CameraCuts
 
 # Modifiers that can change a mesh although nothing in the file is keyed.
 _TIME_MODIFIERS = {
@@ -51,83 +49,6 @@ class FrameState:
     hidden: frozenset[str] = frozenset()
     vertices: dict[str, int] = field(default_factory=dict)
     instances: frozenset[tuple[str, int]] = frozenset()  # source and random id
-
-
-def refuse_unsuitable(
-    scene: bpy.types.Scene, layer_name: str | None
-) -> tuple[bpy.types.ViewLayer, list[str]]:
-    """The view layer to render and one sentence for everything that will be switched off.
-
-    Raises SceneError for what cannot be exported."""
-    notes = []
-    if not compat.is_cycles_available():
-        raise SceneError("Cycles is not enabled: switch on the add-on 'Cycles Render Engine'")
-    render = scene.render
-    if render.use_multiview:
-        raise SceneError(
-            "the scene renders stereo views: switch Stereoscopy off, a shot holds one camera"
-        )
-    used = [layer for layer in scene.view_layers if layer.use]
-    if layer_name is not None:
-        chosen = scene.view_layers.get(layer_name)
-        if chosen is None:
-            known = ", ".join(layer.name for layer in scene.view_layers)
-            raise SceneError(
-                f"--view-layer: the scene has no layer '{layer_name}' (found: {known})"
-            )
-    elif len(used) > 1:
-        names = ", ".join(layer.name for layer in used)
-        raise SceneError(
-            f"the scene renders {len(used)} view layers ({names}): choose one with --view-layer NAME"
-        )
-    else:
-        chosen = used[0] if used else scene.view_layers[0]
-    if render.engine != "CYCLES":
-        notes.append(f"rendered with Cycles; the scene is set to {render.engine}")
-    if render.use_motion_blur:
-        notes.append("motion blur is switched off: a shot holds sharp frames and their motion")
-    if compat.compositor_in_use(scene):
-        notes.append("the compositor is switched off: a shot holds the picture before it")
-    if render.use_sequencer and compat.strips(scene):
-        notes.append("the sequencer is switched off: a shot shows the 3D scene")
-    if scene.cycles.use_denoising:
-        notes.append("the denoiser is switched off")
-    if render.use_freestyle:
-        notes.append("Freestyle lines are switched off: they are drawn after rendering")
-    if render.use_border:
-        notes.append("the shot shows the render border only")
-    for item in bpy.data.objects:
-        if item.type == "CAMERA" and item.data.dof.use_dof:
-            item.data.dof.use_dof = False
-            notes.append(
-                f"depth of field of camera '{item.name}' is switched off: a shot is sharp everywhere"
-            )
-        if item.type == "VOLUME" and not item.hide_render:
-            notes.append(
-                f"volume '{item.name}' has no surface: its depth, normal and motion are those behind it"
-            )
-    if len(bpy.data.objects) > 32767:
-        raise SceneError(
-            f"{len(bpy.data.objects)} objects: Cycles tells at most 32767 apart; join some"
-        )
-    return chosen, notes
-
-
-def show_what_renders(scene: bpy.types.Scene) -> None:
-    """Makes the evaluated scene that Python sees agree with what the renderer sees (in memory only)."""
-    for item in bpy.data.objects:
-        if item.library is None:
-            item.hide_viewport = False
-            for modifier in item.modifiers:
-                modifier.show_viewport = modifier.show_render
-            if item.name in bpy.context.view_layer.objects:
-                item.hide_set(False)
-    for collection in bpy.data.collections:
-        if collection.library is None and not collection.hide_render:
-            collection.hide_viewport = False
-    for particles in bpy.data.particles:
-        if particles.library is None:
-            particles.display_percentage = 100
 
 
 def _is_keyed(owner: bpy.types.ID | None) -> bool:
@@ -246,7 +167,7 @@ def _shape_digest(item: bpy.types.Object) -> bytes:
 
 
 def frame_state(
-    scene: bpy.types.Scene, frame_number: int, frame: cam.Frame, cuts: cam.CameraCuts, details: bool
+    scene: bpy.types.Scene, frame_number: int, frame: cam.Frame, cuts: CameraCuts, details: bool
 ) -> FrameState:
     """Evaluates a frame. ``details`` adds hidden objects, vertex counts and instances, by which wrong motion is
     found."""
@@ -272,7 +193,7 @@ def frame_state(
 
 
 def find_motion(
-    scene: bpy.types.Scene, frames: list[int], frame: cam.Frame, cuts: cam.CameraCuts
+    scene: bpy.types.Scene, frames: list[int], frame: cam.Frame, cuts: CameraCuts
 ) -> Motion:
     """Whether the picture (camera, places, shapes, colours) is the same in all ``frames``."""
     if len(frames) == 1:
@@ -295,97 +216,3 @@ def find_motion(
         elif digest != first[0]:
             return Motion(False, f"objects move in frame {number}")
     return Motion(True, f"nothing changes in frames {frames[0]}-{frames[-1]}")
-
-
-def has_cutouts() -> str | None:
-    """Name of a material through which a camera ray can pass, or that moves the surface it is on; else None.
-
-    Both are lost under an override material."""
-    for item in bpy.data.objects:
-        if item.hide_render:
-            continue
-        for slot in item.material_slots:
-            material = slot.material
-            if (
-                material
-                and material.use_nodes
-                and material.node_tree
-                and _is_see_through(material.node_tree, set())
-            ):
-                return material.name
-    return None
-
-
-def _is_see_through(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
-    if tree.name in seen:
-        return False
-    seen.add(tree.name)
-    for node in tree.nodes:
-        if node.bl_idname in ("ShaderNodeBsdfTransparent", "ShaderNodeHoldout"):
-            return True
-        if node.bl_idname == "ShaderNodeBsdfPrincipled":
-            alpha = node.inputs["Alpha"]
-            if alpha.is_linked or alpha.default_value < 1.0:
-                return True
-        if node.bl_idname == "ShaderNodeOutputMaterial" and node.inputs["Displacement"].is_linked:
-            return True
-        if (
-            node.bl_idname == "ShaderNodeGroup"
-            and node.node_tree
-            and _is_see_through(node.node_tree, seen)
-        ):
-            return True
-    return False
-
-
-def notes_on_edges() -> list[str]:
-    """Sentences about surfaces whose edges are not those of a mesh."""
-    notes = []
-    hairy = [
-        item.name
-        for item in bpy.data.objects
-        if not item.hide_render
-        and (
-            item.type == "CURVES"
-            or any(
-                system.settings.type == "HAIR" and system.settings.render_type == "PATH"
-                for system in item.particle_systems
-            )
-        )
-    ]
-    if hairy:
-        notes.append(f"strands of {', '.join(hairy)} have no edges: they are no triangles")
-    displaced = [
-        material.name
-        for material in bpy.data.materials
-        if material.users
-        and material.use_nodes
-        and material.node_tree
-        and compat.displacement_method(material) != "BUMP"
-        and any(
-            node.bl_idname == "ShaderNodeOutputMaterial" and node.inputs["Displacement"].is_linked
-            for node in material.node_tree.nodes
-        )
-    ]
-    if displaced:
-        notes.append(
-            f"edges of {', '.join(displaced)} are those before displacement, which only the renderer knows"
-        )
-    return notes
-
-
-def semi_transparent_note() -> list[str]:
-    """Sentences about materials whose alpha is neither 0 nor 1: one sample picks a layer at random."""
-    notes = []
-    for material in bpy.data.materials:
-        if not (material.use_nodes and material.node_tree and material.users):
-            continue
-        for node in material.node_tree.nodes:
-            if node.bl_idname == "ShaderNodeBsdfPrincipled":
-                alpha = node.inputs["Alpha"]
-                if not alpha.is_linked and 0.0 < alpha.default_value < 1.0:
-                    notes.append(
-                        f"material '{material.name}' is half transparent (alpha {alpha.default_value:.2g}): noisy at "
-                        "few samples; its geometry counts as solid from alpha 0.5"
-                    )
-    return notes

@@ -1,90 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Geometry (and colour) at several points of every pixel, by one multi-view render.
+"""Which sub-samples lie on the surface of the centre sample: the mask of pass ``subsamples``.
 
-K cameras, one call of Cycles: bit-identical to K renders at a fraction of their cost, because the scene is
-transferred once. Where colour is not asked for, lights are off, and an override material without emission replaces
-all shading unless the scene has cut-outs or displacement, which an override would lose.
-"""
+Reshetov 2012; methods/05-geometry.md 5.5: how unlike the geometry of two samples is, and one k-means step that parts
+the sub-samples of a pixel into those like the centre and the others."""
 
 from __future__ import annotations
 
-import bpy
 import numpy as np
 
-from . import camera as cam
-from . import lighting, rendering
-
-_PREFIX = "AA Resolve View"
-
-
-class ViewSet:
-    """K jittered cameras on one source camera, rendered as K views."""
-
-    def __init__(
-        self, scene: bpy.types.Scene, source: bpy.types.Object, positions: list[tuple[float, float]]
-    ) -> None:
-        self.scene = scene
-        self.positions = positions
-        self.names = tuple(f"s{index:02d}" for index in range(len(positions)))
-        self.cameras = []
-        for name in self.names:
-            camera = cam.JitterCamera(scene, source, f"{_PREFIX} {source.name}.{name}")
-            # The name must end with the suffix of its view, also where Blender had to make it unique.
-            camera.object.name = f"{_PREFIX} {source.name[:20]}.{name}"
-            self.cameras.append(camera)
-
-    def aim(
-        self,
-        frame: cam.Frame,
-        depsgraph: bpy.types.Depsgraph,
-        jitter: tuple[float, float],
-        premultiplied: tuple[float, float] = (0.0, 0.0),
-    ) -> None:
-        """Places all sub-samples of the current frame: each at its position beside the jitter (JitterCamera.aim)."""
-        for camera, (x, y) in zip(self.cameras, self.positions):
-            camera.aim(frame, depsgraph, jitter[0] + x, jitter[1] + y, premultiplied)
-
-    def render(self, view_layer: bpy.types.ViewLayer, folder: str) -> rendering.Layers:
-        """Renders all views with the current passes, lights and materials."""
-        render = self.scene.render
-        previous = self.scene.camera
-        render.use_multiview = True
-        render.views_format = "MULTIVIEW"
-        render.image_settings.views_format = "MULTIVIEW"
-        for view in render.views:
-            view.use = False
-        added = []
-        for name in self.names:
-            view = render.views.new(name)
-            view.camera_suffix = f".{name}"
-            added.append(view)
-        try:
-            self.scene.camera = self.cameras[0].object
-            return rendering.render(self.scene, view_layer, folder, self.names)
-        finally:
-            self.scene.camera = previous
-            for view in added:
-                render.views.remove(view)
-            for view in render.views:
-                view.use = True
-            render.use_multiview = False
-            render.image_settings.views_format = "INDIVIDUAL"
-
-
-def override_material() -> bpy.types.Material:
-    """A surface that neither reflects nor emits: only its geometry is of interest."""
-    name = "AA Resolve Geometry"
-    material = bpy.data.materials.get(name)
-    if material is None:
-        material = bpy.data.materials.new(name)
-        material.use_nodes = True
-        tree = material.node_tree
-        tree.nodes.clear()
-        emission = tree.nodes.new("ShaderNodeEmission")
-        emission.inputs["Strength"].default_value = 0.0
-        output = tree.nodes.new("ShaderNodeOutputMaterial")
-        tree.links.new(emission.outputs[0], output.inputs["Surface"])
-    return material
+from ..scene import camera as cam
 
 
 def geometry_dissimilarity(
@@ -179,14 +103,3 @@ def _mask_of_rows(
     similar |= farthest < _SADP_FLOOR
     bits = (np.uint32(1) << np.arange(len(samples), dtype=np.uint32))[:, None, None]
     return (similar * bits).sum(axis=0).astype(np.uint32)
-
-
-def uses_override(wants_color: bool, cutout: str | None) -> bool:
-    """True when the override material serves: only geometry is wanted and nothing would be lost."""
-    return not wants_color and cutout is None
-
-
-def no_lights(plan: lighting.LightPlan, scene: bpy.types.Scene) -> lighting.only_light:
-    """Context in which no light shines, so that shading costs nothing."""
-    every = lighting.LightPlan(plan.model, lighting.lights_of(scene))
-    return lighting.only_light(every, None)

@@ -23,10 +23,14 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from . import camera as cam
-from . import compat, exr, shapes
+from .. import compat
+from ..scene import camera as cam
+from ..scene import shapes
+from ..scene.instances import ObjectIds
+from .base import Pass
+from .exposure import Exposure
+from .geometry import shown_by
 
-CHANNELS = ("x0", "y0", "z0", "x1", "y1", "z1")
 ROW = 4096  # entries per line of the part
 _MARGIN_PX = 4.0  # a segment touches pixels beside itself: what ends just outside still counts
 _COPLANAR = 0.99999  # cosine of the angle between two triangles
@@ -166,7 +170,7 @@ class SegmentFinder:
         return both[:, :, [0, 1, 3]].reshape(-1, 6)
 
     def segments(self) -> np.ndarray:
-        """All segments (N x 6 float32, CHANNELS) in their order."""
+        """All segments (N x 6 float32: x, y, depth of one end and of the other) in their order."""
         found = np.concatenate(self._found or [np.empty((0, 6))]).astype(np.float32)
         swapped = (found[:, 0] > found[:, 3]) | (
             (found[:, 0] == found[:, 3]) & (found[:, 1] > found[:, 4])
@@ -181,10 +185,10 @@ def find(
     frame: cam.Frame,
     camera: cam.CameraState,
     depsgraph: bpy.types.Depsgraph,
-    ids,
+    ids: ObjectIds,
     shown: set[int],
 ) -> np.ndarray:
-    """Segments of everything in the evaluated scene whose id (of ObjectIds ``ids``) is among ``shown``: an edge of
+    """Segments of everything in the evaluated scene whose id is among ``shown``: an edge of
     what no sample shows could not blend any colour of the picture."""
     finder = SegmentFinder(frame, camera)
     for outline, matrix, _ in shapes.visible_shapes(depsgraph, ids, shown, outline_of):
@@ -192,13 +196,27 @@ def find(
     return finder.segments()
 
 
-def as_part(segments: np.ndarray, compression: str) -> exr.Part:
-    """The part ``segments``: one entry per pixel, row by row, the rest of the last row (or the one entry of an empty
-    list) filled with zeros, which no segment has as its depth."""
+class Segments(Pass):
+    """The list of segments as a small picture of its own."""
+
+    name = "segments"
+    cycles = frozenset({"IndexOB"})
+    from_meshes = True
+
+    def planes(self, exposure: Exposure) -> dict[str, np.ndarray]:
+        plan, shown = exposure.plan, shown_by(exposure)
+        with exposure.watch.of(self.name):
+            depsgraph = bpy.context.evaluated_depsgraph_get()
+            found = find(plan.frame, exposure.now.camera, depsgraph, plan.ids, shown)
+        return dict(zip(self.facts.channels, np.moveaxis(in_rows(found), -1, 0)))
+
+
+def in_rows(segments: np.ndarray) -> np.ndarray:
+    """N x 6 segments as H x W x 6: one entry per pixel, row by row, the rest of the last row (or the one entry of an
+    empty list) filled with zeros, which no segment has as its depth."""
     count = max(1, len(segments))
     width = min(count, ROW)
     height = -(-count // width)
-    entries = np.zeros((height * width, len(CHANNELS)), np.float32)
+    entries = np.zeros((height * width, 6), np.float32)
     entries[: len(segments)] = segments
-    pixels = entries.reshape(height, width, len(CHANNELS))
-    return exr.Part("segments", CHANNELS, ("float",) * len(CHANNELS), pixels, compression)
+    return entries.reshape(height, width, 6)

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from . import compat
-from .errors import SceneError
+from .. import compat
+from ..errors import SceneError
 
 BACKGROUND_DEPTH = 1.0e9  # anything at or beyond it is background (Cycles writes 1e10)
 
@@ -196,7 +196,8 @@ class JitterCamera:
     ) -> None:
         """Displaces the samples by a jitter (pixels, y down) from the source camera at the current frame.
 
-        ``premultiplied`` is a further jitter in pixels that moves the camera, as ``premultiplied_movement`` says."""
+        ``premultiplied`` is a further jitter in pixels that moves the camera, as ``premultiplied_movement`` says.
+        """
         placed = self.source.evaluated_get(depsgraph)
         shift_x, shift_y = jitter_to_shift(frame, placed.data, jitter_x, jitter_y)
         self.object.data.shift_x = placed.data.shift_x + shift_x
@@ -205,41 +206,6 @@ class JitterCamera:
         axes = [column.length for column in placed.matrix_world.to_3x3().col]
         right, up = premultiplied_movement(frame, *premultiplied)
         self.object.location = (right / axes[0], up / axes[1], 0.0)
-
-
-class CameraCuts:
-    """Which camera looks at a frame: those bound to markers, else the scene's own.
-
-    Takes the bindings out of the (open, never saved) scene: they would put the user's camera in the place of the
-    jittered one at every change of frame."""
-
-    def __init__(self, scene: bpy.types.Scene) -> None:
-        self._default = scene.camera
-        self._bound = sorted(
-            (
-                (marker.frame, marker.camera)
-                for marker in scene.timeline_markers
-                if marker.camera is not None
-            ),
-            key=lambda pair: pair[0],
-        )
-        for marker in scene.timeline_markers:
-            marker.camera = None
-
-    @property
-    def is_cut(self) -> bool:
-        """True when more than one camera may appear."""
-        return len({camera.name_full for _, camera in self._bound}) > 1
-
-    def at(self, frame: int) -> bpy.types.Object:
-        """The camera of a frame."""
-        before = [camera for marked, camera in self._bound if marked <= frame]
-        chosen = before[-1] if before else (self._bound[0][1] if self._bound else self._default)
-        if chosen is None:
-            raise SceneError(
-                "the scene has no camera: set one as active, or bind cameras to markers"
-            )
-        return chosen
 
 
 def sample_positions(

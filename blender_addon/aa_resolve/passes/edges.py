@@ -19,8 +19,12 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from . import camera as cam
-from . import shapes
+from ..scene import camera as cam
+from ..scene import shapes
+from ..scene.instances import ObjectIds
+from .base import Pass
+from .exposure import Exposure
+from .geometry import ids_of, shown_by
 
 _PAIRS_PER_BLOCK = 1 << 20
 _COPLANAR = 0.99999  # cosine of the angle between two faces
@@ -229,7 +233,29 @@ def _axis_distances(
     return result
 
 
-def collect(finder: EdgeFinder, depsgraph: bpy.types.Depsgraph, ids, shown: set[int]) -> None:
-    """Adds everything of the evaluated scene that has triangles and whose id (of ObjectIds ``ids``) is ``shown``."""
+class Edges(Pass):
+    """Distances to edges (H x W x 2, pixels)."""
+
+    name = "edges"
+    cycles = frozenset({"Depth", "IndexOB"})
+    from_meshes = True
+    from_jitter = True
+
+    def planes(self, exposure: Exposure) -> dict[str, np.ndarray]:
+        plan, ids = exposure.plan, ids_of(exposure)
+        with exposure.watch.of(self.name):
+            finder = EdgeFinder(plan.frame, exposure.now.camera)
+            depsgraph = bpy.context.evaluated_depsgraph_get()
+            collect(finder, depsgraph, plan.ids, shown_by(exposure))
+            distances, missing = finder.measure(ids, exposure.depth, exposure.offset)
+        if missing:
+            exposure.notes["pixels_without_edges"] = missing
+        return dict(zip(self.facts.channels, np.moveaxis(distances, -1, 0)))
+
+
+def collect(
+    finder: EdgeFinder, depsgraph: bpy.types.Depsgraph, ids: ObjectIds, shown: set[int]
+) -> None:
+    """Adds everything of the evaluated scene that has triangles and whose id is ``shown``."""
     for triangles, matrix, identity in shapes.visible_shapes(depsgraph, ids, shown, mesh_triangles):
         finder.add(triangles, matrix, identity)

@@ -13,16 +13,16 @@ picks one light at random per sample; several lights are therefore rendered one 
 from __future__ import annotations
 
 import math
-import os
 from dataclasses import dataclass, field
 
 import bpy
 import numpy as np
 
-from . import compat, rendering
-from .errors import SceneError
+from .. import compat
+from ..errors import SceneError
+from . import rendering
+from .light_sources import emissive_materials, lights_of, noise_causes
 
-MODELS = ("noise-free", "as-is")
 # Along its axis a Blender area light shines with power / 4 per steradian, a spot with power / (4 pi).
 _AREA_TO_SPOT_POWER = math.pi
 
@@ -52,101 +52,16 @@ class LightPlan:
         """Those that it reads of the second and further lights."""
         return {"Combined", "Emit", "Env"} - self.empty_passes
 
-    def left_out(self, wants_albedo: bool) -> list[str]:
-        """Passes of Cycles that are not rendered, each with its reason."""
-        if len(self.lights) < 2 and not wants_albedo:
-            return []  # nothing would read them
+    def left_out(self, read: frozenset[str]) -> list[str]:
+        """Passes of Cycles that are not rendered although several lights or ``read`` (what passes of the shot are made
+        from) would read them, each with its reason."""
+        if len(self.lights) < 2 and not read & {"Emit", "Env"}:
+            return []
         reasons = {
             "Emit": "emission (no material emits)",
             "Env": "background (the scene has no world)",
         }
         return [text for name, text in reasons.items() if name in self.empty_passes]
-
-
-def lights_of(scene: bpy.types.Scene) -> list[bpy.types.Object]:
-    """Light objects that render, wherever they are linked or instanced from."""
-    return [
-        item
-        for item in sorted(bpy.data.objects, key=lambda item: item.name_full)
-        if item.type == "LIGHT"
-        and item.users > 0
-        and not item.hide_render
-        and _is_reachable(scene, item)
-    ]
-
-
-def _is_reachable(scene: bpy.types.Scene, item: bpy.types.Object) -> bool:
-    if item.name in scene.objects:
-        return True
-    instanced = {
-        other.instance_collection
-        for other in scene.objects
-        if other.instance_type == "COLLECTION" and other.instance_collection
-    }
-    return any(item.name in collection.all_objects for collection in instanced)
-
-
-def emissive_materials() -> list[bpy.types.Material]:
-    """Materials whose nodes can emit light."""
-    found = []
-    for material in bpy.data.materials:
-        if material.use_nodes and material.node_tree and _emits(material.node_tree, set()):
-            found.append(material)
-    return found
-
-
-def _emits(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
-    if tree.name in seen:
-        return False
-    seen.add(tree.name)
-    for node in tree.nodes:
-        if node.bl_idname in ("ShaderNodeEmission", "ShaderNodeVolumePrincipled"):
-            return True
-        if node.bl_idname == "ShaderNodeBsdfPrincipled":
-            socket = compat.emission_color(node)
-            strength = node.inputs.get("Emission Strength")
-            if socket and (strength is None or strength.is_linked or strength.default_value > 0.0):
-                if socket.is_linked or max(socket.default_value[:3]) > 0.0:
-                    return True
-        if node.bl_idname == "ShaderNodeGroup" and node.node_tree and _emits(node.node_tree, seen):
-            return True
-    return False
-
-
-def noise_causes(scene: bpy.types.Scene, samples: int) -> list[str]:
-    """Why this scene's own light is noisy at few samples, one clause per cause."""
-    causes = []
-    if not compat.is_cycles_available():
-        return causes
-    lights = lights_of(scene)
-    if len(lights) > 1:
-        names = ", ".join(f"'{item.name}'" for item in lights)
-        causes.append(f"{len(lights)} lights (each sample picks one of {names} at random)")
-    for item in lights:
-        light = item.data
-        if light.type == "AREA":
-            causes.append(f"area light '{item.name}' (each sample sees one point of it)")
-        elif light.type == "SUN" and light.angle > 0.0:
-            causes.append(
-                f"sun '{item.name}' with an angle of {math.degrees(light.angle):.2g} degrees (soft shadows)"
-            )
-        elif light.type in ("POINT", "SPOT") and light.shadow_soft_size > 0.0:
-            causes.append(
-                f"{light.type.lower()} light '{item.name}' with a radius of {light.shadow_soft_size:.2g} m "
-                "(soft shadows)"
-            )
-    world = scene.world
-    if world and world.cycles_visibility.diffuse:
-        causes.append("light from the world (each sample sees one direction of it)")
-    if (
-        scene.cycles.max_bounces > 0
-        and scene.cycles.diffuse_bounces + scene.cycles.glossy_bounces > 0
-    ):
-        causes.append("indirect light (each sample follows one path)")
-    emitters = [material.name for material in emissive_materials() if material.users]
-    if emitters:
-        causes.append(f"meshes that emit light ({', '.join(emitters)})")
-    return causes if samples < 64 else []
 
 
 def mean_world_radiance(scene: bpy.types.Scene, folder: str) -> tuple[float, float, float]:
@@ -334,8 +249,7 @@ def compose(plan: LightPlan, renders: list[rendering.Layers], view: str = "") ->
     return color.astype(np.float32)
 
 
-def temporary_folder() -> str:
-    """Folder for Cycles' intermediate pictures; it goes when Blender ends."""
-    folder = os.path.join(bpy.app.tempdir, "aa_resolve")
-    os.makedirs(folder, exist_ok=True)
-    return folder
+def no_light(plan: LightPlan, scene: bpy.types.Scene) -> only_light:
+    """Context in which no light shines, so that shading costs nothing."""
+    every = LightPlan(plan.model, lights_of(scene))
+    return only_light(every, None)

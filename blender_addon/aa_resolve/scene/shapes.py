@@ -8,17 +8,22 @@ from typing import Callable, Iterator, TypeVar
 import bpy
 import numpy as np
 
+from .instances import ObjectIds
+
 _SURFACES = ("MESH", "CURVE", "SURFACE", "META", "FONT")
 Shape = TypeVar("Shape")
 
 
 def visible_shapes(
-    depsgraph: bpy.types.Depsgraph, ids, shown: set[int], read: Callable[[bpy.types.Mesh], Shape]
+    depsgraph: bpy.types.Depsgraph,
+    ids: ObjectIds,
+    shown: set[int],
+    read: Callable[[bpy.types.Mesh], Shape],
 ) -> Iterator[tuple[Shape, np.ndarray, int]]:
     """What ``read`` makes of the mesh, the world matrix (4 x 4, float64) and the id of all that has triangles and
     whose id is among ``shown``.
 
-    ``ids`` is the export's ObjectIds. Hair and volumes have no triangles."""
+    Hair and volumes have no triangles."""
     known: dict[tuple[str, int], Shape | None] = {}
     for instance in depsgraph.object_instances:
         item = instance.object

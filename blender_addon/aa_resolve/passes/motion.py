@@ -1,19 +1,85 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Exact motion from Blender's Vector pass and the cameras' matrices, and where the camera jumps.
+"""Motion since the frame before (pass ``motion``): Blender's Vector pass, made exact by the cameras' matrices.
 
 Positions are pixels of the exported picture, x right, y **down**; motion is current - previous, without jitter."""
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
-from .camera import BACKGROUND_DEPTH, CameraState, Frame, same_camera, sample_positions, unproject
+from ..scene import lighting, rendering
+from ..scene.camera import BACKGROUND_DEPTH, CameraState, Frame, same_camera, sample_positions
+from .base import Pass
+from .exposure import Exposure
+from .geometry import ids_of
 
 # Motion of a pixel whose surface had no place in the previous picture: far outside, so that every temporal
 # method takes it for a disocclusion instead of fetching somebody else's colour.
 NO_PREVIOUS_POSITION_PX = 1.0e6
+
+
+class Motion(Pass):
+    """H x W x 2 pixels, with NO_PREVIOUS_POSITION_PX where Cycles' vector is known to be wrong."""
+
+    name = "motion"
+    cycles = frozenset({"Vector", "IndexOB", "Depth"})
+    from_frame_before = True
+
+    def reads(self, exposure: Exposure) -> frozenset[str]:
+        # With motion vectors Cycles shows only instances that exist in the frames before and after as well.
+        return self.cycles - {"Vector"} if exposure.instances_change else self.cycles
+
+    def planes(self, exposure: Exposure) -> dict[str, np.ndarray]:
+        ids = ids_of(exposure)
+        with exposure.watch.of(self.name):
+            apart = exposure.instances_change
+            exposure.vectors = motion_from_vector(
+                _vectors_apart(exposure) if apart else exposure.main.get("Vector"),
+                exposure.depth,
+                exposure.plan.frame,
+                exposure.offset,
+                exposure.now.camera,
+                exposure.before.camera,
+            )
+        wrong = _is_wrong(exposure, ids)
+        vectors = np.where(wrong[..., None], np.float32(NO_PREVIOUS_POSITION_PX), exposure.vectors)
+        if wrong.any():
+            exposure.notes["motion_invalid"] = {
+                "objects": sorted(set(exposure.plan.ids.names(ids[wrong]).values())),
+                "pixels": int(wrong.sum()),
+                "value": NO_PREVIOUS_POSITION_PX,
+            }
+        return dict(zip(self.facts.channels, np.moveaxis(vectors, -1, 0)))
+
+
+def _vectors_apart(exposure: Exposure) -> np.ndarray:
+    """Vector pass of a render of its own; no place in the picture where that shows something else."""
+    plan = exposure.plan
+    rendering.request_passes(plan.view_layer, {"Vector", "Depth", "IndexOB"})
+    with lighting.no_light(plan.light, plan.scene):
+        layers = rendering.render(plan.scene, plan.view_layer, plan.folder)
+    same = (layers.get("IndexOB") == exposure.main.get("IndexOB")) & (
+        layers.get("Depth") == exposure.main.get("Depth")
+    )
+    return np.where(same, layers.get("Vector"), NO_PREVIOUS_POSITION_PX)
+
+
+def _is_wrong(exposure: Exposure, ids: np.ndarray) -> np.ndarray:
+    """H x W: True where Cycles' vector is known to be wrong.
+
+    Objects that were hidden in the previous frame, instances that were not there, and meshes whose number of
+    vertices changed.
+    """
+    now, before, known = exposure.now, exposure.before, exposure.plan.ids
+    names = {name for name in before.hidden if name not in now.hidden}
+    names |= {
+        name for name, count in now.vertices.items() if before.vertices.get(name, count) != count
+    }
+    indices = [index for index, name in known.table.items() if name in names]
+    index = np.rint(exposure.main.get("IndexOB")[:, :, 0]).astype(np.int64)
+    new = known.of_instances(now.instances - before.instances)
+    lost = (np.abs(exposure.vectors) > NO_PREVIOUS_POSITION_PX / 2.0).any(-1)
+    return np.isin(index, indices) | np.isin(ids, new) | lost
 
 
 def motion_from_vector(
@@ -76,55 +142,3 @@ def background_motion(
     motion[:, :, 1] = y - (1.0 - ndc_y) * 0.5 * frame.height
     motion[~visible] = NO_PREVIOUS_POSITION_PX
     return motion
-
-
-_LOST_SHARE = 0.5  # of the picture
-_DISTANCE_RATIO = 2.0
-_SAME_PLACE_PX = 1.0
-
-
-def cut_between(
-    now: CameraState,
-    before: CameraState,
-    frame: Frame,
-    jitter: tuple[float, float],
-    depth: np.ndarray,
-    motion: np.ndarray | None,
-) -> bool:
-    """True when the camera jumps, so that the previous picture is no history of this one. Within one camera; a change
-    of the camera object is a cut in any case.
-
-    It jumps when it changes its kind, turns by more than half its field of view, or moves so far that more than half
-    of what the picture shows was outside of the previous one, or at rest and at less than half or more than twice its
-    distance. ``motion`` (H x W x 2) counts movements of objects in: a camera that follows something fast does not
-    jump. Without it everything is taken to be at rest."""
-    if now.kind != before.kind:
-        return True
-    if same_camera(now, before):
-        return False
-    turn = now.view[:3, :3] @ before.view[:3, :3].T
-    angle = math.acos(max(-1.0, min(1.0, (np.trace(turn) - 1.0) / 2.0)))
-    limit = math.radians(30.0)
-    if now.kind == "perspective":
-        limit = math.atan(1.0 / min(now.projection[0, 0], now.projection[1, 1]))
-    if angle > limit:
-        return True
-    x, y = sample_positions(frame, *jitter)
-    to_before = before.view @ np.linalg.inv(now.view)
-    points = unproject(x, y, depth.astype(np.float64), frame, now)
-    points = points @ to_before[:3, :3].T + to_before[:3, 3]
-    distance = -points[..., 2]
-    clip = points @ before.projection[[0, 1, 3], :3].T + before.projection[[0, 1, 3], 3]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        resting_x = (clip[..., 0] / clip[..., 2] + 1.0) * 0.5 * frame.width
-        resting_y = (1.0 - clip[..., 1] / clip[..., 2]) * 0.5 * frame.height
-    past_x, past_y = (resting_x, resting_y) if motion is None else (x - motion[..., 0], y - motion[..., 1])
-    lost = ~((past_x >= 0.0) & (past_x <= frame.width) & (past_y >= 0.0) & (past_y <= frame.height))
-    if now.kind == "perspective":
-        resting = np.hypot(past_x - resting_x, past_y - resting_y) < _SAME_PLACE_PX
-        with np.errstate(divide="ignore"):
-            ratio = np.maximum(distance / depth, depth / distance)
-        lost |= resting & ((distance <= 0.0) | (ratio > _DISTANCE_RATIO))
-        if motion is None:
-            lost |= distance <= 0.0
-    return float(lost.mean()) > _LOST_SHARE

@@ -8,20 +8,23 @@ File Output node drops the fourth component of the motion vectors.
 from __future__ import annotations
 
 import os
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import bpy
 import numpy as np
 
-from . import compat, exr
-from .errors import Cancelled, SceneError
+from .. import compat, exr
+from ..errors import Cancelled, SceneError
 
 
 @dataclass
 class Layers:
     """Passes of one render: ``get("Depth")`` is H x W x 1, ``get("Combined", "k03")`` that of a view."""
 
-    planes: dict[tuple[str, str], list[np.ndarray]]  # by pass and view, components in order; views of the file
+    planes: dict[
+        tuple[str, str], list[np.ndarray]
+    ]  # by pass and view, components in order; views of the file
 
     def __post_init__(self) -> None:
         self._stacked: dict[tuple[str, str], np.ndarray] = {}
@@ -151,7 +154,7 @@ def prepare(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> None:
     view_layer.pass_alpha_threshold = 0.5
 
 
-def request_passes(view_layer: bpy.types.ViewLayer, names: set[str]) -> None:
+def request_passes(view_layer: bpy.types.ViewLayer, names: Collection[str]) -> None:
     """Switches on exactly these passes of Cycles (names of compat.PASS_NAMES)."""
     switches = {
         "Depth": "use_pass_z",
@@ -212,24 +215,8 @@ def sample_pixel_area(scene: bpy.types.Scene, samples: int, seed: int) -> None:
     cycles.sample_offset = samples
 
 
-def unlit_albedo(layers: Layers) -> np.ndarray:
-    """Base colour without light (H x W x 3): the denoising albedo less the emission that it contains.
-
-    The sum of the colour passes is no albedo (a Principled shader's glossy colour is white); it only serves where
-    the denoising albedo is empty although a surface was hit (mirrors and clear glass). What only emits keeps its
-    emission as its colour."""
-    albedo = layers.get("Denoising Albedo")
-    nothing = np.zeros_like(albedo)  # passes that are known to be 0 are not rendered
-    emission = layers.get("Emit") if layers.has("Emit") else nothing
-    sky = layers.get("Env") if layers.has("Env") else nothing
-    background = layers.get("Depth")[:, :, :1] >= 1.0e9
-    base = np.maximum(albedo - emission, 0.0)
-    reflects = base.max(axis=-1, keepdims=True) > 1.0e-5
-    colour = np.where(reflects, base, emission)
-    colours = layers.get("DiffCol") + layers.get("TransCol") + layers.get("GlossCol")
-    empty = ~background & (colour.max(axis=-1, keepdims=True) <= 0.0)
-    colour = np.where(empty, np.minimum(colours, 1.0), colour)
-    return np.where(background, sky, colour).astype(np.float32)
-
-
-ALBEDO_PASSES = {"Denoising Albedo", "Emit", "DiffCol", "GlossCol", "TransCol", "Env", "Depth"}
+def temporary_folder() -> str:
+    """Folder for Cycles' intermediate pictures; it goes when Blender ends."""
+    folder = os.path.join(bpy.app.tempdir, "aa_resolve")
+    os.makedirs(folder, exist_ok=True)
+    return folder

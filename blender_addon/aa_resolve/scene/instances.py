@@ -16,10 +16,10 @@ import zlib
 import bpy
 import numpy as np
 
-from . import compat, rendering, subsamples
-from .errors import SceneError
+from ..errors import SceneError
+from .instance_output import CHANNEL, add_output, give_every_mesh_a_material, override_material
+from .rendering import Layers
 
-CHANNEL = "AA Instance"
 _UNUSED = 2147483647  # fills persistent ids up
 _TOLERANCE = (
     1.0e-6  # of Random in [0, 1]: it went through float and, with many samples, through a mean
@@ -45,8 +45,8 @@ class ObjectIds:
         if self.tells_instances:
             view_layer.aovs.add().name = CHANNEL
             view_layer.aovs[CHANNEL].type = "VALUE"
-            _give_every_mesh_a_material()
-            hidden = [material.name for material in bpy.data.materials if not _add_output(material)]
+            give_every_mesh_a_material()
+            hidden = [material.name for material in bpy.data.materials if not add_output(material)]
             if hidden:
                 self.notes.append(
                     f"instances with material {', '.join(hidden)} share one id: its opacity is made inside a node group"
@@ -87,9 +87,7 @@ class ObjectIds:
             self._instances[indices[source]] = values, np.array(ids, np.uint32)
         self._names.update(taken)
 
-    def identify(
-        self, instance: bpy.types.DepsgraphObjectInstance, shown: set[int]
-    ) -> int | None:
+    def identify(self, instance: bpy.types.DepsgraphObjectInstance, shown: set[int]) -> int | None:
         """Id among ``shown`` of an entry of the depsgraph that ``look`` has seen: its own, or its source's where
         instances are not told apart. None where neither is shown."""
         name = instance.object.original.name_full
@@ -105,10 +103,12 @@ class ObjectIds:
         """Ids of instances by (source, random id); those that are not told apart have none."""
         return [self._by_random[key] for key in keys if key in self._by_random]
 
-    def resolve(self, layers: rendering.Layers, view: str = "") -> np.ndarray:
+    def resolve(self, layers: Layers, view: str = "") -> np.ndarray:
         """Ids (H x W uint32) of a render."""
         index = np.rint(layers.get("IndexOB", view)[:, :, 0]).astype(np.int32)
-        strange = index[(index < 0) | (index >= len(self.table))]  # the table counts from 0 without gaps
+        strange = index[
+            (index < 0) | (index >= len(self.table))
+        ]  # the table counts from 0 without gaps
         if strange.size:
             raise SceneError(
                 f"the render shows the object index {strange.min()}, which no object was given: is an object's pass "
@@ -143,9 +143,9 @@ class ObjectIds:
 
     def override(self) -> bpy.types.Material:
         """Override material that keeps instances apart."""
-        material = subsamples.override_material()
+        material = override_material()
         if self.tells_instances:
-            _add_output(material)
+            add_output(material)
         return material
 
 
@@ -161,103 +161,3 @@ def _may_instance(scene: bpy.types.Scene) -> bool:
         if any(modifier.type == "NODES" and modifier.node_group for modifier in item.modifiers):
             return True
     return False
-
-
-def _give_every_mesh_a_material() -> None:
-    """Cycles' default surface has no nodes to put an output in; this is what it looks like."""
-    plain: bpy.types.Material | None = None
-    for mesh in list(bpy.data.meshes) + list(bpy.data.curves) + list(bpy.data.metaballs):
-        if mesh.library is None and not any(mesh.materials):
-            if plain is None:
-                plain = bpy.data.materials.new("AA Resolve Plain")
-                plain.diffuse_color = (0.8, 0.8, 0.8, 1.0)
-            if len(mesh.materials):
-                mesh.materials[0] = plain
-            else:
-                mesh.materials.append(plain)
-
-
-def _add_output(material: bpy.types.Material) -> bool:
-    """Adds the AOV; False when the material's opacity could not be followed."""
-    if material.is_grease_pencil:
-        return True
-    if not material.use_nodes or material.node_tree is None:
-        color = tuple(material.diffuse_color)
-        material.use_nodes = True
-        tree = material.node_tree
-        tree.nodes.clear()
-        diffuse = tree.nodes.new("ShaderNodeBsdfDiffuse")
-        diffuse.inputs["Color"].default_value = color
-        output = tree.nodes.new("ShaderNodeOutputMaterial")
-        tree.links.new(diffuse.outputs[0], output.inputs["Surface"])
-    tree = material.node_tree
-    if any(node.bl_idname == "ShaderNodeOutputAOV" and node.name == CHANNEL for node in tree.nodes):
-        return True
-    output = tree.get_output_node("CYCLES")
-    opacity: float | bpy.types.NodeSocket = 1.0
-    if output is not None and output.inputs["Surface"].is_linked:
-        followed = _opacity(tree, output.inputs["Surface"].links[0].from_socket)
-        if followed is None:
-            return False
-        opacity = followed
-    random = tree.nodes.new("ShaderNodeObjectInfo").outputs["Random"]
-    product = _product(tree, random, opacity)
-    aov = tree.nodes.new("ShaderNodeOutputAOV")
-    aov.name = aov.label = CHANNEL
-    compat.name_aov_output(aov, CHANNEL)
-    if isinstance(product, float):
-        aov.inputs["Value"].default_value = product
-    else:
-        tree.links.new(product, aov.inputs["Value"])
-    return True
-
-
-def _math(tree: bpy.types.NodeTree, operation: str, *values):
-    node = tree.nodes.new("ShaderNodeMath")
-    node.operation = operation
-    for socket, value in zip(node.inputs, values):
-        if isinstance(value, (int, float)):
-            socket.default_value = float(value)
-        else:
-            tree.links.new(value, socket)
-    return node.outputs[0]
-
-
-def _product(tree: bpy.types.NodeTree, a, b):
-    if isinstance(a, float) and isinstance(b, float):
-        return a * b
-    if isinstance(b, float) and b == 1.0:
-        return a
-    return _math(tree, "MULTIPLY", a, b)
-
-
-def _opacity(tree: bpy.types.NodeTree, socket: bpy.types.NodeSocket):
-    """Opacity of a shader as a number or a socket; None where a node group hides it."""
-    node = socket.node
-    if node.bl_idname in ("ShaderNodeBsdfTransparent", "ShaderNodeHoldout"):
-        return 0.0
-    if node.bl_idname == "ShaderNodeBsdfPrincipled":
-        alpha = node.inputs["Alpha"]
-        return alpha.links[0].from_socket if alpha.is_linked else float(alpha.default_value)
-    if node.bl_idname == "NodeReroute":
-        return (
-            _opacity(tree, node.inputs[0].links[0].from_socket) if node.inputs[0].is_linked else 1.0
-        )
-    if node.bl_idname == "ShaderNodeGroup":
-        return None
-    if node.bl_idname in ("ShaderNodeMixShader", "ShaderNodeAddShader"):
-        shaders = [item for item in node.inputs if item.type == "SHADER"]
-        parts = [
-            _opacity(tree, item.links[0].from_socket) if item.is_linked else 0.0 for item in shaders
-        ]
-        if None in parts:
-            return None
-        if parts[0] == parts[1] == 1.0:
-            return 1.0
-        if node.bl_idname == "ShaderNodeAddShader":
-            return _math(tree, "MAXIMUM", *parts)
-        factor = node.inputs[0]
-        weight = factor.links[0].from_socket if factor.is_linked else float(factor.default_value)
-        first = _math(tree, "MULTIPLY", parts[0], _math(tree, "SUBTRACT", 1.0, weight))
-        return _math(tree, "MULTIPLY_ADD", parts[1], weight, first)
-    return 1.0

@@ -17,7 +17,9 @@ from dataclasses import dataclass, field
 
 import bpy
 
-HEADLESS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "headless.py")
+from ..command_line import file_identity
+
+HEADLESS = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "headless.py")
 
 
 @dataclass
@@ -146,8 +148,6 @@ def identity_of_open_file() -> str | None:
 
     Without one the copy's own bytes decide, which differ each time: a scene that may have changed never continues an
     old export unnoticed."""
-    from .headless import file_identity
-
     path = bpy.data.filepath
     if path and not bpy.data.is_dirty and os.path.exists(path):
         return file_identity(path)

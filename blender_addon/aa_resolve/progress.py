@@ -13,7 +13,7 @@ import sys
 from typing import IO
 
 
-class Reporter:
+class Progress:
     """Progress to standard output, as text or JSON lines."""
 
     def __init__(self, as_json: bool) -> None:

@@ -6,23 +6,17 @@ import textwrap
 
 import bpy
 from bl_operators.presets import AddPresetBase
-from bpy.props import PointerProperty
 
-from . import compat, lighting, registry
-from .ui_operators import (
+from .. import compat, registry
+from ..scene.light_sources import noise_causes
+from .operators import (
     AA_RESOLVE_OT_compare,
     AA_RESOLVE_OT_estimate,
     AA_RESOLVE_OT_export,
     AA_RESOLVE_OT_open_report,
-    AAResolvePreferences,
     State,
 )
-from .ui_settings import (
-    AAResolveSettings,
-    add_method_properties,
-    method_property,
-    reads_subsamples,
-)
+from .properties import AAResolveSettings, method_property
 
 _PRESETS = "aa_resolve"
 
@@ -107,7 +101,9 @@ class AA_RESOLVE_PT_main(_Panel, bpy.types.Panel):
             draw_text(layout, context, running.message)
             draw_text(layout, context, "Esc stops; finished frames stay")
             return
-        buttons = layout.grid_flow(columns=0, even_columns=True, align=True)  # one below the other where it is narrow
+        buttons = layout.grid_flow(
+            columns=0, even_columns=True, align=True
+        )  # one below the other where it is narrow
         buttons.operator(AA_RESOLVE_OT_export.bl_idname, icon="RENDER_ANIMATION")
         buttons.operator(AA_RESOLVE_OT_compare.bl_idname, text="Compare", icon="VIEWZOOM")
         buttons.operator(AA_RESOLVE_OT_estimate.bl_idname, icon="TIME")
@@ -154,55 +150,21 @@ class AA_RESOLVE_PT_quality(_Panel, bpy.types.Panel):
         layout.prop(settings, "truth")
         layout.prop(settings, "truth_samples", text="Samples")
         layout.prop(settings, "samples", text="Shading")
-        chosen = [registry.MethodChoice(name) for name in settings.chosen()]
         column = layout.column()
-        column.enabled = bool(registry.required_passes(chosen, "jittered"))
+        column.enabled = settings.applies("jitter")
         column.prop(settings, "jitter")
         column.prop(settings, "period")
         layout.prop(settings, "lighting")
-        if settings.lighting == "noise-free":
+        if settings.applies("ambient"):
             layout.column(heading="Ambient").prop(settings, "use_ambient", text="Own")
             if settings.use_ambient:
                 layout.prop(settings, "ambient", text="Colour")
         else:
-            causes = lighting.noise_causes(context.scene, settings.samples)
+            causes = noise_causes(context.scene, settings.samples)
             if causes:
                 draw_text(layout, context, f"Noisy because of {'; '.join(causes)}")
         row = layout.row()
-        row.enabled = reads_subsamples(settings.chosen())
+        row.enabled = settings.applies("pattern")
         row.prop(settings, "pattern", text="Pattern")
         layout.prop(settings, "color_type", text="Type")
         layout.column(heading="Old Shot").prop(settings, "overwrite", text="Replace")
-
-
-_CLASSES = (
-    AAResolveSettings,
-    AAResolvePreferences,
-    AA_RESOLVE_OT_export,
-    AA_RESOLVE_OT_estimate,
-    AA_RESOLVE_OT_compare,
-    AA_RESOLVE_OT_open_report,
-    AA_RESOLVE_MT_presets,
-    AA_RESOLVE_OT_add_preset,
-    AA_RESOLVE_PT_main,
-    AA_RESOLVE_PT_methods,
-    AA_RESOLVE_PT_quality,
-)
-
-
-def register() -> None:
-    """Registers every class and the scene's settings."""
-    add_method_properties()
-    for item in _CLASSES:
-        bpy.utils.register_class(item)
-    bpy.types.Scene.aa_resolve = PointerProperty(type=AAResolveSettings)
-
-
-def unregister() -> None:
-    """Ends a running job and takes everything away again."""
-    if State.running is not None:
-        State.running.cancel()
-        State.running = None
-    del bpy.types.Scene.aa_resolve
-    for item in reversed(_CLASSES):
-        bpy.utils.unregister_class(item)

@@ -14,13 +14,14 @@ from bpy.props import StringProperty
 
 from . import job
 
+ADDON = __package__.rpartition(".")[0]  # as Blender knows it; the room of this file is below
 _TIMER_SECONDS = 0.2
 
 
 class AAResolvePreferences(bpy.types.AddonPreferences):
     """Where the resolver lies."""
 
-    bl_idname = __package__
+    bl_idname = ADDON
     resolver: StringProperty(
         name="aaresolve",
         description="The resolver's program; empty: the one on the PATH",
@@ -32,7 +33,7 @@ class AAResolvePreferences(bpy.types.AddonPreferences):
 
 
 def _preferences() -> AAResolvePreferences | None:
-    addon = bpy.context.preferences.addons.get(__package__)
+    addon = bpy.context.preferences.addons.get(ADDON)
     return addon.preferences if addon else None
 
 

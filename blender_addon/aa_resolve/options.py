@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What one option of the exporter is: a field of a dataclass that makes a flag of the command line, properties of the
+panel, and the words by which the panel's job says them to its child process. The options themselves: settings.py."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from .errors import UsageError
+
+_SAME = object()  # without the flag the command line holds the default of the field
+Span = tuple[float, float]  # least and largest value
+
+
+@dataclass(frozen=True)
+class Widget:
+    """One property of the panel. The type of its default decides what it is: a switch, a number, a path, a choice
+    where it has items, a size, a colour."""
+
+    label: str
+    text: str  # the tooltip
+    default: object = _SAME
+    name: str = ""  # of the property, where it is not the field's
+    subtype: str = "NONE"  # Blender's
+    # Value, label and tooltip of a choice, where they are not the choices of the option.
+    items: tuple[tuple[str, str, str], ...] = ()
+
+    def default_for(self, item: dataclasses.Field) -> Any:
+        """Its own default, else that of the option's field."""
+        return item.default if self.default is _SAME else self.default
+
+
+@dataclass(frozen=True)
+class Option:
+    """All that is known of one option beside its type and default, which are the field's."""
+
+    flag: str
+    help: str
+    metavar: str | tuple[str, ...] | None = None  # one name per value
+    number: type | None = None  # int or float; texts otherwise
+    choices: Mapping[str, tuple[str, str]] = field(default_factory=dict)  # value -> label, tooltip
+    span: Span | None = None  # refused outside
+    unsaid: object = _SAME  # what the command line holds without the flag, if not the default
+    repeated: bool = False  # the flag may come again
+    decides_content: bool = True  # another value makes other files
+    changed: str = ""  # how a change is named when an export resumes, if not by the flag
+    panel: tuple[Widget, ...] = ()
+    # What stands behind the flag where the panel says it, None where it does not; by default the property's value.
+    words: Callable[[Any], list[str] | None] | None = None
+    applies: Callable[[Any], bool] = lambda _panel: True  # has an effect with what the panel holds
+
+
+def option(flag: str, help: str, *, default: object = dataclasses.MISSING, **known) -> Any:
+    """A field of a dataclass that is an option; ``known`` are members of Option."""
+    return field(default=default, metadata={"option": Option(flag, help, **known)})
+
+
+def options_of(table: type) -> Iterator[tuple[dataclasses.Field, Option]]:
+    """Fields of a dataclass that are options, in their order."""
+    for item in dataclasses.fields(table):
+        if "option" in item.metadata:
+            yield item, item.metadata["option"]
+
+
+def add_flags(parser: argparse.ArgumentParser, table: type) -> None:
+    """One flag per option; parsed values carry the names of the fields."""
+    for item, known in options_of(table):
+        default = item.default if known.unsaid is _SAME else known.unsaid
+        more: dict[str, Any] = {"dest": item.name, "help": known.help}
+        if isinstance(default, bool):
+            parser.add_argument(known.flag, action=f"store_{not default}".lower(), **more)
+            continue
+        if default is dataclasses.MISSING:
+            more["required"] = True
+        else:
+            more["default"] = default
+        if known.repeated:
+            more["action"] = "append"
+        if known.number is not None:
+            more["type"] = known.number
+        if known.choices:
+            more["choices"] = tuple(known.choices)
+        if isinstance(known.metavar, tuple):
+            more["nargs"] = len(known.metavar)
+        parser.add_argument(known.flag, metavar=known.metavar, **more)
+
+
+def check_spans(values: Mapping[str, Any], table: type) -> None:
+    """Raises UsageError for a number outside of its option's span; ``values`` by the names of the fields."""
+    for item, known in options_of(table):
+        if known.span is None or values[item.name] is None:
+            continue
+        found = values[item.name]
+        low, high = known.span
+        for value in found if isinstance(found, (list, tuple)) else (found,):
+            if not low <= value <= high:
+                raise UsageError(f"{known.flag}: expected {low} to {high}, found {value}")
+
+
+def words_of(table: type, panel, **given: list[str]) -> list[str]:
+    """The command line for what a panel holds; ``given`` replaces the words of some fields."""
+    said: list[str] = []
+    for item, known in options_of(table):
+        if not (known.panel or known.words) or not known.applies(panel):
+            continue
+        words = given.get(item.name) or (known.words or _own_words(item.name))(panel)
+        if words is not None:
+            said += [known.flag, *words]
+    return said
+
+
+def _own_words(name: str) -> Callable[[Any], list[str] | None]:
+    """The property of that name as it stands; a switch is said by its flag alone."""
+
+    def words(panel) -> list[str] | None:
+        value = getattr(panel, name)
+        if isinstance(value, bool):
+            return [] if value else None
+        return [str(value)]
+
+    return words

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From the open scene to a plan: the scene is checked, brought (in memory) to the light model, and every pass that it
+cannot need is left out, with a note that says why."""
+
+from __future__ import annotations
+
+import bpy
+
+from . import jitter, registry
+from .errors import SceneError
+from .passes.geometry import ObjectId
+from .passes.subsamples import are_shaded
+from .passes.table import passes_named
+from .plan import Plan
+from .progress import Progress
+from .scene import camera as cam
+from .scene import instances, lighting, movement, rendering, suitability, surfaces
+from .scene.cuts import CameraCuts
+from .settings import Settings
+
+
+def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) -> Plan:
+    """Checks the scene, brings it to the light model and says what is left out, and why.
+
+    Raises SceneError for what a shot cannot hold."""
+    view_layer, notes = suitability.refuse_unsuitable(scene, settings.view_layer)
+    if settings.resolution:
+        scene.render.resolution_x, scene.render.resolution_y = settings.resolution
+        scene.render.resolution_percentage = 100
+    frame = cam.frame_of(scene)
+    cuts = CameraCuts(scene)
+    cuts.at(settings.frames[0])
+    if settings.jitter_projection == "pre":
+        _refuse_other_than_perspective(cuts, settings.frames)
+    suitability.show_what_renders(scene)
+    motion = movement.find_motion(scene, settings.frames, frame, cuts)
+    passes_of = {"frames": set(settings.passes), "centre": set(settings.centre_passes)}
+    left_out = _drop_what_rests(passes_of, motion) if motion.static else []
+    wanted = passes_of["frames"] | passes_of["centre"]
+    passes = passes_named(wanted)
+    cutout = surfaces.has_cutouts()
+    if registry.reads_subsamples(wanted) and not are_shaded(passes):
+        if cutout is None:
+            left_out.append(
+                "shading of sub-samples (override material: no cut-outs, no displacement)"
+            )
+        else:
+            notes.append(
+                f"sub-samples use the real materials: '{cutout}' has cut-outs or displacement"
+            )
+    if any(item.from_meshes for item in passes):
+        notes += surfaces.notes_on_edges()
+    notes += surfaces.semi_transparent_note()
+    scene.frame_set(settings.frames[0])
+    rendering.prepare(scene, view_layer)
+    folder = rendering.temporary_folder()
+    light = lighting.set_up(scene, settings.lighting, settings.ambient, folder)
+    lighting.check_visibility_animation(light)
+    left_out += light.left_out(frozenset().union(*(item.cycles for item in passes)))
+    ids = instances.ObjectIds(scene, view_layer, settings.instance_ids)
+    if settings.instance_ids and not ids.tells_instances and ObjectId.name in wanted:
+        left_out.append("ids of instances (nothing is instanced)")
+    if left_out:
+        notes.append("left out: " + "; ".join(left_out))
+    for note in notes + light.notes + ids.notes:
+        progress.say("note", f"note: {note}", note=note)
+    positions = jitter.pattern_positions(settings.pattern)
+    plan = Plan(
+        scene,
+        settings,
+        view_layer,
+        frame,
+        cuts,
+        passes_of,
+        motion.static,
+        cutout,
+        positions,
+        light,
+        ids,
+        folder,
+    )
+    known = sorted(plan.passes)
+    progress.say("plan", f"passes: {', '.join(known)}", passes=known, static=plan.static)
+    return plan
+
+
+def _refuse_other_than_perspective(cuts: CameraCuts, frames: list[int]) -> None:
+    for number in frames:
+        if cuts.at(number).data.type != "PERSP":
+            raise SceneError(
+                f"--jitter-projection pre: camera '{cuts.at(number).name}' is not a perspective one, "
+                "and the error that it reproduces is one of perspective"
+            )
+
+
+def _drop_what_rests(passes_of: dict[str, set[str]], motion: movement.Motion) -> list[str]:
+    """Takes the passes out that say nothing of a shot at rest; returns what was left out."""
+    left_out = []
+    for item in passes_named(passes_of["frames"] | passes_of["centre"]):
+        if item.from_frame_before:
+            left_out.append(
+                f"{item.name} ({motion.reason}: the shot is static, one truth serves all frames)"
+            )
+            for passes in passes_of.values():
+                passes.discard(item.name)
+    return left_out

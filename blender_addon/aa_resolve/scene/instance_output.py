@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The output (AOV) of every material that tells instances apart: Object Info > Random, weighted by the opacity.
+
+Outputs add up along a ray that passes cut-outs; without the weight a leaf's hole would add the leaf's number to that
+of what shows through."""
+
+from __future__ import annotations
+
+import bpy
+
+from .. import compat
+
+CHANNEL = "AA Instance"
+
+
+def override_material() -> bpy.types.Material:
+    """A surface that neither reflects nor emits: only its geometry is of interest."""
+    name = "AA Resolve Geometry"
+    material = bpy.data.materials.get(name)
+    if material is None:
+        material = bpy.data.materials.new(name)
+        material.use_nodes = True
+        tree = material.node_tree
+        tree.nodes.clear()
+        emission = tree.nodes.new("ShaderNodeEmission")
+        emission.inputs["Strength"].default_value = 0.0
+        output = tree.nodes.new("ShaderNodeOutputMaterial")
+        tree.links.new(emission.outputs[0], output.inputs["Surface"])
+    return material
+
+
+def give_every_mesh_a_material() -> None:
+    """Cycles' default surface has no nodes to put an output in; this is what it looks like."""
+    plain: bpy.types.Material | None = None
+    for mesh in list(bpy.data.meshes) + list(bpy.data.curves) + list(bpy.data.metaballs):
+        if mesh.library is None and not any(mesh.materials):
+            if plain is None:
+                plain = bpy.data.materials.new("AA Resolve Plain")
+                plain.diffuse_color = (0.8, 0.8, 0.8, 1.0)
+            if len(mesh.materials):
+                mesh.materials[0] = plain
+            else:
+                mesh.materials.append(plain)
+
+
+def add_output(material: bpy.types.Material) -> bool:
+    """Adds the AOV; False when the material's opacity could not be followed."""
+    if material.is_grease_pencil:
+        return True
+    if not material.use_nodes or material.node_tree is None:
+        color = tuple(material.diffuse_color)
+        material.use_nodes = True
+        tree = material.node_tree
+        tree.nodes.clear()
+        diffuse = tree.nodes.new("ShaderNodeBsdfDiffuse")
+        diffuse.inputs["Color"].default_value = color
+        output = tree.nodes.new("ShaderNodeOutputMaterial")
+        tree.links.new(diffuse.outputs[0], output.inputs["Surface"])
+    tree = material.node_tree
+    if any(node.bl_idname == "ShaderNodeOutputAOV" and node.name == CHANNEL for node in tree.nodes):
+        return True
+    output = tree.get_output_node("CYCLES")
+    opacity: float | bpy.types.NodeSocket = 1.0
+    if output is not None and output.inputs["Surface"].is_linked:
+        followed = _opacity(tree, output.inputs["Surface"].links[0].from_socket)
+        if followed is None:
+            return False
+        opacity = followed
+    random = tree.nodes.new("ShaderNodeObjectInfo").outputs["Random"]
+    product = _product(tree, random, opacity)
+    aov = tree.nodes.new("ShaderNodeOutputAOV")
+    aov.name = aov.label = CHANNEL
+    compat.name_aov_output(aov, CHANNEL)
+    if isinstance(product, float):
+        aov.inputs["Value"].default_value = product
+    else:
+        tree.links.new(product, aov.inputs["Value"])
+    return True
+
+
+def _math(tree: bpy.types.NodeTree, operation: str, *values):
+    node = tree.nodes.new("ShaderNodeMath")
+    node.operation = operation
+    for socket, value in zip(node.inputs, values):
+        if isinstance(value, (int, float)):
+            socket.default_value = float(value)
+        else:
+            tree.links.new(value, socket)
+    return node.outputs[0]
+
+
+def _product(tree: bpy.types.NodeTree, a, b):
+    if isinstance(a, float) and isinstance(b, float):
+        return a * b
+    if isinstance(b, float) and b == 1.0:
+        return a
+    return _math(tree, "MULTIPLY", a, b)
+
+
+def _opacity(tree: bpy.types.NodeTree, socket: bpy.types.NodeSocket):
+    """Opacity of a shader as a number or a socket; None where a node group hides it."""
+    node = socket.node
+    if node.bl_idname in ("ShaderNodeBsdfTransparent", "ShaderNodeHoldout"):
+        return 0.0
+    if node.bl_idname == "ShaderNodeBsdfPrincipled":
+        alpha = node.inputs["Alpha"]
+        return alpha.links[0].from_socket if alpha.is_linked else float(alpha.default_value)
+    if node.bl_idname == "NodeReroute":
+        return (
+            _opacity(tree, node.inputs[0].links[0].from_socket) if node.inputs[0].is_linked else 1.0
+        )
+    if node.bl_idname == "ShaderNodeGroup":
+        return None
+    if node.bl_idname in ("ShaderNodeMixShader", "ShaderNodeAddShader"):
+        shaders = [item for item in node.inputs if item.type == "SHADER"]
+        parts = [
+            _opacity(tree, item.links[0].from_socket) if item.is_linked else 0.0 for item in shaders
+        ]
+        if None in parts:
+            return None
+        if parts[0] == parts[1] == 1.0:
+            return 1.0
+        if node.bl_idname == "ShaderNodeAddShader":
+            return _math(tree, "MAXIMUM", *parts)
+        factor = node.inputs[0]
+        weight = factor.links[0].from_socket if factor.is_linked else float(factor.default_value)
+        first = _math(tree, "MULTIPLY", parts[0], _math(tree, "SUBTRACT", 1.0, weight))
+        return _math(tree, "MULTIPLY_ADD", parts[1], weight, first)
+    return 1.0

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What shines in a scene, and why its own light is noisy at few samples."""
+
+from __future__ import annotations
+
+import math
+
+import bpy
+
+from .. import compat
+
+
+def lights_of(scene: bpy.types.Scene) -> list[bpy.types.Object]:
+    """Light objects that render, wherever they are linked or instanced from."""
+    return [
+        item
+        for item in sorted(bpy.data.objects, key=lambda item: item.name_full)
+        if item.type == "LIGHT"
+        and item.users > 0
+        and not item.hide_render
+        and _is_reachable(scene, item)
+    ]
+
+
+def _is_reachable(scene: bpy.types.Scene, item: bpy.types.Object) -> bool:
+    if item.name in scene.objects:
+        return True
+    instanced = {
+        other.instance_collection
+        for other in scene.objects
+        if other.instance_type == "COLLECTION" and other.instance_collection
+    }
+    return any(item.name in collection.all_objects for collection in instanced)
+
+
+def emissive_materials() -> list[bpy.types.Material]:
+    """Materials whose nodes can emit light."""
+    found = []
+    for material in bpy.data.materials:
+        if material.use_nodes and material.node_tree and _emits(material.node_tree, set()):
+            found.append(material)
+    return found
+
+
+def _emits(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
+    if tree.name in seen:
+        return False
+    seen.add(tree.name)
+    for node in tree.nodes:
+        if node.bl_idname in ("ShaderNodeEmission", "ShaderNodeVolumePrincipled"):
+            return True
+        if node.bl_idname == "ShaderNodeBsdfPrincipled":
+            socket = compat.emission_color(node)
+            strength = node.inputs.get("Emission Strength")
+            if socket and (strength is None or strength.is_linked or strength.default_value > 0.0):
+                if socket.is_linked or max(socket.default_value[:3]) > 0.0:
+                    return True
+        if node.bl_idname == "ShaderNodeGroup" and node.node_tree and _emits(node.node_tree, seen):
+            return True
+    return False
+
+
+def noise_causes(scene: bpy.types.Scene, samples: int) -> list[str]:
+    """Why this scene's own light is noisy at few samples, one clause per cause."""
+    causes = []
+    if not compat.is_cycles_available():
+        return causes
+    lights = lights_of(scene)
+    if len(lights) > 1:
+        names = ", ".join(f"'{item.name}'" for item in lights)
+        causes.append(f"{len(lights)} lights (each sample picks one of {names} at random)")
+    for item in lights:
+        light = item.data
+        if light.type == "AREA":
+            causes.append(f"area light '{item.name}' (each sample sees one point of it)")
+        elif light.type == "SUN" and light.angle > 0.0:
+            causes.append(
+                f"sun '{item.name}' with an angle of {math.degrees(light.angle):.2g} degrees (soft shadows)"
+            )
+        elif light.type in ("POINT", "SPOT") and light.shadow_soft_size > 0.0:
+            causes.append(
+                f"{light.type.lower()} light '{item.name}' with a radius of {light.shadow_soft_size:.2g} m "
+                "(soft shadows)"
+            )
+    world = scene.world
+    if world and world.cycles_visibility.diffuse:
+        causes.append("light from the world (each sample sees one direction of it)")
+    if (
+        scene.cycles.max_bounces > 0
+        and scene.cycles.diffuse_bounces + scene.cycles.glossy_bounces > 0
+    ):
+        causes.append("indirect light (each sample follows one path)")
+    emitters = [material.name for material in emissive_materials() if material.users]
+    if emitters:
+        causes.append(f"meshes that emit light ({', '.join(emitters)})")
+    return causes if samples < 64 else []

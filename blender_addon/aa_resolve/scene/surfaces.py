@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfaces that are not what their meshes say: cut-outs, displacement, half transparency, hair."""
+
+from __future__ import annotations
+
+import bpy
+
+from .. import compat
+
+
+def has_cutouts() -> str | None:
+    """Name of a material through which a camera ray can pass, or that moves the surface it is on; else None.
+
+    Both are lost under an override material."""
+    for item in bpy.data.objects:
+        if item.hide_render:
+            continue
+        for slot in item.material_slots:
+            material = slot.material
+            if (
+                material
+                and material.use_nodes
+                and material.node_tree
+                and _is_see_through(material.node_tree, set())
+            ):
+                return material.name
+    return None
+
+
+def _is_see_through(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
+    if tree.name in seen:
+        return False
+    seen.add(tree.name)
+    for node in tree.nodes:
+        if node.bl_idname in ("ShaderNodeBsdfTransparent", "ShaderNodeHoldout"):
+            return True
+        if node.bl_idname == "ShaderNodeBsdfPrincipled":
+            alpha = node.inputs["Alpha"]
+            if alpha.is_linked or alpha.default_value < 1.0:
+                return True
+        if node.bl_idname == "ShaderNodeOutputMaterial" and node.inputs["Displacement"].is_linked:
+            return True
+        if (
+            node.bl_idname == "ShaderNodeGroup"
+            and node.node_tree
+            and _is_see_through(node.node_tree, seen)
+        ):
+            return True
+    return False
+
+
+def notes_on_edges() -> list[str]:
+    """Sentences about surfaces whose edges are not those of a mesh."""
+    notes = []
+    hairy = [
+        item.name
+        for item in bpy.data.objects
+        if not item.hide_render
+        and (
+            item.type == "CURVES"
+            or any(
+                system.settings.type == "HAIR" and system.settings.render_type == "PATH"
+                for system in item.particle_systems
+            )
+        )
+    ]
+    if hairy:
+        notes.append(f"strands of {', '.join(hairy)} have no edges: they are no triangles")
+    displaced = [
+        material.name
+        for material in bpy.data.materials
+        if material.users
+        and material.use_nodes
+        and material.node_tree
+        and compat.displacement_method(material) != "BUMP"
+        and any(
+            node.bl_idname == "ShaderNodeOutputMaterial" and node.inputs["Displacement"].is_linked
+            for node in material.node_tree.nodes
+        )
+    ]
+    if displaced:
+        notes.append(
+            f"edges of {', '.join(displaced)} are those before displacement, which only the renderer knows"
+        )
+    return notes
+
+
+def semi_transparent_note() -> list[str]:
+    """Sentences about materials whose alpha is neither 0 nor 1: one sample picks a layer at random."""
+    notes = []
+    for material in bpy.data.materials:
+        if not (material.use_nodes and material.node_tree and material.users):
+            continue
+        for node in material.node_tree.nodes:
+            if node.bl_idname == "ShaderNodeBsdfPrincipled":
+                alpha = node.inputs["Alpha"]
+                if not alpha.is_linked and 0.0 < alpha.default_value < 1.0:
+                    notes.append(
+                        f"material '{material.name}' is half transparent (alpha {alpha.default_value:.2g}): noisy at "
+                        "few samples; its geometry counts as solid from alpha 0.5"
+                    )
+    return notes
