@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "image/error.h"
+#include "image/io.h"
 
 namespace aa {
 

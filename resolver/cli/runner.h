@@ -9,6 +9,7 @@
 #include "report/results.h"
 #include "shot/manifest.h"
 #include "shot/reader.h"
+#include "image/io.h"
 
 namespace aa {
 

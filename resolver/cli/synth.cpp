@@ -8,6 +8,8 @@
 #include "image/error.h"
 #include "methods/method.h"
 #include "shot/patterns.h"
+#include "shot/manifest.h"
+#include "methods/spec.h"
 
 namespace aa {
 namespace {

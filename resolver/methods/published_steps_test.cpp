@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "methods/method.h"
+#include "methods/spec.h"
 
 namespace aa {
 namespace {

@@ -7,6 +7,7 @@
 #include "image/plane.h"
 #include "report/colour_map.h"
 #include "report/gallery.h"
+#include "image/io.h"
 
 namespace aa {
 

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "methods/method.h"
+#include "methods/spec.h"
 
 namespace {
 using namespace aa;

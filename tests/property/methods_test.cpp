@@ -3,6 +3,7 @@
 
 #include "frames.h"
 #include "methods/method.h"
+#include "methods/spec.h"
 
 namespace aa::testing {
 namespace {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "frames.h"
+#include "methods/spec.h"
 
 namespace aa::testing {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "frames.h"
 #include "methods/asymmetry.h"
+#include "methods/spec.h"
 
 namespace aa::testing {
 namespace {

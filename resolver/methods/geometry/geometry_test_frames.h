@@ -8,6 +8,7 @@
 
 #include "methods/geometry/rsaa_learn.h"
 #include "methods/method.h"
+#include "methods/spec.h"
 
 namespace aa::testing {
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "image/error.h"
+#include "methods/spec.h"
 
 namespace aa {
 namespace {

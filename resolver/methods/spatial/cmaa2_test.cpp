@@ -7,6 +7,7 @@
 #include "image/error.h"
 #include "methods/method.h"
 #include "methods/spatial/spatial_testing.h"
+#include "methods/spec.h"
 
 namespace aa {
 namespace {

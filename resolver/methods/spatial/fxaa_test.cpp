@@ -9,6 +9,7 @@
 #include "methods/method.h"
 #include "methods/spatial/fxaa_reference.h"
 #include "methods/spatial/spatial_testing.h"
+#include "methods/spec.h"
 
 namespace aa {
 namespace {

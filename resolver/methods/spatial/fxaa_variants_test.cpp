@@ -6,6 +6,7 @@
 #include "image/error.h"
 #include "methods/spatial/fxaa.h"
 #include "methods/spatial/spatial_testing.h"
+#include "methods/spec.h"
 
 namespace aa {
 namespace {

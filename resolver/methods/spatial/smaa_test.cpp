@@ -9,6 +9,7 @@
 #include "methods/spatial/smaa_areas.h"
 #include "methods/spatial/smaa_reference.h"
 #include "methods/spatial/spatial_testing.h"
+#include "methods/spec.h"
 
 namespace aa {
 namespace {

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "methods/method.h"
+#include "methods/spec.h"
 
 namespace aa::testing {
 

@@ -10,6 +10,7 @@
 #include "shot/check/check.h"
 #include "shot/jitter.h"
 #include "shot/writer.h"
+#include "shot/manifest.h"
 
 namespace aa {
 namespace {

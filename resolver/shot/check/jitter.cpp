@@ -1,5 +1,7 @@
 #include "shot/check/jitter.h"
 
+#include "shot/manifest.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>

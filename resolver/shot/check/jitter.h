@@ -7,6 +7,7 @@
 // shorter, never turn it.
 #pragma once
 #include "shot/check/check.h"
+#include "shot/manifest.h"
 
 namespace aa {
 

@@ -10,6 +10,7 @@
 #include "shot/patterns.h"
 #include "shot/synth/scenes.h"
 #include "shot/writer.h"
+#include "shot/manifest.h"
 
 namespace aa {
 using glm::dvec2;

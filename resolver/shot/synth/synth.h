@@ -14,6 +14,7 @@
 #include "shot/frame.h"
 #include "shot/jitter.h"
 #include "shot/synth/coverage.h"
+#include "shot/manifest.h"
 
 namespace aa {
 
