@@ -20,7 +20,7 @@ __attribute__((flatten)) void decodeRows(const ColourArgs& a, int y0, int y1) {
             for (int x = 0; x < a.width; x += N<R>) {
                 const long o = long(y) * a.stride + x;
                 const R shown = saturate(load<R>(a.in.c[c] + o));
-                store(a.display.srgb ? srgb_decode(shown) : shown, a.out.c[c] + o);
+                store(a.display.srgb ? srgbDecode(shown) : shown, a.out.c[c] + o);
             }
 }
 }  // namespace AA_ARCH

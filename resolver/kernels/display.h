@@ -7,7 +7,7 @@
 namespace AA_ARCH {
 
 template <class R>
-AA_INLINE R tone_map(R x, int kind) {
+AA_INLINE R toneMapped(R x, int kind) {
     using T = Elem<R>;
     const R one(T(1));
     if (kind == 1) return x / (one + x);  // Reinhard
@@ -20,8 +20,8 @@ AA_INLINE R display(const aa::DisplayArgs& d, R c) {
     using T = Elem<R>;
     // max(0, NaN) == 0; the finite ceiling keeps Inf / Inf out of the tone maps (their value is 1 long before it).
     const R x = min(max(R(T(0)), c * R(T(d.scale))), R(T(1e15)));
-    const R shown = min(max(R(T(0)), tone_map(x, d.toneMap)), R(T(1)));
-    return d.srgb ? srgb_encode(shown) : shown;
+    const R shown = min(max(R(T(0)), toneMapped(x, d.toneMap)), R(T(1)));
+    return d.srgb ? srgbEncode(shown) : shown;
 }
 template <class R>
 AA_INLINE vec3<R> display(const aa::DisplayArgs& d, vec3<R> c) {

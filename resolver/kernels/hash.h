@@ -6,7 +6,7 @@ namespace AA_ARCH {
 
 // A bijection of 32-bit words whose output bits each depend on every input bit (Wellons 2018, lowbias32).
 template <class U>
-AA_INLINE U mixed_bits(U h) {
+AA_INLINE U mixedBits(U h) {
     h ^= h >> 16;
     h *= 0x7feb352du;
     h ^= h >> 15;
@@ -14,20 +14,20 @@ AA_INLINE U mixed_bits(U h) {
     return h ^ (h >> 16);
 }
 enum class NoiseStream : uint32_t { historyDither, motionBlur };  // drawn independently
-AA_INLINE uint32_t noise_seed(NoiseStream stream, uint32_t frame, uint32_t row) {
-    return mixed_bits(mixed_bits(frame * 2u + uint32_t(stream)) + row);
+AA_INLINE uint32_t noiseSeed(NoiseStream stream, uint32_t frame, uint32_t row) {
+    return mixedBits(mixedBits(frame * 2u + uint32_t(stream)) + row);
 }
 // In [0, 1), multiples of 2^-24, for counters first, first + 1, ... in the lanes.
 template <class R>
 AA_INLINE R noise(uint32_t seed, uint32_t first) {
     using T = Elem<R>;
     if constexpr (N<R> == 1)
-        return R(T(mixed_bits(seed + first) >> 8) * T(0x1p-24));
+        return R(T(mixedBits(seed + first) >> 8) * T(0x1p-24));
     else {
-        typename words_of<N<R>>::type counter;
+        typename WordsOf<N<R>>::type counter;
         for (int i = 0; i < N<R>; i++) counter[i] = first + uint32_t(i);
-        const auto h = mixed_bits(counter + seed) >> 8;
-        return R(__builtin_convertvector(typename ints_of<N<R>>::type(h), typename R::V)) * R(T(0x1p-24));
+        const auto h = mixedBits(counter + seed) >> 8;
+        return R(__builtin_convertvector(typename IntsOf<N<R>>::type(h), typename R::V)) * R(T(0x1p-24));
     }
 }
 

@@ -27,17 +27,17 @@ namespace AA_ARCH {
 
 // A struct of its own: GCC 12 loses a dependent vector_size on a typedef inside the class that overloads operators.
 template <class T, int W>
-struct vec_of {
+struct VecOf {
     typedef T type __attribute__((vector_size(W * sizeof(T))));
     typedef T unaligned __attribute__((vector_size(W * sizeof(T)), aligned(sizeof(T)), may_alias));
 };
 template <int W>
-struct ints_of {
+struct IntsOf {
     typedef int32_t type __attribute__((vector_size(W * 4)));
     typedef int32_t unaligned __attribute__((vector_size(W * 4), aligned(4), may_alias));
 };
 template <int W>
-struct words_of {
+struct WordsOf {
     typedef uint32_t type __attribute__((vector_size(W * 4)));
 };
 
@@ -48,7 +48,7 @@ inline constexpr bool kZmm = std::is_same_v<T, float>&& W == 16;
 #endif
 
 // a < b ? a : b and a > b ? a : b: one instruction, which GCC 12 misses where an operand is constant.
-template <class T, int W, class V = typename vec_of<T, W>::type>
+template <class T, int W, class V = typename VecOf<T, W>::type>
 AA_INLINE V least(V a, V b) {
     if constexpr (std::is_same_v<T, float> && W == 4) return (V)_mm_min_ps((__m128)a, (__m128)b);
 #ifdef __AVX2__
@@ -59,7 +59,7 @@ AA_INLINE V least(V a, V b) {
 #endif
     return a < b ? a : b;
 }
-template <class T, int W, class V = typename vec_of<T, W>::type>
+template <class T, int W, class V = typename VecOf<T, W>::type>
 AA_INLINE V greatest(V a, V b) {
     if constexpr (std::is_same_v<T, float> && W == 4) return (V)_mm_max_ps((__m128)a, (__m128)b);
 #ifdef __AVX2__
@@ -73,9 +73,9 @@ AA_INLINE V greatest(V a, V b) {
 
 template <class T, int W>
 struct Lanes {
-    using V = typename vec_of<T, W>::type;
-    using Vu = typename vec_of<T, W>::unaligned;
-    using Bits = typename ints_of<W>::type;  // meaningful for T = float
+    using V = typename VecOf<T, W>::type;
+    using Vu = typename VecOf<T, W>::unaligned;
+    using Bits = typename IntsOf<W>::type;  // meaningful for T = float
     V v;
     Lanes() = default;
     AA_INLINE Lanes(V a) : v(a) {}
@@ -130,23 +130,23 @@ struct Lanes {
 };
 
 template <class R>
-struct lane_traits {
+struct LaneTraits {
     using T = R;
     using Mask = bool;
     static constexpr int n = 1;
 };
 template <class T_, int W>
-struct lane_traits<Lanes<T_, W>> {
+struct LaneTraits<Lanes<T_, W>> {
     using T = T_;
     using Mask = decltype(Lanes<T_, W>{}.v < Lanes<T_, W>{}.v);
     static constexpr int n = W;
 };
 template <class R>
-inline constexpr int N = lane_traits<R>::n;  // pixels per value
+inline constexpr int N = LaneTraits<R>::n;  // pixels per value
 template <class R>
-using Elem = typename lane_traits<R>::T;
+using Elem = typename LaneTraits<R>::T;
 template <class R>
-using Mask = typename lane_traits<R>::Mask;
+using Mask = typename LaneTraits<R>::Mask;
 
 AA_INLINE float min(float a, float b) { return b < a ? b : a; }
 AA_INLINE float max(float a, float b) { return a < b ? b : a; }
@@ -177,7 +177,7 @@ template <class M>
 requires(!std::is_same_v<M, bool>) AA_INLINE M negate(M a) { return ~a; }
 // Bit i set when lane i of a mask is set.
 template <class R>
-AA_INLINE unsigned mask_bits(Mask<R> m) {
+AA_INLINE unsigned maskBits(Mask<R> m) {
     if constexpr (N<R> == 1) return m ? 1u : 0u;
 #ifdef __AVX2__
     else if constexpr (std::is_same_v<R, Lanes<float, 8>>)
@@ -240,7 +240,7 @@ AA_INLINE R iota() {
     }
 }
 template <class R>
-AA_INLINE void to_ints(R a, int* k) {
+AA_INLINE void toInts(R a, int* k) {
     if constexpr (N<R> == 1)
         k[0] = int(a);
     else
@@ -248,12 +248,12 @@ AA_INLINE void to_ints(R a, int* k) {
 }
 // Lane mask of ids[x + i] != other[x + i]; ids are compared as integers, never through float.
 template <class R>
-AA_INLINE Mask<R> ids_differ(const uint32_t* a, const uint32_t* b) {
+AA_INLINE Mask<R> idsDiffer(const uint32_t* a, const uint32_t* b) {
     if constexpr (N<R> == 1)
         return *a != *b;
     else if constexpr (std::is_same_v<Elem<R>, float>) {
-        using I = typename ints_of<N<R>>::unaligned;
-        return (Mask<R>)(typename ints_of<N<R>>::type(*(const I*)a) != typename ints_of<N<R>>::type(*(const I*)b));
+        using I = typename IntsOf<N<R>>::unaligned;
+        return (Mask<R>)(typename IntsOf<N<R>>::type(*(const I*)a) != typename IntsOf<N<R>>::type(*(const I*)b));
     } else {
         Mask<R> m;
         for (int i = 0; i < N<R>; i++) m[i] = a[i] != b[i] ? -1 : 0;
@@ -261,25 +261,25 @@ AA_INLINE Mask<R> ids_differ(const uint32_t* a, const uint32_t* b) {
     }
 }
 // The value's bits as float/double: used only to seed Newton iterations below.
-AA_INLINE float bits_scaled(float a, float mul, float add) {
+AA_INLINE float bitsScaled(float a, float mul, float add) {
     int32_t i;
     std::memcpy(&i, &a, 4);
     i = int32_t(float(i) * mul + add);
     std::memcpy(&a, &i, 4);
     return a;
 }
-AA_INLINE double bits_scaled(double a, float mul, float add) { return double(bits_scaled(float(a), mul, add)); }
+AA_INLINE double bitsScaled(double a, float mul, float add) { return double(bitsScaled(float(a), mul, add)); }
 template <class T, int W>
-AA_INLINE Lanes<T, W> bits_scaled(Lanes<T, W> a, float mul, float add) {
+AA_INLINE Lanes<T, W> bitsScaled(Lanes<T, W> a, float mul, float add) {
     if constexpr (std::is_same_v<T, float>) {
-        using I = typename ints_of<W>::type;
+        using I = typename IntsOf<W>::type;
         I i = (I)a.v;
         typename Lanes<T, W>::V f = __builtin_convertvector(i, typename Lanes<T, W>::V) * mul + add;
         i = __builtin_convertvector(f, I);
         return (typename Lanes<T, W>::V)i;
     } else {
         Lanes<T, W> r;
-        for (int k = 0; k < W; k++) r.v[k] = bits_scaled(a.v[k], mul, add);
+        for (int k = 0; k < W; k++) r.v[k] = bitsScaled(a.v[k], mul, add);
         return r;
     }
 }
@@ -289,19 +289,19 @@ AA_INLINE Lanes<T, W> bits_scaled(Lanes<T, W> a, float mul, float add) {
 template <class R>
 inline constexpr int kRootSteps = std::is_same_v<Elem<R>, double> ? 4 : 2;
 template <class R>
-AA_INLINE R cbrt_positive(R x) {
+AA_INLINE R cbrtPositive(R x) {
     using T = Elem<R>;
     const R third(T(1) / T(3)), fourThirds(T(4) / T(3));
-    R r = bits_scaled(x, -1.0f / 3.0f, 1419967600.0f);
+    R r = bitsScaled(x, -1.0f / 3.0f, 1419967600.0f);
     for (int i = 0; i < kRootSteps<R>; i++) r = r * (fourThirds - x * (r * r) * r * third);
     const R r2 = r * r, y = x * r2;
     return y - (y * y * y - x) * r2 * third;
 }
 template <class R>
-AA_INLINE R fifth_root_positive(R x) {
+AA_INLINE R fifthRootPositive(R x) {
     using T = Elem<R>;
     const R fifth(T(1) / T(5)), sixFifths(T(6) / T(5));
-    R r = bits_scaled(x, -1.0f / 5.0f, 1277929000.0f);
+    R r = bitsScaled(x, -1.0f / 5.0f, 1277929000.0f);
     for (int i = 0; i < kRootSteps<R>; i++) {
         const R r2 = r * r;
         r = r * (sixFifths - x * (r2 * r2) * r * fifth);
@@ -364,7 +364,7 @@ AA_INLINE R dot(vec3<R> a, vec3<R> b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 template <class R>
-AA_INLINE R max_component(vec3<R> a) {
+AA_INLINE R maxComponent(vec3<R> a) {
     return max(a.x, max(a.y, a.z));
 }
 // Luminance of linear RGB, BT.709 (methods/00 s.4); SMAA, INSIDE and Uncharted apply the same weights to encoded RGB.

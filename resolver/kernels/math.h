@@ -10,7 +10,7 @@ template <class R>
 struct Split {
     R mantissa, exponent;
 };
-AA_INLINE Split<float> split_exponent(float x) {
+AA_INLINE Split<float> splitExponent(float x) {
     int32_t i;
     std::memcpy(&i, &x, 4);
     const int32_t e = (i - 0x3f3504f3) >> 23;  // bits of sqrt(1/2)
@@ -20,7 +20,7 @@ AA_INLINE Split<float> split_exponent(float x) {
     s.exponent = float(e);
     return s;
 }
-AA_INLINE Split<double> split_exponent(double x) {
+AA_INLINE Split<double> splitExponent(double x) {
     int64_t i;
     std::memcpy(&i, &x, 8);
     const int64_t e = (i - 0x3fe6a09e667f3bcd) >> 52;  // bits of sqrt(1/2)
@@ -31,42 +31,42 @@ AA_INLINE Split<double> split_exponent(double x) {
     return s;
 }
 template <class T, int W>
-AA_INLINE Split<Lanes<T, W>> split_exponent(Lanes<T, W> x) {
+AA_INLINE Split<Lanes<T, W>> splitExponent(Lanes<T, W> x) {
     using V = typename Lanes<T, W>::V;
     if constexpr (std::is_same_v<T, float>) {
-        using I = typename ints_of<W>::type;
+        using I = typename IntsOf<W>::type;
         const I i = (I)x.v, e = (i - 0x3f3504f3) >> 23;
         return {(V)(i - (e << 23)), __builtin_convertvector(e, V)};
     } else {
         Split<Lanes<T, W>> s;
         for (int k = 0; k < W; k++) {
-            const auto one = split_exponent(x.v[k]);
+            const auto one = splitExponent(x.v[k]);
             s.mantissa.v[k] = one.mantissa, s.exponent.v[k] = one.exponent;
         }
         return s;
     }
 }
 // 2^n for a whole n in [-126, 127].
-AA_INLINE float power_of_two(float n) {
+AA_INLINE float powerOfTwo(float n) {
     const int32_t i = (int32_t(n) + 127) << 23;
     float p;
     std::memcpy(&p, &i, 4);
     return p;
 }
-AA_INLINE double power_of_two(double n) {
+AA_INLINE double powerOfTwo(double n) {
     const int64_t i = (int64_t(n) + 1023) << 52;
     double p;
     std::memcpy(&p, &i, 8);
     return p;
 }
 template <class T, int W>
-AA_INLINE Lanes<T, W> power_of_two(Lanes<T, W> n) {
+AA_INLINE Lanes<T, W> powerOfTwo(Lanes<T, W> n) {
     if constexpr (std::is_same_v<T, float>) {
-        using I = typename ints_of<W>::type;
+        using I = typename IntsOf<W>::type;
         return (typename Lanes<T, W>::V)((__builtin_convertvector(n.v, I) + 127) << 23);
     } else {
         Lanes<T, W> p;
-        for (int k = 0; k < W; k++) p.v[k] = power_of_two(n.v[k]);
+        for (int k = 0; k < W; k++) p.v[k] = powerOfTwo(n.v[k]);
         return p;
     }
 }
@@ -85,7 +85,7 @@ AA_INLINE R polynomial(R x, const R (&c)[n]) {
 }
 // The power series of artanh(s) / s in s^2, with terms up to s^last.
 template <class R, int last>
-AA_INLINE R artanh_ratio(R s2) {
+AA_INLINE R artanhRatio(R s2) {
     R c[(last + 1) / 2];
     for (int k = 1; k <= last; k += 2) c[k / 2] = R(Elem<R>(1.0 / k));
     return polynomial(s2, c);
@@ -93,16 +93,16 @@ AA_INLINE R artanh_ratio(R s2) {
 
 // log2 of a normal x > 0: log(m) = 2 artanh(s), s = (m - 1) / (m + 1), |s| < 0.172, by its power series.
 template <class R>
-AA_INLINE R log2_positive(R x) {
+AA_INLINE R log2Positive(R x) {
     using T = Elem<R>;
     constexpr int kLast = std::is_same_v<T, double> ? 21 : 9;  // s^(kLast + 2) is below the precision
-    const Split<R> f = split_exponent(x);
+    const Split<R> f = splitExponent(x);
     const R s = (f.mantissa - R(T(1))) / (f.mantissa + R(T(1))), s2 = s * s;
-    return f.exponent + s * artanh_ratio<R, kLast>(s2) * R(T(2.8853900817779268));  // 2 / ln 2
+    return f.exponent + s * artanhRatio<R, kLast>(s2) * R(T(2.8853900817779268));  // 2 / ln 2
 }
 // 2^x for x in [-126, 127] (clamped): whole part by the exponent's bits, the rest, |f| <= 1/2, by exp's power series.
 template <class R>
-AA_INLINE R exp2_clamped(R x) {
+AA_INLINE R exp2Clamped(R x) {
     using T = Elem<R>;
     constexpr int kLast = std::is_same_v<T, double> ? 13 : 7;
     const R held = clamp(x, R(T(-126)), R(T(127))), n = min(floor(held + R(T(0.5))), R(T(127)));
@@ -110,14 +110,14 @@ AA_INLINE R exp2_clamped(R x) {
     R c[kLast + 1];
     double factorial = 1;
     for (int k = 0; k <= kLast; k++, factorial *= k) c[k] = R(T(1 / factorial));
-    return polynomial(f, c) * power_of_two(n);
+    return polynomial(f, c) * powerOfTwo(n);
 }
 // x^y for 0 <= x; 0 for x below 1e-30 (0^0 too).
 template <class R>
-AA_INLINE R pow_positive(R x, R y) {
+AA_INLINE R powPositive(R x, R y) {
     using T = Elem<R>;
     const R tiny(T(1e-30));
-    return select(x < tiny, R(T(0)), exp2_clamped(y * log2_positive(max(x, tiny))));
+    return select(x < tiny, R(T(0)), exp2Clamped(y * log2Positive(max(x, tiny))));
 }
 
 }  // namespace AA_ARCH

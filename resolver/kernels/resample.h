@@ -7,7 +7,7 @@
 namespace AA_ARCH {
 
 template <class T>
-AA_INLINE T lerp_skipping(T a, T b, T t) {
+AA_INLINE T lerpSkipping(T a, T b, T t) {
     return t == T(0) ? a : a + (b - a) * t;  // a tap of weight 0 is never read into the result: it may be NaN
 }
 // T is float or double; |offset| <= 1; the image's border is filled.
@@ -18,8 +18,8 @@ AA_INLINE vec3<T> resample(const aa::RgbIn& image, long stride, int x, int y, T 
     T v[3];
     for (int c = 0; c < 3; c++) {
         const float* p = image.c[c] + o;
-        const T top = lerp_skipping(T(p[0]), T(p[1]), fx);
-        v[c] = lerp_skipping(top, lerp_skipping(T(p[stride]), T(p[stride + 1]), fx), fy);
+        const T top = lerpSkipping(T(p[0]), T(p[1]), fx);
+        v[c] = lerpSkipping(top, lerpSkipping(T(p[stride]), T(p[stride + 1]), fx), fy);
     }
     return {v[0], v[1], v[2]};
 }

@@ -38,15 +38,15 @@ struct RingMaker {
 
 // Of Elem<R>, not of float.
 template <class R>
-AA_INLINE R load_own(const Elem<R>* p) {
+AA_INLINE R loadOwn(const Elem<R>* p) {
     if constexpr (N<R> == 1)
         return *p;
     else
         return load<R>(p);
 }
 template <class R>
-AA_INLINE vec3<R> load_own(const Elem<R>* const (&c)[3], int x) {
-    return {load_own<R>(c[0] + x), load_own<R>(c[1] + x), load_own<R>(c[2] + x)};
+AA_INLINE vec3<R> loadOwn(const Elem<R>* const (&c)[3], int x) {
+    return {loadOwn<R>(c[0] + x), loadOwn<R>(c[1] + x), loadOwn<R>(c[2] + x)};
 }
 
 }  // namespace AA_ARCH

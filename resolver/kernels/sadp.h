@@ -17,17 +17,17 @@ struct SurfacePoint {
 };
 // !(z < 1e9) is background: 1e10 by convention, and NaN.
 template <class R>
-AA_INLINE Mask<R> is_background(R depthView) {
+AA_INLINE Mask<R> isBackground(R depthView) {
     return negate(depthView < R(Elem<R>(1e9)));
 }
 // A missing normal is zero or NaN; unit ones may carry the error of half floats.
 template <class R>
-AA_INLINE Mask<R> has_normal(vec3<R> n) {
+AA_INLINE Mask<R> hasNormal(vec3<R> n) {
     return dot(n, n) >= R(Elem<R>(0.25));
 }
 template <class R>
-AA_INLINE vec3<R> valid_normal(vec3<R> n) {
-    return select(has_normal(n), n, vec3<R>(R(Elem<R>(0))));
+AA_INLINE vec3<R> validNormal(vec3<R> n) {
+    return select(hasNormal(n), n, vec3<R>(R(Elem<R>(0))));
 }
 
 // World-space vector from a point a to a point b that lies (dx, dy) px beside it.
@@ -52,27 +52,27 @@ AA_INLINE R dissimilarity(const SurfacePoint<R>& a, const SurfacePoint<R>& b, co
     if constexpr (kind == aa::Dissimilarity::depth) {
         d = min(farthest, abs(a.depthView - b.depthView) / min(a.depthView, b.depthView));
     } else {
-        const vec3<R> na = valid_normal(a.normalWorld), nb = valid_normal(b.normalWorld);
+        const vec3<R> na = validNormal(a.normalWorld), nb = validNormal(b.normalWorld);
         d = one - dot(na, nb);
         if constexpr (kind == aa::Dissimilarity::sadp) {
             const vec3<R> v = s.vector(a.depthView, b.depthView);
             const R length2 = dot(v, v), limit = R(T(1e-6)) * max(one, a.depthView);
-            const auto complete = both(has_normal(na), has_normal(nb));
+            const auto complete = both(hasNormal(na), hasNormal(nb));
             const auto coincident = negate(length2 >= limit * limit);  // no direction: the normals alone decide
             const R along = (abs(dot(na, v)) + abs(dot(nb, v))) / sqrt(select(coincident, one, length2));
             d = select(coincident, d, along + select(complete, zero, one));
         }
     }
-    const auto emptyA = is_background(a.depthView), emptyB = is_background(b.depthView);
+    const auto emptyA = isBackground(a.depthView), emptyB = isBackground(b.depthView);
     return select(both(emptyA, emptyB), zero, select(either(emptyA, emptyB), farthest, d));
 }
 
 // False only where dissimilarity() < limit, up to rounding, without its root and divisions: what most pixels of a
 // picture need to know.
 template <aa::Dissimilarity kind, class R>
-AA_INLINE Mask<R> may_differ(const SurfacePoint<R>& a, const SurfacePoint<R>& b, const Separation<R>& s, R limit) {
+AA_INLINE Mask<R> surfacesMayDiffer(const SurfacePoint<R>& a, const SurfacePoint<R>& b, const Separation<R>& s, R limit) {
     using T = Elem<R>;
-    const auto emptyA = is_background(a.depthView), emptyB = is_background(b.depthView);
+    const auto emptyA = isBackground(a.depthView), emptyB = isBackground(b.depthView);
     Mask<R> same;
     if constexpr (kind == aa::Dissimilarity::depth) {
         same = abs(a.depthView - b.depthView) < limit * min(a.depthView, b.depthView);
@@ -83,7 +83,7 @@ AA_INLINE Mask<R> may_differ(const SurfacePoint<R>& a, const SurfacePoint<R>& b,
         const R along = abs(dot(a.normalWorld, v)) + abs(dot(b.normalWorld, v)), length2 = dot(v, v);
         const R coincident = R(T(1e-6)) * max(R(T(1)), a.depthView);
         same = both(both(along * along < limit * limit * length2, length2 >= coincident * coincident),
-                    both(has_normal(a.normalWorld), has_normal(b.normalWorld)));
+                    both(hasNormal(a.normalWorld), hasNormal(b.normalWorld)));
     }
     // Two surfaces that are the same, or two backgrounds.
     return negate(either(both(emptyA, emptyB), both(both(negate(emptyA), negate(emptyB)), same)));

@@ -7,17 +7,17 @@ namespace AA_ARCH {
 
 // IEC 61966-2-1. c^(1/2.4) = c^(5/12) = sqrt(sqrt(c)) * cbrt(sqrt(c)).
 template <class R>
-AA_INLINE R srgb_encode(R c) {
+AA_INLINE R srgbEncode(R c) {
     using T = Elem<R>;
     const R s = sqrt(max(c, R(T(1e-12))));
-    const R curved = R(T(1.055)) * (sqrt(s) * cbrt_positive(s)) - R(T(0.055));
+    const R curved = R(T(1.055)) * (sqrt(s) * cbrtPositive(s)) - R(T(0.055));
     return min(select(c <= R(T(0.0031308)), c * R(T(12.92)), curved), R(T(1)));
 }
 // c^2.4 = c^2 * (c^(1/5))^2.
 template <class R>
-AA_INLINE R srgb_decode(R e) {
+AA_INLINE R srgbDecode(R e) {
     using T = Elem<R>;
-    const R b = max((e + R(T(0.055))) / R(T(1.055)), R(T(1e-12))), f = fifth_root_positive(b);
+    const R b = max((e + R(T(0.055))) / R(T(1.055)), R(T(1e-12))), f = fifthRootPositive(b);
     return select(e <= R(T(0.04045)), e / R(T(12.92)), b * b * (f * f));
 }
 

@@ -21,22 +21,22 @@ AA_INLINE R columns(int x) {
 }
 // Finite means x - x == 0: Inf - Inf and NaN - NaN are NaN.
 template <class R>
-AA_INLINE Mask<R> is_finite(vec3<R> c) {
+AA_INLINE Mask<R> isFinite(vec3<R> c) {
     const R zero(Elem<R>(0));
     return both(both(c.x - c.x == zero, c.y - c.y == zero), c.z - c.z == zero);
 }
 
 template <class R>
-AA_INLINE SurfacePoint<R> surface_point(const float* depthView, const aa::RgbIn& normalWorld, long o) {
+AA_INLINE SurfacePoint<R> surfacePoint(const float* depthView, const aa::RgbIn& normalWorld, long o) {
     return {load<R>(depthView + o), load3<R>(normalWorld, o)};
 }
 template <class R>
-AA_INLINE SurfacePoint<R> centre_point(const aa::GeometryArgs& g, long o) {
-    return surface_point<R>(g.depthView, g.normalWorld, o);
+AA_INLINE SurfacePoint<R> centrePoint(const aa::GeometryArgs& g, long o) {
+    return surfacePoint<R>(g.depthView, g.normalWorld, o);
 }
 template <class R>
-AA_INLINE SurfacePoint<R> sample_point(const aa::GeometryArgs& g, int k, long o) {
-    return surface_point<R>(g.sample[k].depthView, g.sample[k].normalWorld, o);
+AA_INLINE SurfacePoint<R> samplePoint(const aa::GeometryArgs& g, int k, long o) {
+    return surfacePoint<R>(g.sample[k].depthView, g.sample[k].normalWorld, o);
 }
 // From the point seen (fromX, fromY) px beside the centre sample of pixel (x, y) to the one seen (dx, dy) px farther.
 template <class R>
@@ -51,7 +51,7 @@ AA_INLINE Separation<R> separation(const aa::GeometryArgs& g, R x, int y, float 
 }
 // From the centre sample of pixel (x, y) to its sub-sample k.
 template <class R>
-AA_INLINE Separation<R> to_sample(const aa::GeometryArgs& g, R x, int y, int k) {
+AA_INLINE Separation<R> toSample(const aa::GeometryArgs& g, R x, int y, int k) {
     return separation(g, x, y, 0.0f, 0.0f, g.sample[k].offsetPx[0], g.sample[k].offsetPx[1]);
 }
 
@@ -61,18 +61,18 @@ AA_INLINE Separation<R> to_sample(const aa::GeometryArgs& g, R x, int y, int k) 
 // other out of the first-level cache, and a chunk is too short for the processor to foresee the next lines by itself.
 inline constexpr int kChunk = 256;  // pixels
 template <class R>
-AA_INLINE int chunk_groups(int width) {  // groups of lanes that cover it, at most a chunk
+AA_INLINE int chunkGroups(int width) {  // groups of lanes that cover it, at most a chunk
     return ((width < kChunk ? width : kChunk) + N<R> - 1) / N<R>;
 }
 template <class R>
-AA_INLINE void copy_chunk(const aa::RgbIn& from, const aa::RgbOut& to, int width, long o) {
-    const int groups = chunk_groups<R>(width);
+AA_INLINE void copyChunk(const aa::RgbIn& from, const aa::RgbOut& to, int width, long o) {
+    const int groups = chunkGroups<R>(width);
     for (int c = 0; c < 3; c++)
         for (int i = 0; i < groups; i++) store(load<R>(from.c[c] + o + i * N<R>), to.c[c] + o + i * N<R>);
 }
 template <class R>
-AA_INLINE void fill_chunk(float value, float* to, int width) {
-    const int groups = chunk_groups<R>(width);
+AA_INLINE void fillChunk(float value, float* to, int width) {
+    const int groups = chunkGroups<R>(width);
     for (int i = 0; i < groups; i++) store(R(Elem<R>(value)), to + i * N<R>);
 }
 template <class R>
@@ -80,7 +80,7 @@ struct Marks {
     uint32_t lanes[kChunk / N<R>];
 };
 // Fetches what the group of pixels at o will read of sub-sample k.
-AA_INLINE void prefetch_sample(const aa::GeometryArgs& g, int k, long o) {
+AA_INLINE void prefetchSample(const aa::GeometryArgs& g, int k, long o) {
     const aa::SubSampleArgs& s = g.sample[k];
     __builtin_prefetch(s.depthView + o);
     for (int c = 0; c < 3; c++)
@@ -88,19 +88,19 @@ AA_INLINE void prefetch_sample(const aa::GeometryArgs& g, int k, long o) {
     if (s.objectId) __builtin_prefetch(s.objectId + o);
 }
 // The same for the sub-sample that a chunk-wise loop visits after k: the next one, or the first of the next chunk.
-AA_INLINE void prefetch_next(const aa::GeometryArgs& g, int k, long o) {
-    k + 1 < g.samples ? prefetch_sample(g, k + 1, o) : prefetch_sample(g, 0, o + kChunk);
+AA_INLINE void prefetchNext(const aa::GeometryArgs& g, int k, long o) {
+    k + 1 < g.samples ? prefetchSample(g, k + 1, o) : prefetchSample(g, 0, o + kChunk);
 }
 template <class R, class Differs>
 AA_INLINE void mark(const aa::GeometryArgs& g, int x0, int y, Marks<R>& marks, const Differs& differs) {
-    const int groups = chunk_groups<R>(g.width - x0);
+    const int groups = chunkGroups<R>(g.width - x0);
     for (int i = 0; i < groups; i++) marks.lanes[i] = 0;
     for (int k = 0; k < g.samples; k++)
         for (int i = 0; i < groups; i++) {
             const int x = x0 + i * N<R>;
             const long o = long(y) * g.stride + x;
-            prefetch_next(g, k, o);
-            marks.lanes[i] |= mask_bits<R>(differs(k, x, o));
+            prefetchNext(g, k, o);
+            marks.lanes[i] |= maskBits<R>(differs(k, x, o));
         }
 }
 

@@ -8,15 +8,15 @@ namespace AA_ARCH {
 
 // Two backgrounds are one surface. Without normals on both sides only the depths are compared.
 template <class R>
-AA_INLINE Mask<R> same_surface(const aa::SurfaceRule& rule, const SurfacePoint<R>& a, const SurfacePoint<R>& b,
+AA_INLINE Mask<R> sameSurface(const aa::SurfaceRule& rule, const SurfacePoint<R>& a, const SurfacePoint<R>& b,
                                const Separation<R>& s) {
     using T = Elem<R>;
     const R tolerance = R(T(rule.planeDistance)) * a.depthView;
     const auto agree = both(dot(a.normalWorld, b.normalWorld) >= R(T(rule.cosine)),
                             abs(dot(a.normalWorld, s.vector(a.depthView, b.depthView))) <= tolerance);
-    const auto known = either(has_normal(a.normalWorld), has_normal(b.normalWorld));
+    const auto known = either(hasNormal(a.normalWorld), hasNormal(b.normalWorld));
     const auto level = abs(a.depthView - b.depthView) <= tolerance;
-    const auto emptyA = is_background(a.depthView), emptyB = is_background(b.depthView);
+    const auto emptyA = isBackground(a.depthView), emptyB = isBackground(b.depthView);
     const auto neither = both(negate(emptyA), negate(emptyB));
     return either(both(emptyA, emptyB), both(neither, either(agree, both(negate(known), level))));
 }
@@ -30,7 +30,7 @@ struct PixelSurfaces {
 
     AA_INLINE long at() const { return long(y) * g.stride + x; }
     AA_INLINE SurfacePoint<T> point(int k) const {
-        return k < 0 ? centre_point<T>(g, at()) : sample_point<T>(g, k, at());
+        return k < 0 ? centrePoint<T>(g, at()) : samplePoint<T>(g, k, at());
     }
     AA_INLINE Separation<T> between(int a, int b) const {
         const float ax = a < 0 ? 0.0f : g.sample[a].offsetPx[0], ay = a < 0 ? 0.0f : g.sample[a].offsetPx[1];
@@ -39,7 +39,7 @@ struct PixelSurfaces {
     }
     AA_INLINE uint32_t object(int k) const { return (k < 0 ? g.objectId : g.sample[k].objectId)[at()]; }
     AA_INLINE bool sameObject(int a, int b) const { return object(a) == object(b); }
-    AA_INLINE bool sameGeometry(int a, int b) const { return same_surface(rule, point(a), point(b), between(a, b)); }
+    AA_INLINE bool sameGeometry(int a, int b) const { return sameSurface(rule, point(a), point(b), between(a, b)); }
 };
 
 }  // namespace AA_ARCH

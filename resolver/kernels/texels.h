@@ -13,7 +13,7 @@ struct Texel {
 // W texels of an RGBA image at pixel offsets k[i]. One 128-bit load per texel and 4x4 transposes is four times faster
 // than planar gathers and costs the same whatever the motion.
 template <class R>
-AA_INLINE Texel<R> fetch_rgba(const float* p, const int* k) {
+AA_INLINE Texel<R> fetchRgba(const float* p, const int* k) {
     if constexpr (N<R> == 1) {
         const float* t = p + 4l * k[0];
         return {{R(t[0]), R(t[1]), R(t[2])}, R(t[3])};
@@ -70,10 +70,10 @@ AA_INLINE Texel<R> fetch_rgba(const float* p, const int* k) {
 }
 // W consecutive texels.
 template <class R>
-AA_INLINE Texel<R> load_rgba(const float* p) {
+AA_INLINE Texel<R> loadRgba(const float* p) {
     alignas(64) int k[N<R>];
     for (int i = 0; i < N<R>; i++) k[i] = i;
-    return fetch_rgba<R>(p, k);
+    return fetchRgba<R>(p, k);
 }
 // Where W pixels are read, as offsets in pixels. `together`: side by side, as where everything moves alike.
 template <class R>
@@ -84,14 +84,14 @@ struct Offsets {
     template <class I>
     AA_INLINE void set(I offsets) {
         const I lane = __builtin_convertvector(iota<R>().v, I), first = offsets - lane;
-        together = !mask_bits<R>((Mask<R>)(first != I{} + first[0]));
-        *(typename ints_of<N<R>>::unaligned*)k = offsets;
+        together = !maskBits<R>((Mask<R>)(first != I{} + first[0]));
+        *(typename IntsOf<N<R>>::unaligned*)k = offsets;
         __asm__("" : "+m"(k));  // read them back one by one: GCC would take the vector apart, at twice the cost
     }
 };
 template <class R>
-AA_INLINE Texel<R> fetch_rgba(const float* p, const Offsets<R>& at) {
-    return at.together ? load_rgba<R>(p + 4l * at.k[0]) : fetch_rgba<R>(p, at.k);
+AA_INLINE Texel<R> fetchRgba(const float* p, const Offsets<R>& at) {
+    return at.together ? loadRgba<R>(p + 4l * at.k[0]) : fetchRgba<R>(p, at.k);
 }
 // One value of a plane for each pixel.
 template <class R>
@@ -110,7 +110,7 @@ AA_INLINE R gather(const float* p, const Offsets<R>& at) {
     }
 }
 template <class R>
-AA_INLINE void store_rgba(vec3<R> c, R a, float* p) {
+AA_INLINE void storeRgba(vec3<R> c, R a, float* p) {
     if constexpr (N<R> == 1) {
         p[0] = float(c.x), p[1] = float(c.y), p[2] = float(c.z), p[3] = float(a);
     }

@@ -31,16 +31,16 @@ AA_INLINE vec3<R> opponent(vec3<R> linear) {
     return {xyz.y, (xyz.x - xyz.y) * constant<R>(500), (xyz.y - xyz.z) * constant<R>(200)};
 }
 template <class R>
-AA_INLINE R lab_curve(R t) {
-    return select(t > constant<R>(216.0 / 24389), cbrt_positive(max(t, constant<R>(1e-6))),
+AA_INLINE R labCurve(R t) {
+    return select(t > constant<R>(216.0 / 24389), cbrtPositive(max(t, constant<R>(1e-6))),
                   t * constant<R>(841.0 / 108) + constant<R>(4.0 / 29));
 }
 // Filtered opponent colour -> CIELab with Hunt's adjustment: chroma fades with lightness.
 template <class R>
-AA_INLINE vec3<R> hunt_lab(vec3<R> o) {
+AA_INLINE vec3<R> huntLab(vec3<R> o) {
     const vec3<R> xyz{o.x + o.y * constant<R>(1.0 / 500), o.x, o.x - o.z * constant<R>(1.0 / 200)};
     const vec3<R> seen = transform(kToXyz, saturate(transform(kToRgb, xyz)));
-    const R fx = lab_curve(seen.x), fy = lab_curve(seen.y), fz = lab_curve(seen.z);
+    const R fx = labCurve(seen.x), fy = labCurve(seen.y), fz = labCurve(seen.z);
     const R lightness = fy * constant<R>(116) - constant<R>(16), hunt = lightness * constant<R>(0.01);
     return {lightness, hunt * (fx - fy) * constant<R>(500), hunt * (fy - fz) * constant<R>(200)};
 }
@@ -48,27 +48,27 @@ AA_INLINE vec3<R> hunt_lab(vec3<R> o) {
 // One row of symmetric or antisymmetric taps around p, `step` values apart.
 template <class R, int Reach>
 AA_INLINE R even(const Elem<R>* p, long step, const double* taps) {
-    R sum = load_own<R>(p) * constant<R>(taps[0]);
+    R sum = loadOwn<R>(p) * constant<R>(taps[0]);
     for (int i = 1; i <= Reach; i++)
-        sum = sum + (load_own<R>(p - i * step) + load_own<R>(p + i * step)) * constant<R>(taps[i]);
+        sum = sum + (loadOwn<R>(p - i * step) + loadOwn<R>(p + i * step)) * constant<R>(taps[i]);
     return sum;
 }
 template <class R, int Reach>
 AA_INLINE R odd(const Elem<R>* p, long step, const double* taps) {
-    R sum = (load_own<R>(p - step) - load_own<R>(p + step)) * constant<R>(taps[1]);
+    R sum = (loadOwn<R>(p - step) - loadOwn<R>(p + step)) * constant<R>(taps[1]);
     for (int i = 2; i <= Reach; i++)
-        sum = sum + (load_own<R>(p - i * step) - load_own<R>(p + i * step)) * constant<R>(taps[i]);
+        sum = sum + (loadOwn<R>(p - i * step) - loadOwn<R>(p + i * step)) * constant<R>(taps[i]);
     return sum;
 }
 
 // The point filter, whose taps sum to 0, as differences from the centre: exactly 0 on flat ground, where the square
 // root that follows would turn a rounding error of 1e-8 into 1e-4.
 template <class R, int Reach>
-AA_INLINE R even_of_differences(const Elem<R>* p, long step, const double* taps) {
-    const R twice = load_own<R>(p) * constant<R>(2);
-    R sum = (load_own<R>(p - step) + load_own<R>(p + step) - twice) * constant<R>(taps[1]);
+AA_INLINE R evenOfDifferences(const Elem<R>* p, long step, const double* taps) {
+    const R twice = loadOwn<R>(p) * constant<R>(2);
+    R sum = (loadOwn<R>(p - step) + loadOwn<R>(p + step) - twice) * constant<R>(taps[1]);
     for (int i = 2; i <= Reach; i++)
-        sum = sum + (load_own<R>(p - i * step) + load_own<R>(p + i * step) - twice) * constant<R>(taps[i]);
+        sum = sum + (loadOwn<R>(p - i * step) + loadOwn<R>(p + i * step) - twice) * constant<R>(taps[i]);
     return sum;
 }
 
@@ -86,7 +86,7 @@ struct alignas(64) SeenRow {
 
 // Opponent colour of row y, columns [x0 - kMargin, x0 + kStrip + kMargin), coordinates clamped to the image.
 template <class R>
-AA_INLINE void load_opponent(const RgbIn& image, const FlipArgs& a, int x0, int y, Elem<R> (*o)[kLoaded]) {
+AA_INLINE void loadOpponent(const RgbIn& image, const FlipArgs& a, int x0, int y, Elem<R> (*o)[kLoaded]) {
     const long row = long(y < 0 ? 0 : y >= a.height ? a.height - 1 : y) * a.stride;
     const int first = x0 - kMargin;
     const auto convert = [&]<class Q>(long at, int i, Q) __attribute__((always_inline)) {
@@ -108,7 +108,7 @@ AA_INLINE void load_opponent(const RgbIn& image, const FlipArgs& a, int x0, int 
     }
 }
 template <class R>
-AA_INLINE void filter_along_x(const Elem<R> (*o)[kLoaded], int columns, FlipRow<Elem<R>>& row) {
+AA_INLINE void filterAlongX(const Elem<R> (*o)[kLoaded], int columns, FlipRow<Elem<R>>& row) {
     const Elem<R>*y = o[0] + kMargin, *cx = o[1] + kMargin, *cz = o[2] + kMargin;
     for (int x = 0; x < columns; x += N<R>) {
         store(even<R, kNarrowReach>(y + x, 1, kCsfY), row.y + x);
@@ -117,17 +117,17 @@ AA_INLINE void filter_along_x(const Elem<R> (*o)[kLoaded], int columns, FlipRow<
         store(even<R, kCsfReach>(cz + x, 1, kCsfCzNarrow), row.czNarrow + x);
         store(even<R, kFeatureReach>(y + x, 1, kGauss), row.gauss + x);
         store(odd<R, kFeatureReach>(y + x, 1, kEdge), row.edge + x);
-        store(even_of_differences<R, kFeatureReach>(y + x, 1, kPoint), row.point + x);
+        store(evenOfDifferences<R, kFeatureReach>(y + x, 1, kPoint), row.point + x);
     }
 }
 // `centre` is the middle one of kWindow successive rows.
 template <class R>
-AA_INLINE void filter_along_y(const FlipRow<Elem<R>>& centre, int columns, SeenRow<Elem<R>>& seen) {
+AA_INLINE void filterAlongY(const FlipRow<Elem<R>>& centre, int columns, SeenRow<Elem<R>>& seen) {
     constexpr long step = sizeof(FlipRow<Elem<R>>) / sizeof(Elem<R>);
     for (int x = 0; x < columns; x += N<R>) {
         const R cz = even<R, kCsfReach>(centre.czWide + x, step, kCsfCzWide) * constant<R>(kCzWideShare) +
                      even<R, kCsfReach>(centre.czNarrow + x, step, kCsfCzNarrow) * constant<R>(1 - kCzWideShare);
-        const vec3<R> lab = hunt_lab(vec3<R>(even<R, kNarrowReach>(centre.y + x, step, kCsfY),
+        const vec3<R> lab = huntLab(vec3<R>(even<R, kNarrowReach>(centre.y + x, step, kCsfY),
                                              even<R, kNarrowReach>(centre.cx + x, step, kCsfCx), cz));
         store(lab.x, seen.lightness + x), store(lab.y, seen.a + x), store(lab.z, seen.b + x);
     }
@@ -135,29 +135,29 @@ AA_INLINE void filter_along_y(const FlipRow<Elem<R>>& centre, int columns, SeenR
         const R ex = even<R, kFeatureReach>(centre.edge + x, step, kGauss),
                 ey = odd<R, kFeatureReach>(centre.gauss + x, step, kEdge);
         const R px = even<R, kFeatureReach>(centre.point + x, step, kGauss),
-                py = even_of_differences<R, kFeatureReach>(centre.gauss + x, step, kPoint);
+                py = evenOfDifferences<R, kFeatureReach>(centre.gauss + x, step, kPoint);
         store(sqrt(ex * ex + ey * ey), seen.edge + x), store(sqrt(px * px + py * py), seen.point + x);
     }
 }
 // HyAB distance to the power 0.7, mapped so that 0.4 of the largest becomes 0.95.
 template <class R>
-AA_INLINE R colour_difference(const SeenRow<Elem<R>>& t, const SeenRow<Elem<R>>& r, int x) {
-    const R da = load_own<R>(t.a + x) - load_own<R>(r.a + x), db = load_own<R>(t.b + x) - load_own<R>(r.b + x);
-    const R hyab = abs(load_own<R>(t.lightness + x) - load_own<R>(r.lightness + x)) + sqrt(da * da + db * db);
-    const R d = pow_positive(hyab, constant<R>(0.7));
+AA_INLINE R colourDifference(const SeenRow<Elem<R>>& t, const SeenRow<Elem<R>>& r, int x) {
+    const R da = loadOwn<R>(t.a + x) - loadOwn<R>(r.a + x), db = loadOwn<R>(t.b + x) - loadOwn<R>(r.b + x);
+    const R hyab = abs(loadOwn<R>(t.lightness + x) - loadOwn<R>(r.lightness + x)) + sqrt(da * da + db * db);
+    const R d = powPositive(hyab, constant<R>(0.7));
     constexpr double knee = 0.4 * kMaxColour;
     return select(d < constant<R>(knee), d * constant<R>(0.95 / knee),
                   constant<R>(0.95) + (d - constant<R>(knee)) * constant<R>(0.05 / (kMaxColour - knee)));
 }
 template <class R>
-AA_INLINE R feature_difference(const SeenRow<Elem<R>>& t, const SeenRow<Elem<R>>& r, int x) {
-    const R edge = abs(load_own<R>(t.edge + x) - load_own<R>(r.edge + x));
-    const R point = abs(load_own<R>(t.point + x) - load_own<R>(r.point + x));
+AA_INLINE R featureDifference(const SeenRow<Elem<R>>& t, const SeenRow<Elem<R>>& r, int x) {
+    const R edge = abs(loadOwn<R>(t.edge + x) - loadOwn<R>(r.edge + x));
+    const R point = abs(loadOwn<R>(t.point + x) - loadOwn<R>(r.point + x));
     return sqrt(max(edge, point) * constant<R>(0.70710678118654752));  // 1 / sqrt(2)
 }
 
 template <class R>
-AA_INLINE void flip_strip(const FlipArgs& a, int x0, int y0, int y1) {
+AA_INLINE void flipStrip(const FlipArgs& a, int x0, int y0, int y1) {
     using T = Elem<R>;
     // Every row is stored twice, kWindow apart, so that any kWindow successive rows lie one after the other.
     FlipRow<T> ring[2][2 * kWindow];
@@ -167,26 +167,26 @@ AA_INLINE void flip_strip(const FlipArgs& a, int x0, int y0, int y1) {
     for (int y = y0 - kCsfReach; y < y1 + kCsfReach; y++) {
         const int slot = (y - y0 + kCsfReach) % kWindow, centre = y - kCsfReach;
         for (int image = 0; image < 2; image++) {
-            load_opponent<R>(image ? a.reference : a.test, a, x0, y, o);
-            filter_along_x<R>(o, columns, ring[image][slot]);
+            loadOpponent<R>(image ? a.reference : a.test, a, x0, y, o);
+            filterAlongX<R>(o, columns, ring[image][slot]);
             ring[image][slot + kWindow] = ring[image][slot];
-            if (centre >= y0) filter_along_y<R>(ring[image][slot + 1 + kCsfReach], columns, seen[image]);
+            if (centre >= y0) filterAlongY<R>(ring[image][slot + 1 + kCsfReach], columns, seen[image]);
         }
         if (centre < y0) continue;
         Strands<R> sum;
         for (int x = 0; x < columns; x += N<R>) {
-            const R colour = colour_difference<R>(seen[0], seen[1], x),
-                    feature = feature_difference<R>(seen[0], seen[1], x);
-            const R value = min(pow_positive(colour, constant<R>(1) - feature), constant<R>(1));
+            const R colour = colourDifference<R>(seen[0], seen[1], x),
+                    feature = featureDifference<R>(seen[0], seen[1], x);
+            const R value = min(powPositive(colour, constant<R>(1) - feature), constant<R>(1));
             sum.add(value, x, columns - x);
             if (a.map) store(value, a.map + long(centre) * a.mapStride + x0 + x);
         }
-        sum.add_to(a.rows + long(centre) * kSumStrands);
+        sum.addTo(a.rows + long(centre) * kSumStrands);
     }
 }
 template <class R>
 __attribute__((flatten)) void flipRows(const FlipArgs& a, int y0, int y1) {
-    for (int x0 = 0; x0 < a.width; x0 += kStrip) flip_strip<R>(a, x0, y0, y1);
+    for (int x0 = 0; x0 < a.width; x0 += kStrip) flipStrip<R>(a, x0, y0, y1);
 }
 }  // namespace AA_ARCH
 

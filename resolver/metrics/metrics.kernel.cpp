@@ -73,10 +73,10 @@ AA_INLINE R weight(int i) {
 }
 // The window's mean and variance along x about p[0], p spans -5..5.
 template <class R>
-AA_INLINE Moments<R> moments_along_x(const Elem<R>* p) {
+AA_INLINE Moments<R> momentsAlongX(const Elem<R>* p) {
     R lo[kReach], hi[kReach];
-    const R centre = load_own<R>(p);
-    for (int i = 0; i < kReach; i++) lo[i] = load_own<R>(p - 1 - i), hi[i] = load_own<R>(p + 1 + i);
+    const R centre = loadOwn<R>(p);
+    for (int i = 0; i < kReach; i++) lo[i] = loadOwn<R>(p - 1 - i), hi[i] = loadOwn<R>(p + 1 + i);
     R mean = centre * weight<R>(0);
     for (int i = 0; i < kReach; i++) mean = mean + (lo[i] + hi[i]) * weight<R>(i + 1);
     const R e = centre - mean;
@@ -89,21 +89,21 @@ AA_INLINE Moments<R> moments_along_x(const Elem<R>* p) {
 }
 // `rows` are the window's 11 rows in order.
 template <class R, class T>
-AA_INLINE Moments<R> moments_along_y(const MomentRow<T>* rows, int signal, int x) {
+AA_INLINE Moments<R> momentsAlongY(const MomentRow<T>* rows, int signal, int x) {
     R m[kTaps];
-    for (int j = 0; j < kTaps; j++) m[j] = load_own<R>(rows[j].mean[signal] + x);
+    for (int j = 0; j < kTaps; j++) m[j] = loadOwn<R>(rows[j].mean[signal] + x);
     R mean = m[kReach] * weight<R>(0);
     for (int j = 1; j <= kReach; j++) mean = mean + (m[kReach - j] + m[kReach + j]) * weight<R>(j);
     const auto part = [&](int j) __attribute__((always_inline)) {
         const R e = m[j] - mean;
-        return load_own<R>(rows[j].variance[signal] + x) + e * e;
+        return loadOwn<R>(rows[j].variance[signal] + x) + e * e;
     };
     R variance = part(kReach) * weight<R>(0);
     for (int j = 1; j <= kReach; j++) variance = variance + (part(kReach - j) + part(kReach + j)) * weight<R>(j);
     return {mean, variance};
 }
 
-AA_INLINE void prefetch_row(const SsimArgs& a, int signal, int y, int first) {
+AA_INLINE void prefetchRow(const SsimArgs& a, int signal, int y, int first) {
     if (y < 0 || y >= a.height) return;
     for (int c = 0; c < 3; c++) {
         if (signal < 3 && c != signal) continue;
@@ -114,7 +114,7 @@ AA_INLINE void prefetch_row(const SsimArgs& a, int signal, int y, int first) {
 }
 // s and d of row y, columns [x0 - 8, x0 + kStrip + 8), coordinates clamped to the image.
 template <class R>
-AA_INLINE void load_row(const SsimArgs& a, int signal, int x0, int y, Elem<R>* s, Elem<R>* d) {
+AA_INLINE void loadRow(const SsimArgs& a, int signal, int x0, int y, Elem<R>* s, Elem<R>* d) {
     const long row = long(y < 0 ? 0 : y >= a.height ? a.height - 1 : y) * a.stride;
     const auto pixel = [&]<class Q>(const RgbIn& image, long o, Q) __attribute__((always_inline)) {
         if (signal < 3) return load<Q>(image.c[signal] + o);
@@ -122,7 +122,7 @@ AA_INLINE void load_row(const SsimArgs& a, int signal, int x0, int y, Elem<R>* s
     };
     const int first = x0 - 8;
     if (first >= 0 && first + kPadded <= a.width) {
-        prefetch_row(a, signal, y + kRowsAhead, first);
+        prefetchRow(a, signal, y + kRowsAhead, first);
         for (int i = 0; i < kPadded; i += N<R>) {
             const R t = pixel(a.test, row + first + i, R{}), r = pixel(a.reference, row + first + i, R{});
             store(t + r, s + i), store(t - r, d + i);
@@ -137,7 +137,7 @@ AA_INLINE void load_row(const SsimArgs& a, int signal, int x0, int y, Elem<R>* s
     }
 }
 template <class R>
-AA_INLINE R ssim_of(Moments<R> s, Moments<R> d) {
+AA_INLINE R ssimOf(Moments<R> s, Moments<R> d) {
     using T = Elem<R>;
     const R half(T(0.5)), c1{T(kC1)}, c2{T(kC2)};
     const R s2 = s.mean * s.mean, d2 = d.mean * d.mean;
@@ -146,7 +146,7 @@ AA_INLINE R ssim_of(Moments<R> s, Moments<R> d) {
 }
 // The third axis of a volume of three channels: tap o of channel c falls on channel clamp(c + o, 0, 2).
 template <class R>
-AA_INLINE Moments<R> moments_across_channels(const Moments<R>* m, int channel) {
+AA_INLINE Moments<R> momentsAcrossChannels(const Moments<R>* m, int channel) {
     double w[3] = {};
     for (int o = -kReach; o <= kReach; o++) {
         const int k = channel + o < 0 ? 0 : channel + o > 2 ? 2 : channel + o;
@@ -158,7 +158,7 @@ AA_INLINE Moments<R> moments_across_channels(const Moments<R>* m, int channel) {
     return {mean, (m[0].variance + e0 * e0) * w0 + (m[1].variance + e1 * e1) * w1 + (m[2].variance + e2 * e2) * w2};
 }
 template <class R, int Signals>
-AA_INLINE void ssim_strip(const SsimArgs& a, int x0, int y0, int y1) {
+AA_INLINE void ssimStrip(const SsimArgs& a, int x0, int y0, int y1) {
     using T = Elem<R>;
     // Every row is stored twice, kTaps apart, so that any 11 successive rows lie one after the other.
     MomentRow<T> ring[Signals][2 * kTaps];
@@ -167,11 +167,11 @@ AA_INLINE void ssim_strip(const SsimArgs& a, int x0, int y0, int y1) {
     for (int y = y0 - kReach; y < y1 + kReach; y++) {
         const int slot = (y - y0 + kReach) % kTaps;
         for (int k = 0; k < Signals; k++) {
-            load_row<R>(a, Signals == 1 ? int(a.signal) : k, x0, y, s, d);
+            loadRow<R>(a, Signals == 1 ? int(a.signal) : k, x0, y, s, d);
             MomentRow<T>&row = ring[k][slot], &again = ring[k][slot + kTaps];
             for (int signal = 0; signal < 2; signal++)
                 for (int x = 0; x < columns; x += N<R>) {
-                    const Moments<R> m = moments_along_x<R>((signal ? d : s) + 8 + x);
+                    const Moments<R> m = momentsAlongX<R>((signal ? d : s) + 8 + x);
                     store(m.mean, row.mean[signal] + x), store(m.variance, row.variance[signal] + x);
                     store(m.mean, again.mean[signal] + x), store(m.variance, again.variance[signal] + x);
                 }
@@ -182,23 +182,23 @@ AA_INLINE void ssim_strip(const SsimArgs& a, int x0, int y0, int y1) {
         for (int k = 0; k < Signals; k++)
             for (int signal = 0; signal < 2; signal++)
                 for (int x = 0; x < columns; x += N<R>) {
-                    const Moments<R> m = moments_along_y<R>(&ring[k][slot + 1], signal, x);
+                    const Moments<R> m = momentsAlongY<R>(&ring[k][slot + 1], signal, x);
                     store(m.mean, window[k].mean[signal] + x), store(m.variance, window[k].variance[signal] + x);
                 }
         Strands<R> sum;
         for (int x = 0; x < columns; x += N<R>) {
             Moments<R> ms[Signals], md[Signals];
             for (int k = 0; k < Signals; k++) {
-                ms[k] = {load_own<R>(window[k].mean[0] + x), load_own<R>(window[k].variance[0] + x)};
-                md[k] = {load_own<R>(window[k].mean[1] + x), load_own<R>(window[k].variance[1] + x)};
+                ms[k] = {loadOwn<R>(window[k].mean[0] + x), loadOwn<R>(window[k].variance[0] + x)};
+                md[k] = {loadOwn<R>(window[k].mean[1] + x), loadOwn<R>(window[k].variance[1] + x)};
             }
             R value;
             if constexpr (Signals == 1)
-                value = ssim_of(ms[0], md[0]);
+                value = ssimOf(ms[0], md[0]);
             else {
                 R sum(T(0));
                 for (int k = 0; k < 3; k++)
-                    sum = sum + ssim_of(moments_across_channels(ms, k), moments_across_channels(md, k));
+                    sum = sum + ssimOf(momentsAcrossChannels(ms, k), momentsAcrossChannels(md, k));
                 value = sum / R(T(3));
             }
             sum.add(value, x, columns - x);
@@ -207,16 +207,16 @@ AA_INLINE void ssim_strip(const SsimArgs& a, int x0, int y0, int y1) {
                 store(value, out);
             }
         }
-        sum.add_to(a.rows + long(centre) * kSumStrands);
+        sum.addTo(a.rows + long(centre) * kSumStrands);
     }
 }
 template <class R>
 __attribute__((flatten)) void ssimRows(const SsimArgs& a, int y0, int y1) {
     for (int x0 = 0; x0 < a.width; x0 += kStrip) {
         if (a.signal == SsimSignal::volume)
-            ssim_strip<R, 3>(a, x0, y0, y1);
+            ssimStrip<R, 3>(a, x0, y0, y1);
         else
-            ssim_strip<R, 1>(a, x0, y0, y1);
+            ssimStrip<R, 1>(a, x0, y0, y1);
     }
 }
 }  // namespace AA_ARCH

@@ -13,7 +13,7 @@ AA_INLINE void prefetch(const float* from, int count) {
     for (int i = 0; i < count; i += 16) __builtin_prefetch(from + i);  // 16 floats are a cache line
 }
 template <class R>
-AA_INLINE R load_own(const Elem<R>* p) {  // storage in the arithmetic's own precision
+AA_INLINE R loadOwn(const Elem<R>* p) {  // storage in the arithmetic's own precision
     if constexpr (N<R> == 1)
         return *p;
     else
@@ -23,7 +23,7 @@ AA_INLINE R load_own(const Elem<R>* p) {  // storage in the arithmetic's own pre
 template <class R>
 struct Strands {
     static constexpr int kGroups = kSumStrands / N<R>;
-    using Group = typename vec_of<double, N<R>>::type;
+    using Group = typename VecOf<double, N<R>>::type;
     Group sum[kGroups];
     Strands() {
         for (Group& g : sum) g = Group{};
@@ -38,7 +38,7 @@ struct Strands {
         else
             for (int i = 0; i < count; i++) g[i] += double(value.v[i]);
     }
-    AA_INLINE void add_to(double* s) const {
+    AA_INLINE void addTo(double* s) const {
         for (int i = 0; i < kSumStrands; i++) s[i] += sum[i / N<R>][i % N<R>];
     }
     AA_INLINE double total() const {

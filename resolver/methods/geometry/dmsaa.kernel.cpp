@@ -56,8 +56,8 @@ struct Dmsaa {
                 const long o = long(y) * g.stride + x0;
                 Marks<R> marks;
                 markEdges(x0, y, marks);
-                copy_chunk<R>(a.color, a.out, g.width - x0, o);
-                for (int i = 0; i < chunk_groups<R>(g.width - x0); i++)
+                copyChunk<R>(a.color, a.out, g.width - x0, o);
+                for (int i = 0; i < chunkGroups<R>(g.width - x0); i++)
                     for (int lane = 0; marks.lanes[i] >> lane; lane++) {
                         const int x = x0 + i * N<R> + lane;
                         if (marks.lanes[i] >> lane & 1u && x < g.width) edgePixel(x, y);

@@ -70,8 +70,8 @@ AA_INLINE void blendRows(const EdgeBlendArgs& a, int y0, int y1) {
             const long o = long(y) * a.stride + x;
             for (int c = 0; c < 3; c++) store(load<R>(a.color.c[c] + o), a.out.c[c] + o);
             const EdgeDistances<R> e(a, o);
-            unsigned marked = mask_bits<R>(e.cutHere());
-            if (perAxis || a.searchNeighbours) marked |= mask_bits<R>(e.cutByNeighbour());
+            unsigned marked = maskBits<R>(e.cutHere());
+            if (perAxis || a.searchNeighbours) marked |= maskBits<R>(e.cutByNeighbour());
             for (int i = 0; marked >> i && x + i < a.width; i++) {
                 if (!(marked >> i & 1u)) continue;
                 const EdgeDistances<T> own(a, o + i);

@@ -81,7 +81,7 @@ struct Gpaa {
             const long o = long(y) * a.stride + x;
             for (int c = 0; c < 3; c++) store(load<R>(a.color.c[c] + o), a.out.c[c] + o);
             const R dx = load<R>(a.shiftXPx + o), dy = load<R>(a.shiftYPx + o);
-            unsigned moved = ~mask_bits<R>(both(dx == zero, dy == zero)) & ((1u << N<R>)-1u);
+            unsigned moved = ~maskBits<R>(both(dx == zero, dy == zero)) & ((1u << N<R>)-1u);
             for (int i = 0; moved >> i; i++) {
                 if (!(moved >> i & 1u) || x + i >= a.width) continue;
                 const vec3<T> c = resample<T>(a.color, a.stride, x + i, y, T(a.shiftXPx[o + i]), T(a.shiftYPx[o + i]));

@@ -16,10 +16,10 @@ struct Msaa {
     AA_INLINE void markEdges(int x0, int y, Marks<R>& marks) const {
         mark<R>(
             g, x0, y, marks, [&](int k, int x, long o) __attribute__((always_inline)) {
-                const auto otherObject = ids_differ<R>(g.objectId + o, g.sample[k].objectId + o);
+                const auto otherObject = idsDiffer<R>(g.objectId + o, g.sample[k].objectId + o);
                 if (!a.byGeometry) return otherObject;
-                return either(otherObject, negate(same_surface(a.rule, centre_point<R>(g, o), sample_point<R>(g, k, o),
-                                                               to_sample(g, columns<R>(x), y, k))));
+                return either(otherObject, negate(sameSurface(a.rule, centrePoint<R>(g, o), samplePoint<R>(g, k, o),
+                                                               toSample(g, columns<R>(x), y, k))));
             });
     }
 
@@ -51,7 +51,7 @@ struct Msaa {
             if (!covered) return;
             const bool atCentre = seed < 0 && !(m.a.centroid && covered < m.a.slots);
             const vec3<T> color = load3<T>(atCentre ? m.a.color : m.g.sample[nearest].color, pixel.at());
-            surfaces[count++] = {seed, covered, m.a.encoded && is_finite(color) ? display(m.a.display, color) : color};
+            surfaces[count++] = {seed, covered, m.a.encoded && isFinite(color) ? display(m.a.display, color) : color};
         }
         // A coverage-only sample counts for a stored surface that it lies on, else for that of the nearest slot.
         AA_INLINE void cover(int k) {
@@ -79,7 +79,7 @@ struct Msaa {
             T weights = 0;
             for (int i = 0; i < count; i++) {
                 const vec3<T> c = surfaces[i].color;
-                if (!is_finite(c)) continue;
+                if (!isFinite(c)) continue;
                 T w = T(surfaces[i].count);
                 if (m.a.inverseLuminance) w = w / (T(1) + max(T(0), luma709(c)));
                 if (!(weights > T(0))) origin = c;
@@ -96,7 +96,7 @@ struct Msaa {
         const long o = p.pixel.at();
         a.out.c[0][o] = float(c.x), a.out.c[1][o] = float(c.y), a.out.c[2][o] = float(c.z);
         for (int k = 0; a.sampleColors && k < g.samples; k++) {
-            const vec3<T> own = p.surfaces[p.surfaceOf[k]].color, s = is_finite(own) ? own : c;
+            const vec3<T> own = p.surfaces[p.surfaceOf[k]].color, s = isFinite(own) ? own : c;
             const RgbOut& to = a.sampleColors[k];
             to.c[0][o] = float(s.x), to.c[1][o] = float(s.y), to.c[2][o] = float(s.z);
         }
@@ -110,14 +110,14 @@ struct Msaa {
                 const long o = long(y) * g.stride + x0;
                 Marks<R> marks;
                 markEdges(x0, y, marks);
-                copy_chunk<R>(a.copied, a.out, g.width - x0, o);
+                copyChunk<R>(a.copied, a.out, g.width - x0, o);
                 for (int k = 0; a.sampleColors && k < g.samples; k++)
-                    copy_chunk<R>(a.copied, a.sampleColors[k], g.width - x0, o);
+                    copyChunk<R>(a.copied, a.sampleColors[k], g.width - x0, o);
                 if (a.surfacesLayer) {
-                    fill_chunk<R>(1, a.surfacesLayer + o, g.width - x0);
-                    fill_chunk<R>(1, a.coverageLayer + o, g.width - x0);
+                    fillChunk<R>(1, a.surfacesLayer + o, g.width - x0);
+                    fillChunk<R>(1, a.coverageLayer + o, g.width - x0);
                 }
-                for (int i = 0; i < chunk_groups<R>(g.width - x0); i++)
+                for (int i = 0; i < chunkGroups<R>(g.width - x0); i++)
                     for (int lane = 0; marks.lanes[i] >> lane; lane++) {
                         const int x = x0 + i * N<R> + lane;
                         if (marks.lanes[i] >> lane & 1u && x < g.width) edgePixel(x, y);

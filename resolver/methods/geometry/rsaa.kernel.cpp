@@ -19,7 +19,7 @@ struct Rsaa {
         if constexpr (measure == Dissimilarity::depth)
             return {load<S>(depthView + o), vec3<S>(S(Elem<S>(0)))};
         else
-            return surface_point<S>(depthView, normalWorld, o);
+            return surfacePoint<S>(depthView, normalWorld, o);
     }
     AA_INLINE SurfacePoint<R> centre(long o) const { return point<R>(g.depthView, g.normalWorld, o); }
     AA_INLINE SurfacePoint<R> sample(int k, long o) const {
@@ -27,7 +27,7 @@ struct Rsaa {
     }
 
     AA_INLINE Mask<R> mayDiffer(int k, int x, int y, long o, R limit) const {
-        return may_differ<measure>(centre(o), sample(k, o), to_sample(g, columns<R>(x), y, k), limit);
+        return surfacesMayDiffer<measure>(centre(o), sample(k, o), toSample(g, columns<R>(x), y, k), limit);
     }
     // Marks the pixels in which some sub-sample may be another surface.
     AA_INLINE void markSuspects(int x0, int y, Marks<R>& marks) const {
@@ -36,7 +36,7 @@ struct Rsaa {
         mark<R>(
             g, x0, y, marks, [&](int k, int x, long o) __attribute__((always_inline)) {
                 const auto differs = mayDiffer(k, x, y, o, limit);
-                return g.objectId ? either(differs, ids_differ<R>(g.objectId + o, g.sample[k].objectId + o)) : differs;
+                return g.objectId ? either(differs, idsDiffer<R>(g.objectId + o, g.sample[k].objectId + o)) : differs;
             });
     }
     // The same, sooner. With normals na, nb = na + e and v = dz ray + s, where s is the step on the image plane:
@@ -46,37 +46,37 @@ struct Rsaa {
     // |v|; the whole test runs where it does not.
     AA_INLINE void markSadpSuspects(int x0, int y, Marks<R>& marks) const {
         const R limit{T(a.floor)};
-        const int groups = chunk_groups<R>(g.width - x0);
+        const int groups = chunkGroups<R>(g.width - x0);
         const vec3<R> rayX = broadcast3<R>(g.rayX);
         const vec3<R> rowRay = broadcast3<R>(g.ray) + broadcast3<R>(g.rayY) * R(T(y));
         R alongRay[kChunk / N<R>], skyFrom[kChunk / N<R>];  // na.ray, NaN where the test does not apply; depth of sky
         for (int i = 0; i < groups; i++) {
             const int x = x0 + i * N<R>;
             const auto own = centre(long(y) * a.stride + x);
-            const auto empty = is_background(own.depthView);
-            const auto usable = both(negate(empty), has_normal(own.normalWorld));
+            const auto empty = isBackground(own.depthView);
+            const auto usable = both(negate(empty), hasNormal(own.normalWorld));
             alongRay[i] = select(usable, dot(own.normalWorld, rowRay + rayX * columns<R>(x)), R(T(NAN)));
             skyFrom[i] = select(empty, R(T(1e9)), R(T(INFINITY)));
             marks.lanes[i] = 0;
         }
         for (int k = 0; k < a.samples; k++) {
-            const auto separationHere = to_sample(g, R(T(x0)), y, k);
+            const auto separationHere = toSample(g, R(T(x0)), y, k);
             const bool perspective = g.originX[0] == 0 && g.originX[1] == 0 && g.originX[2] == 0;
             const vec3<R> step = perspective ? separationHere.stepRay : separationHere.stepOrigin;
             const R across = stepAcrossRay(step, x0, y);
             for (int i = 0; i < groups; i++) {
                 const int x = x0 + i * N<R>;
                 const long o = long(y) * a.stride + x;
-                prefetch_next(g, k, o);
+                prefetchNext(g, k, o);
                 const auto own = centre(o), other = sample(k, o);
                 const R scale = perspective ? other.depthView : R(T(1));
                 const R alongV = (other.depthView - own.depthView) * alongRay[i] + scale * dot(own.normalWorld, step);
                 const vec3<R> e = abs(other.normalWorld - own.normalWorld);
                 const auto onSurface = R(T(2)) * abs(alongV) < (limit - (e.x + e.y + e.z)) * (scale * across);
                 const auto same = either(onSurface, other.depthView >= skyFrom[i]);
-                unsigned suspects = mask_bits<R>(negate(same));
-                if (suspects) suspects &= mask_bits<R>(mayDiffer(k, x, y, o, limit));
-                if (g.objectId) suspects |= mask_bits<R>(ids_differ<R>(g.objectId + o, g.sample[k].objectId + o));
+                unsigned suspects = maskBits<R>(negate(same));
+                if (suspects) suspects &= maskBits<R>(mayDiffer(k, x, y, o, limit));
+                if (g.objectId) suspects |= maskBits<R>(idsDiffer<R>(g.objectId + o, g.sample[k].objectId + o));
                 marks.lanes[i] |= suspects;
             }
         }
@@ -96,21 +96,21 @@ struct Rsaa {
     AA_INLINE void markByPass(int x0, int y, Marks<R>& marks) const {
         uint32_t allOnes[16];
         for (uint32_t& m : allOnes) m = full;
-        const int groups = chunk_groups<R>(a.width - x0);
+        const int groups = chunkGroups<R>(a.width - x0);
         for (int i = 0; i < groups; i++) {
             const long o = long(y) * a.stride + x0 + i * N<R>;
-            marks.lanes[i] = mask_bits<R>(ids_differ<R>(a.maskPass + o, allOnes));
+            marks.lanes[i] = maskBits<R>(idsDiffer<R>(a.maskPass + o, allOnes));
             if (!marks.lanes[i] || !a.tuning) continue;
             uint32_t similar = full;  // what tuning will read
             for (int lane = 0; lane < N<R>; lane++) similar &= a.maskPass[o + lane];
             for (int k = 0; k < a.samples; k++)
-                if (!(similar >> k & 1u)) prefetch_sample(g, k, o);
+                if (!(similar >> k & 1u)) prefetchSample(g, k, o);
         }
     }
     // Of sub-sample k from the centre sample of its pixel.
     AA_INLINE R fromCentre(int k, int x, int y, long o) const {
-        const R d = dissimilarity<measure>(centre(o), sample(k, o), to_sample(g, columns<R>(x), y, k));
-        return g.objectId ? select(ids_differ<R>(g.objectId + o, g.sample[k].objectId + o), R(T(kFarthest)), d) : d;
+        const R d = dissimilarity<measure>(centre(o), sample(k, o), toSample(g, columns<R>(x), y, k));
+        return g.objectId ? select(idsDiffer<R>(g.objectId + o, g.sample[k].objectId + o), R(T(kFarthest)), d) : d;
     }
     // Bit k of mask[lane] is 1 where sub-sample k is similar to the centre; farthest[lane] is the largest
     // dissimilarity.
@@ -138,7 +138,7 @@ struct Rsaa {
         } else {
             for (int k = 0; k < a.samples; k++, bit = bit + bit) bits = bits + select(d[k] < limit, bit, zero);
         }
-        to_ints(select(farthest < limit, R(T(full)), bits), mask);
+        toInts(select(farthest < limit, R(T(full)), bits), mask);
         store(farthest, farthestOut);
     }
 
@@ -169,7 +169,7 @@ struct Rsaa {
             const int qx = clampIndex(x + n.at[i][0], a.width), qy = clampIndex(y + n.at[i][1], a.height);
             if (g.objectId && g.objectId[long(qy) * a.stride + qx] != sampleObject) continue;
             const Outside to = outside(k, x, y, qx, qy);
-            if (!may_differ<measure>(to.neighbour, to.own, to.way, limit) || to.dissimilarity() < limit) return true;
+            if (!surfacesMayDiffer<measure>(to.neighbour, to.own, to.way, limit) || to.dissimilarity() < limit) return true;
         }
         return false;
     }
@@ -186,25 +186,25 @@ struct Rsaa {
             const int dx = n.at[i][0], dy = n.at[i][1];
             const long q = o + long(dy) * a.stride + dx;
             unsigned open = missing;
-            if (g.objectId) open &= ~mask_bits<R>(ids_differ<R>(g.objectId + q, s.objectId + o));
+            if (g.objectId) open &= ~maskBits<R>(idsDiffer<R>(g.objectId + q, s.objectId + o));
             if (!open) continue;
             const auto other = centre(q);
             const auto way = separation(g, columns<R>(x + dx), y + dy, 0.0f, 0.0f, s.offsetPx[0] - float(dx),
                                         s.offsetPx[1] - float(dy));
-            unsigned shown = open & ~mask_bits<R>(may_differ<measure>(other, own, way, limit));
-            if (open & ~shown) shown |= open & mask_bits<R>(AA_ARCH::dissimilarity<measure>(other, own, way) < limit);
+            unsigned shown = open & ~maskBits<R>(surfacesMayDiffer<measure>(other, own, way, limit));
+            if (open & ~shown) shown |= open & maskBits<R>(AA_ARCH::dissimilarity<measure>(other, own, way) < limit);
             missing &= ~shown;
         }
         return asked & ~missing;
     }
-    static AA_INLINE unsigned lanes_without(const int* mask, int bit) {
-        using I = typename ints_of<N<R>>::unaligned;
-        return mask_bits<R>((Mask<R>)(typename ints_of<N<R>>::type(*(const I*)mask & bit) == 0));
+    static AA_INLINE unsigned lanesWithout(const int* mask, int bit) {
+        using I = typename IntsOf<N<R>>::unaligned;
+        return maskBits<R>((Mask<R>)(typename IntsOf<N<R>>::type(*(const I*)mask & bit) == 0));
     }
     // All lanes at once: worth it from two pixels on.
     AA_INLINE void tuneGroup(unsigned marked, int* mask, int x, int y) const {
         for (int k = 0; k < a.samples; k++) {
-            const unsigned asked = marked & lanes_without(mask, 1 << k);
+            const unsigned asked = marked & lanesWithout(mask, 1 << k);
             if (!asked) continue;
             unsigned alone = asked & ~shownByNeighbours(k, x, y, asked);
             for (; alone; alone &= alone - 1u) mask[__builtin_ctz(alone)] |= 1 << k;
@@ -244,11 +244,11 @@ struct Rsaa {
     AA_INLINE void keepColors(int x0, int y) const {
         const long o = long(y) * a.stride + x0;
         const int width = a.width - x0;
-        copy_chunk<R>(a.color, a.out, width, o);
+        copyChunk<R>(a.color, a.out, width, o);
         if (!a.maskLayer) return;
-        fill_chunk<R>(float(full), a.maskLayer + o, width), fill_chunk<R>(float(full), a.tunedLayer + o, width);
-        fill_chunk<R>(0, a.dissimilarityLayer + o, width);
-        fill_chunk<R>(0, a.offsetXLayer + o, width), fill_chunk<R>(0, a.offsetYLayer + o, width);
+        fillChunk<R>(float(full), a.maskLayer + o, width), fillChunk<R>(float(full), a.tunedLayer + o, width);
+        fillChunk<R>(0, a.dissimilarityLayer + o, width);
+        fillChunk<R>(0, a.offsetXLayer + o, width), fillChunk<R>(0, a.offsetYLayer + o, width);
     }
     AA_INLINE void resample(unsigned marked, int x, int y) const {
         const long o = long(y) * a.stride + x;
@@ -284,10 +284,10 @@ struct Rsaa {
                     markByPass(x0, y, marks);
                 else
                     markSuspects(x0, y, marks);
-                for (int i = 0; i < chunk_groups<R>(a.width - x0); i++)
+                for (int i = 0; i < chunkGroups<R>(a.width - x0); i++)
                     if (marks.lanes[i]) prefetchNeighbours(long(y) * a.stride + x0 + i * N<R>);
                 keepColors(x0, y);
-                for (int i = 0; i < chunk_groups<R>(a.width - x0); i++)
+                for (int i = 0; i < chunkGroups<R>(a.width - x0); i++)
                     if (marks.lanes[i]) resample(marks.lanes[i], x0 + i * N<R>, y);
             }
     }

@@ -90,7 +90,7 @@ struct Sbaa {
             int covered = 0;
             for (int i = 0; i < count; i++) {
                 const vec3<T> c = shade(clusters[i]);
-                if (!is_finite(c)) continue;
+                if (!isFinite(c)) continue;
                 if (!covered) origin = c;  // about the first colour: constants stay exact
                 covered += clusters[i].coverage;
                 sum = sum + (c - origin) * T(clusters[i].coverage);
@@ -117,9 +117,9 @@ struct Sbaa {
     AA_INLINE void markEdges(int x0, int y, Marks<R>& marks) const {
         mark<R>(
             g, x0, y, marks, [&](int k, int x, long o) __attribute__((always_inline)) {
-                const auto apart = negate(same_surface(a.merge, centre_point<R>(g, o), sample_point<R>(g, k, o),
-                                                       to_sample(g, columns<R>(x), y, k)));
-                return a.ids ? either(apart, ids_differ<R>(g.objectId + o, g.sample[k].objectId + o)) : apart;
+                const auto apart = negate(sameSurface(a.merge, centrePoint<R>(g, o), samplePoint<R>(g, k, o),
+                                                       toSample(g, columns<R>(x), y, k)));
+                return a.ids ? either(apart, idsDiffer<R>(g.objectId + o, g.sample[k].objectId + o)) : apart;
             });
     }
     AA_INLINE void rows(int y0, int y1) const {
@@ -128,13 +128,13 @@ struct Sbaa {
                 const long o = long(y) * g.stride + x0;
                 Marks<R> marks;
                 markEdges(x0, y, marks);
-                copy_chunk<R>(a.color, a.out, g.width - x0, o);
+                copyChunk<R>(a.color, a.out, g.width - x0, o);
                 if (a.clustersLayer) {
-                    fill_chunk<R>(1, a.clustersLayer + o, g.width - x0);
-                    fill_chunk<R>(1, a.surfacesLayer + o, g.width - x0);
-                    fill_chunk<R>(float((1u << g.samples) - 1u), a.largestLayer + o, g.width - x0);
+                    fillChunk<R>(1, a.clustersLayer + o, g.width - x0);
+                    fillChunk<R>(1, a.surfacesLayer + o, g.width - x0);
+                    fillChunk<R>(float((1u << g.samples) - 1u), a.largestLayer + o, g.width - x0);
                 }
-                for (int i = 0; i < chunk_groups<R>(g.width - x0); i++)
+                for (int i = 0; i < chunkGroups<R>(g.width - x0); i++)
                     for (int lane = 0; marks.lanes[i] >> lane; lane++) {
                         const int x = x0 + i * N<R> + lane;
                         if (marks.lanes[i] >> lane & 1u && x < g.width) edgePixel(x, y);

@@ -22,26 +22,26 @@ struct Sraa {
         const long q = long(y + dy) * g.stride + x + dx;
         const SubSampleArgs& s = g.sample[k];
         const float stepX = float(dx) - s.offsetPx[0], stepY = float(dy) - s.offsetPx[1];
-        const SurfacePoint<R> other = centre_point<R>(g, q);
+        const SurfacePoint<R> other = centrePoint<R>(g, q);
         const R relative = abs(other.depthView - own.depthView) / min(other.depthView, own.depthView);
         R apart = relative;
         if (!a.plainDepth) {
             const auto v = separation(g, columns<R>(x), y, s.offsetPx[0], s.offsetPx[1], stepX, stepY)
                                .vector(own.depthView, other.depthView);
-            apart = select(has_normal(own.normalWorld), abs(dot(own.normalWorld, v)) / own.depthView, relative);
+            apart = select(hasNormal(own.normalWorld), abs(dot(own.normalWorld, v)) / own.depthView, relative);
         }
-        const R cosine = dot(valid_normal(own.normalWorld), valid_normal(other.normalWorld));
+        const R cosine = dot(validNormal(own.normalWorld), validNormal(other.normalWorld));
         const R turned = one - saturate(cosine);
         const R geometry = a.maxMetric ? max(one - cosine, apart) * R(T(a.sharpness))
                                        : apart * apart * R(T(a.depth)) + turned * turned * R(T(a.normal));
         const R spatial = a.maxMetric ? zero : R((T(stepX) * T(stepX) + T(stepY) * T(stepY)) * T(a.spatial));
-        const auto emptyOwn = is_background(own.depthView), emptyOther = is_background(other.depthView);
+        const auto emptyOwn = isBackground(own.depthView), emptyOther = isBackground(other.depthView);
         const auto bothEmpty = both(emptyOwn, emptyOther);
         R log = -(spatial + select(bothEmpty, zero, geometry));
         log = select(both(either(emptyOwn, emptyOther), negate(bothEmpty)), unusable(), log);
         if (a.ids != SraaIds::off) {
             const long o = long(y) * g.stride + x;
-            auto otherObject = ids_differ<R>(s.objectId + o, g.objectId + q);
+            auto otherObject = idsDiffer<R>(s.objectId + o, g.objectId + q);
             if (a.ids == SraaIds::depth) otherObject = both(otherObject, relative > R(T(a.depthSigma)));
             log = select(otherObject, unusable(), log);
         }
@@ -53,7 +53,7 @@ struct Sraa {
     AA_INLINE vec3<R> reconstruct(int k, int x, int y, R& ownShare) const {
         const R zero(T(0)), one(T(1));
         const long o = long(y) * g.stride + x;
-        const SurfacePoint<R> own = sample_point<R>(g, k, o);
+        const SurfacePoint<R> own = samplePoint<R>(g, k, o);
         R logs[kMaxTaps], largest = unusable();
         int count = 0;
         for (int dy = -a.radius; dy <= a.radius; dy++)
@@ -68,7 +68,7 @@ struct Sraa {
         count = 0;
         for (int dy = -a.radius; dy <= a.radius; dy++)
             for (int dx = -a.radius; dx <= a.radius; dx++, count++) {
-                R w = exp2_clamped(logs[count] - largest);
+                R w = exp2Clamped(logs[count] - largest);
                 w = select(logs[count] > unusable() * R(T(0.5)), w, zero);
                 if (y + dy < 0 || y + dy >= g.height) continue;
                 const vec3<R> c = load3<R>(a.color, o + long(dy) * g.stride + dx);

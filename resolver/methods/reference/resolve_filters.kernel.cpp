@@ -39,7 +39,7 @@ __attribute__((flatten)) void resolveRows(const ResolveArgs& a, int y0, int y1) 
             // Negative lobes may cancel the sum: then the box is left.
             const auto usable = abs(total) >= R(T(1e-5));
             vec3<R> c = base + sum / select(usable, total, one);
-            if (mask_bits<R>(negate(usable))) c = select(usable, c, boxMean<R>(a, o));
+            if (maskBits<R>(negate(usable))) c = select(usable, c, boxMean<R>(a, o));
             c = max(vec3<R>(zero), c);
             store(c.x, a.out.c[0] + o);
             store(c.y, a.out.c[1] + o);

@@ -16,7 +16,7 @@ AA_INLINE Pair<T> operator+(Pair<T> a, Pair<T> b) {
 // Area between the base line and the segment (x1, y1)-(x2, y2) over the pixel [l, l + 1]: below it to `own`, above to
 // `opposite`.
 template <class T>
-AA_INLINE Pair<T> segment_area(T x1, T y1, T x2, T y2, T l) {
+AA_INLINE Pair<T> segmentArea(T x1, T y1, T x2, T y2, T l) {
     const T from = max(x1, l), to = min(x2, l + T(1)), length = to - from;
     if (!(length > T(0))) return {T(0), T(0)};
     const T slope = (y2 - y1) / (x2 - x1), ya = y1 + slope * (from - x1), yb = y1 + slope * (to - x1);
@@ -29,12 +29,12 @@ AA_INLINE Pair<T> segment_area(T x1, T y1, T x2, T y2, T l) {
     return ya < T(0) ? Pair<T>{first, second} : Pair<T>{second, first};
 }
 template <class T>
-AA_INLINE Pair<T> first_half(T h, T d, T l) {
-    return segment_area(T(0), h, d * T(0.5), T(0), l);
+AA_INLINE Pair<T> firstHalf(T h, T d, T l) {
+    return segmentArea(T(0), h, d * T(0.5), T(0), l);
 }
 template <class T>
-AA_INLINE Pair<T> second_half(T h, T d, T l) {
-    return segment_area(d * T(0.5), T(0), d, h, l);
+AA_INLINE Pair<T> secondHalf(T h, T d, T l) {
+    return segmentArea(d * T(0.5), T(0), d, h, l);
 }
 
 }  // namespace AA_ARCH

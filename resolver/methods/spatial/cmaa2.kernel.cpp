@@ -6,11 +6,11 @@ namespace AA_ARCH {
 using namespace aa;
 
 template <class R>
-AA_INLINE R right_step(const float* l) {
+AA_INLINE R rightStep(const float* l) {
     return abs(load<R>(l) - load<R>(l + 1));
 }
 template <class R>
-AA_INLINE R bottom_step(const float* l, long s) {
+AA_INLINE R bottomStep(const float* l, long s) {
     return abs(load<R>(l) - load<R>(l + s));
 }
 template <class R>
@@ -21,17 +21,17 @@ __attribute__((flatten)) void cmaa2EdgeRows(const Cmaa2EdgeArgs& a, int y0, int 
         for (int x = 0; x < a.width; x += N<R>) {
             const float* const l = a.luma + long(y) * s + x;
             uint8_t* const edges = a.edges + long(y) * a.edgeStride + x;
-            const R right = right_step<R>(l), bottom = bottom_step<R>(l, s);
-            if (!mask_bits<R>(either(right > threshold, bottom > threshold))) {
+            const R right = rightStep<R>(l), bottom = bottomStep<R>(l, s);
+            if (!maskBits<R>(either(right > threshold, bottom > threshold))) {
                 __builtin_memset(edges, 0, N<R>);
                 continue;
             }
             // The four edges that meet it at its ends.
             const R besideRight =
-                max(max(bottom_step<R>(l - s, s), bottom), max(bottom_step<R>(l + 1 - s, s), bottom_step<R>(l + 1, s)));
+                max(max(bottomStep<R>(l - s, s), bottom), max(bottomStep<R>(l + 1 - s, s), bottomStep<R>(l + 1, s)));
             const R besideBottom =
-                max(max(right_step<R>(l - 1), right), max(right_step<R>(l + s - 1), right_step<R>(l + s)));
-            store_mask_bytes<R>(right - contrast * besideRight > threshold,
+                max(max(rightStep<R>(l - 1), right), max(rightStep<R>(l + s - 1), rightStep<R>(l + s)));
+            storeMaskBytes<R>(right - contrast * besideRight > threshold,
                                 bottom - contrast * besideBottom > threshold, edges);
         }
 }
@@ -42,8 +42,8 @@ void cmaa2JoinRows(const Cmaa2JoinArgs& a, int y0, int y1) {
         const uint8_t* const row = a.edges + long(y) * a.edgeStride;
         uint8_t* const all = a.all + long(y) * a.edgeStride;
         for (int x = 0; x < a.width; x += 8) {
-            uint64_t bits = load_bytes(row + x) | (load_bytes(row + x - 1) & every * kCmaaRight) << 2 |
-                            (load_bytes(row + x - a.edgeStride) & every * kCmaaBottom) << 2;
+            uint64_t bits = loadBytes(row + x) | (loadBytes(row + x - 1) & every * kCmaaRight) << 2 |
+                            (loadBytes(row + x - a.edgeStride) & every * kCmaaBottom) << 2;
             if (a.width - x < 8) bits &= (uint64_t(1) << 8 * (a.width - x)) - 1;
             __builtin_memcpy(all + x, &bits, 8);
         }
@@ -56,7 +56,7 @@ struct EdgesOf {
     T right, bottom, left, top;
 };
 template <class T>
-AA_INLINE EdgesOf<T> edges_of(uint8_t e) {
+AA_INLINE EdgesOf<T> edgesOf(uint8_t e) {
     return {T(e & 1), T(e >> 1 & 1), T(e >> 2 & 1), T(e >> 3 & 1)};
 }
 // Turned by 90 degrees so that what pointed up points right: a vertical line becomes a horizontal one.
@@ -64,7 +64,7 @@ template <class T>
 AA_INLINE EdgesOf<T> turned(EdgesOf<T> e) {
     return {e.top, e.right, e.bottom, e.left};
 }
-AA_INLINE bool has_corner(uint8_t e) {
+AA_INLINE bool hasCorner(uint8_t e) {
     const unsigned next = (unsigned(e) << 1 | unsigned(e) >> 3) & 15u;
     return (e & next) != 0;
 }
@@ -72,7 +72,7 @@ AA_INLINE bool has_corner(uint8_t e) {
 // ---- the blur of every candidate
 
 template <class T>
-AA_INLINE void add_result(const Cmaa2BlendArgs& a, long o, uint16_t* stored, const T c[3], T weight, uint16_t code) {
+AA_INLINE void addResult(const Cmaa2BlendArgs& a, long o, uint16_t* stored, const T c[3], T weight, uint16_t code) {
     const bool first = *stored == 0;
     for (int k = 0; k < 3; k++) {
         float* const p = a.out.c[k] + o;
@@ -81,10 +81,10 @@ AA_INLINE void add_result(const Cmaa2BlendArgs& a, long o, uint16_t* stored, con
     *stored = uint16_t(*stored + code);
 }
 template <class T>
-AA_INLINE void blur_candidate(const Cmaa2BlendArgs& a, const uint8_t* e, long o, uint16_t* stored) {
+AA_INLINE void blurCandidate(const Cmaa2BlendArgs& a, const uint8_t* e, long o, uint16_t* stored) {
     const long s = a.edgeStride;
-    const EdgesOf<T> own = edges_of<T>(e[0]), l = edges_of<T>(e[-1]), r = edges_of<T>(e[1]), t = edges_of<T>(e[-s]),
-                     b = edges_of<T>(e[s]);
+    const EdgesOf<T> own = edgesOf<T>(e[0]), l = edgesOf<T>(e[-1]), r = edgesOf<T>(e[1]), t = edgesOf<T>(e[-s]),
+                     b = edgesOf<T>(e[s]);
     T right = own.right, below = own.bottom, left = own.left, above = own.top, strength = T(a.simpleBlur);
     const T one(1), k(0.9);                                     // CMAA2 v2.3
     if (own.right + own.bottom + own.left + own.top == T(2)) {  // an L: its arms pull
@@ -106,7 +106,7 @@ AA_INLINE void blur_candidate(const Cmaa2BlendArgs& a, const uint8_t* e, long o,
         c[i] = centre + (wr * (T(p[1]) - centre) + wl * (T(p[-1]) - centre)) +
                (wb * (T(p[a.stride]) - centre) + wt * (T(p[-a.stride]) - centre));
     }
-    add_result(a, o, stored, c, T(0.8), kCmaaBlurred);  // CMAA2 v2.3: 0.8 for a blur, 1.8 for a line
+    addResult(a, o, stored, c, T(0.8), kCmaaBlurred);  // CMAA2 v2.3: 0.8 for a blur, 1.8 for a line
     if (a.blur) a.blur[o] = float(wr + wb + wl + wt);
 }
 
@@ -121,25 +121,25 @@ struct ZScore {
     double inverted, normal;
 };
 // `own` is the pixel left of the step; m1, p1 and p2 lie -1, +1 and +2 px along the line.
-AA_INLINE ZScore z_score(EdgesOf<double> own, EdgesOf<double> m1, EdgesOf<double> p1, EdgesOf<double> p2) {
+AA_INLINE ZScore zScore(EdgesOf<double> own, EdgesOf<double> m1, EdgesOf<double> p1, EdgesOf<double> p2) {
     return {own.right * own.bottom * p1.top *
                 (2 + (m1.bottom + p2.top) - (own.top + p1.bottom) - 0.7 * (p2.bottom + m1.top + own.left + p1.right)),
             own.right * own.top * p1.bottom *
                 (2 + (m1.top + p2.bottom) - (own.bottom + p1.top) - 0.7 * (p2.top + m1.bottom + own.left + p1.right))};
 }
-AA_INLINE ZShape z_shape(const Cmaa2BlendArgs& a, const uint8_t* e) {
+AA_INLINE ZShape zShape(const Cmaa2BlendArgs& a, const uint8_t* e) {
     const long s = a.edgeStride;
     ZShape z{false, true, false, 0, 1, 1};
     double best = 0;
     if (e[0] & kCmaaRight) {
         const ZScore score =
-            z_score(edges_of<double>(e[0]), edges_of<double>(e[-1]), edges_of<double>(e[1]), edges_of<double>(e[2]));
+            zScore(edgesOf<double>(e[0]), edgesOf<double>(e[-1]), edgesOf<double>(e[1]), edgesOf<double>(e[2]));
         best = max(score.inverted, score.normal);
         z.inverted = score.inverted > score.normal;
     }
     if (e[0] & kCmaaTop) {
-        const ZScore score = z_score(turned(edges_of<double>(e[0])), turned(edges_of<double>(e[s])),
-                                     turned(edges_of<double>(e[-s])), turned(edges_of<double>(e[-2 * s])));
+        const ZScore score = zScore(turned(edgesOf<double>(e[0])), turned(edgesOf<double>(e[s])),
+                                     turned(edgesOf<double>(e[-s])), turned(edgesOf<double>(e[-2 * s])));
         const double vertical = max(score.inverted, score.normal);
         if (vertical > best) {
             best = vertical;
@@ -172,7 +172,7 @@ AA_INLINE ZShape z_shape(const Cmaa2BlendArgs& a, const uint8_t* e) {
     return z;
 }
 template <class T>
-AA_INLINE void blend_line(const Cmaa2BlendArgs& a, const ZShape& z, long o, uint16_t* stored) {
+AA_INLINE void blendLine(const Cmaa2BlendArgs& a, const ZShape& z, long o, uint16_t* stored) {
     const long along = z.horizontal ? 1 : -long(a.stride), storedAlong = z.horizontal ? 1 : -long(a.width);
     const long toward = (z.horizontal ? -long(a.stride) : -1) * (z.inverted ? -1 : 1);
     const int from = 1 - (z.left + 1) / 2, to = (z.right + 1) / 2;
@@ -184,7 +184,7 @@ AA_INLINE void blend_line(const Cmaa2BlendArgs& a, const ZShape& z, long o, uint
         const long p = o + along * i, q = p + (i > 0 ? -toward : toward);
         T c[3];
         for (int k = 0; k < 3; k++) c[k] = mix(T(a.in.c[k][p]), T(a.in.c[k][q]), share);
-        add_result(a, p, stored + storedAlong * i, c, T(1.8), 1);
+        addResult(a, p, stored + storedAlong * i, c, T(1.8), 1);
     }
 }
 
@@ -201,18 +201,18 @@ __attribute__((flatten)) void cmaa2BlendRows(const Cmaa2BlendArgs& a, int y0, in
         int vertical = 0;
         const auto candidates = [&](const auto& visit) __attribute__((always_inline)) {
             for (int x0 = 0; x0 < a.width; x0 += 8)
-                for_each_byte(
-                    load_bytes(edges + x0), [&](int i) __attribute__((always_inline)) {
+                forEachByte(
+                    loadBytes(edges + x0), [&](int i) __attribute__((always_inline)) {
                         const int x = x0 + i;
-                        if (x < a.width && has_corner(edges[x])) visit(x);
+                        if (x < a.width && hasCorner(edges[x])) visit(x);
                     });
         };
-        candidates([&](int x) __attribute__((always_inline)) { blur_candidate<T>(a, edges + x, row + x, stored + x); });
+        candidates([&](int x) __attribute__((always_inline)) { blurCandidate<T>(a, edges + x, row + x, stored + x); });
         candidates([&](int x) __attribute__((always_inline)) {
-            const ZShape z = z_shape(a, edges + x);
+            const ZShape z = zShape(a, edges + x);
             if (!z.found) return;
             if (z.horizontal)
-                blend_line<T>(a, z, row + x, stored + x);
+                blendLine<T>(a, z, row + x, stored + x);
             else
                 verticals[vertical++] = uint16_t(x);
             if (a.shape) {
@@ -229,7 +229,7 @@ __attribute__((flatten)) void cmaa2BlendColumns(const Cmaa2BlendArgs& a, int x0,
     for (int x = x0; x < x1; x++)
         for (int k = a.columnStart[x]; k < a.columnStart[x + 1]; k++) {
             const int y = a.columnRows[k];
-            blend_line<Elem<R>>(a, z_shape(a, a.edges + long(y) * a.edgeStride + x), long(y) * a.stride + x,
+            blendLine<Elem<R>>(a, zShape(a, a.edges + long(y) * a.edgeStride + x), long(y) * a.stride + x,
                                 a.stored + long(y) * a.width + x);
         }
 }

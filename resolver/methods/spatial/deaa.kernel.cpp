@@ -8,7 +8,7 @@ namespace AA_ARCH {
 using namespace aa;
 
 template <class R>
-AA_INLINE vec3<R> sample_at(const DeaaArgs& a, int k, long o) {
+AA_INLINE vec3<R> sampleAt(const DeaaArgs& a, int k, long o) {
     const RgbIn& s = a.samples[k];
     return {load<R>(s.c[0] + o), load<R>(s.c[1] + o), load<R>(s.c[2] + o)};
 }
@@ -20,10 +20,10 @@ __attribute__((flatten)) void markRows(const DeaaArgs& a, int y0, int y1) {
     for (int y = y0; y < y1; y++)
         for (int x = 0; x < a.width; x += N<R>) {
             const long o = long(y) * a.stride + x;
-            const vec3<R> first = sample_at<R>(a, 0, o);
+            const vec3<R> first = sampleAt<R>(a, 0, o);
             vec3<R> sum(R(T(0))), lowest = first, highest = first;
             for (int k = 1; k < a.sampleCount; k++) {
-                const vec3<R> c = sample_at<R>(a, k, o);
+                const vec3<R> c = sampleAt<R>(a, k, o);
                 sum = sum + (c - first);
                 lowest = min(lowest, c);
                 highest = max(highest, c);
@@ -32,11 +32,11 @@ __attribute__((flatten)) void markRows(const DeaaArgs& a, int y0, int y1) {
             store(mean.x, a.out.c[0] + o);
             store(mean.y, a.out.c[1] + o);
             store(mean.z, a.out.c[2] + o);
-            const auto edge = max_component(highest - lowest) > same;
-            store_mask_bytes<R>(edge, edge, a.edgesOut + long(y) * a.edgeStride + x);
+            const auto edge = maxComponent(highest - lowest) > same;
+            storeMaskBytes<R>(edge, edge, a.edgesOut + long(y) * a.edgeStride + x);
         }
 }
-AA_INLINE int edge_pixels_around(const DeaaArgs& a, int x, int y) {
+AA_INLINE int edgePixelsAround(const DeaaArgs& a, int x, int y) {
     int n = 0;
     for (int j = -1; j <= 1; j++)
         for (int i = -1; i <= 1; i++) n += a.edges[long(y + j) * a.edgeStride + x + i] != 0;
@@ -46,18 +46,18 @@ struct Plane {
     double gx, gy, mean;
     bool fits;
 };
-AA_INLINE double luma_of_sample(const DeaaArgs& a, int k, long o) {
+AA_INLINE double lumaOfSample(const DeaaArgs& a, int k, long o) {
     const RgbIn& s = a.samples[k];
     return 0.2126 * s.c[0][o] + 0.7152 * s.c[1][o] + 0.0722 * s.c[2][o];
 }
 // Least-squares plane through the luma of all samples of the window.
-AA_INLINE Plane fitted_plane(const DeaaArgs& a, long o) {
+AA_INLINE Plane fittedPlane(const DeaaArgs& a, long o) {
     double values[9 * kDeaaMaxSamples], sum = 0, sx = 0, sy = 0, lowest = 1e30, highest = -1e30, mx = 0, my = 0;
     int n = 0;
     for (int j = -1; j <= 1; j++)
         for (int i = -1; i <= 1; i++)
             for (int k = 0; k < a.sampleCount; k++, n++) {
-                const double v = luma_of_sample(a, k, o + long(j) * a.stride + i);
+                const double v = lumaOfSample(a, k, o + long(j) * a.stride + i);
                 values[n] = v;
                 sum += v;
                 lowest = min(lowest, v);
@@ -102,11 +102,11 @@ AA_INLINE double chord(double px, double py, double tx, double ty) {
     }
     return max(0.0, to - from);
 }
-AA_INLINE void filter_pixel(const DeaaArgs& a, int x, int y) {
+AA_INLINE void filterPixel(const DeaaArgs& a, int x, int y) {
     const long o = long(y) * a.stride + x;
-    const int around = edge_pixels_around(a, x, y);
+    const int around = edgePixelsAround(a, x, y);
     if (around < 2 || around == 9) return;  // isolated or complex: the box stays
-    const Plane plane = fitted_plane(a, o);
+    const Plane plane = fittedPlane(a, o);
     const double gradient = sqrt(plane.gx * plane.gx + plane.gy * plane.gy);
     if (!plane.fits || !(gradient > 1e-12)) return;
     const double tx = -plane.gy / gradient, ty = plane.gx / gradient;  // along the isolines
@@ -130,9 +130,9 @@ __attribute__((flatten)) void filterRows(const DeaaArgs& a, int y0, int y1) {
     if (a.invXX == 0 && a.invYY == 0) return;  // singular fit: all samples on a line
     for (int y = y0; y < y1; y++)
         for (int x0 = 0; x0 < a.width; x0 += 8)
-            for_each_byte(
-                load_bytes(a.edges + long(y) * a.edgeStride + x0), [&](int i) __attribute__((always_inline)) {
-                    if (x0 + i < a.width) filter_pixel(a, x0 + i, y);
+            forEachByte(
+                loadBytes(a.edges + long(y) * a.edgeStride + x0), [&](int i) __attribute__((always_inline)) {
+                    if (x0 + i < a.width) filterPixel(a, x0 + i, y);
                 });
 }
 }  // namespace AA_ARCH

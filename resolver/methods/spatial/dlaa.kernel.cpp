@@ -6,16 +6,16 @@ namespace AA_ARCH {
 using namespace aa;
 
 template <class R>
-AA_INLINE vec3<R> colour_at(const RgbIn& in, long o) {
+AA_INLINE vec3<R> colourAt(const RgbIn& in, long o) {
     return {load<R>(in.c[0] + o), load<R>(in.c[1] + o), load<R>(in.c[2] + o)};
 }
 // The second difference of the colours: both neighbours at `step`, minus twice the centre.
 template <class R>
-AA_INLINE vec3<R> second_difference(const RgbIn& in, long o, long step, vec3<R> c) {
-    return (colour_at<R>(in, o - step) - c) + (colour_at<R>(in, o + step) - c);
+AA_INLINE vec3<R> secondDifference(const RgbIn& in, long o, long step, vec3<R> c) {
+    return (colourAt<R>(in, o - step) - c) + (colourAt<R>(in, o + step) - c);
 }
 // The border of a finished row, and of the planes when it is their first or last: its last pixels repeat.
-AA_INLINE void repeat_border(const DlaaEdgeArgs& a, float* plane, int y) {
+AA_INLINE void repeatBorder(const DlaaEdgeArgs& a, float* plane, int y) {
     float* const row = plane + long(y) * a.stride;
     for (int k = 1; k <= kDlaaReach; k++) row[-k] = row[0], row[a.width - 1 + k] = row[a.width - 1];
     if (y > 0 && y < a.height - 1) return;
@@ -34,39 +34,39 @@ __attribute__((flatten)) void edgeRows(const DlaaEdgeArgs& a, int y0, int y1) {
             unsigned strong = 0, busy = 0;
             for (int i = 0; i < 8; i += N<R>) {
                 const long o = long(y) * a.stride + x + i;
-                const vec3<R> c = colour_at<R>(a.in, o);
-                const vec3<R> alongX = second_difference(a.in, o, 1, c),
-                              alongY = second_difference(a.in, o, a.stride, c);
+                const vec3<R> c = colourAt<R>(a.in, o);
+                const vec3<R> alongX = secondDifference(a.in, o, 1, c),
+                              alongY = secondDifference(a.in, o, a.stride, c);
                 const R strength = saturate(luma709(abs(alongX + alongY)) * four);  // 8-bit storage clamped it
                 store(strength, a.edge + o);
                 store(luma709(c), a.luma + o);
-                strong |= mask_bits<R>(strength >= fromHere) << i;
-                const R largest = max(max_component(abs(alongX)), max_component(abs(alongY)));
-                busy |= mask_bits<R>(largest > calm) << i;
+                strong |= maskBits<R>(strength >= fromHere) << i;
+                const R largest = max(maxComponent(abs(alongX)), maxComponent(abs(alongY)));
+                busy |= maskBits<R>(largest > calm) << i;
             }
             const long group = long(y) * ((a.width + 7) / 8) + (x >> 3);
             a.strong[group] = uint8_t(__builtin_popcount(strong));
             a.busy[group] = uint8_t(busy);
         }
-        repeat_border(a, a.edge, y);
-        repeat_border(a, a.luma, y);
+        repeatBorder(a, a.edge, y);
+        repeatBorder(a, a.luma, y);
     }
 }
 // Twice the sum of two bilinear taps at +-1.5 px is the sum of the four pixels at +-1 and +-2; here minus 4 times the
 // centre, which keeps constants exact.
 template <class R>
-AA_INLINE vec3<R> wide_difference(const DlaaArgs& a, long o, long step, vec3<R> c) {
-    return ((colour_at<R>(a.in, o - step) - c) + (colour_at<R>(a.in, o + step) - c)) +
-           ((colour_at<R>(a.in, o - 2 * step) - c) + (colour_at<R>(a.in, o + 2 * step) - c));
+AA_INLINE vec3<R> wideDifference(const DlaaArgs& a, long o, long step, vec3<R> c) {
+    return ((colourAt<R>(a.in, o - step) - c) + (colourAt<R>(a.in, o + step) - c)) +
+           ((colourAt<R>(a.in, o - 2 * step) - c) + (colourAt<R>(a.in, o + 2 * step) - c));
 }
 // How strongly an edge that runs the other way calls for this blur.
 template <class R>
-AA_INLINE R short_strength(const DlaaArgs& a, vec3<R> difference) {
+AA_INLINE R shortStrength(const DlaaArgs& a, vec3<R> difference) {
     using T = Elem<R>;
     return R(T(a.lambda)) * luma709(abs(difference) * R(T(0.25))) - R(T(a.epsilon));
 }
 template <class R>
-AA_INLINE R short_mask(R strength, vec3<R> blur) {
+AA_INLINE R shortMaskOf(R strength, vec3<R> blur) {
     using T = Elem<R>;
     const R zero(T(0)), one(T(1)), level = luma709(blur);
     const R ratio = saturate(strength / max(R(T(1e-12)), level));
@@ -74,7 +74,7 @@ AA_INLINE R short_mask(R strength, vec3<R> blur) {
 }
 // Mean of the taps at +-1.5, +-3.5, +-5.5, +-7.5 px: of 16 pixels.
 template <class R>
-AA_INLINE R mean_of_16(const float* p, long step) {
+AA_INLINE R meanOf16(const float* p, long step) {
     R sum(Elem<R>(0));
     for (int i = 1; i <= kDlaaReach; i++) sum = sum + (load<R>(p - i * step) + load<R>(p + i * step));
     return sum * R(Elem<R>(1.0 / 16));
@@ -84,42 +84,42 @@ AA_INLINE R mean_of_16(const float* p, long step) {
 // no shift; nearly equal lumas have no meaningful ratio and go there continuously. Their difference is that of the
 // colours, which is exact when they are close.
 template <class R>
-AA_INLINE R own_share(R blurMinusOwn, R ownMinusNeighbour) {
+AA_INLINE R shareOfOwn(R blurMinusOwn, R ownMinusNeighbour) {
     using T = Elem<R>;
     const R one(T(1)), least(T(kDlaaEqualLumas * kDlaaEqualLumas));
     return saturate(one + blurMinusOwn * ownMinusNeighbour / max(ownMinusNeighbour * ownMinusNeighbour, least));
 }
 // The shift across a long edge whose luma matches the blur along it, from the neighbours before and behind.
 template <class R>
-AA_INLINE vec3<R> shifted_by(R missing, vec3<R> before, vec3<R> c, vec3<R> behind, R& sum) {
-    const R near = own_share(missing, luma709(c - before)), far = own_share(missing, luma709(c - behind));
+AA_INLINE vec3<R> shiftedBy(R missing, vec3<R> before, vec3<R> c, vec3<R> behind, R& sum) {
+    const R near = shareOfOwn(missing, luma709(c - before)), far = shareOfOwn(missing, luma709(c - behind));
     sum = sum + near + far;
     return mix(behind, mix(before, c, near), far);
 }
 template <class R>
-AA_INLINE vec3<R> long_edges(const DlaaArgs& a, long o, vec3<R> centre, vec3<R> c, R maskH, R maskV) {
-    const vec3<R> left = colour_at<R>(a.in, o - 1), right = colour_at<R>(a.in, o + 1),
-                  top = colour_at<R>(a.in, o - a.stride), bottom = colour_at<R>(a.in, o + a.stride);
+AA_INLINE vec3<R> longEdges(const DlaaArgs& a, long o, vec3<R> centre, vec3<R> c, R maskH, R maskV) {
+    const vec3<R> left = colourAt<R>(a.in, o - 1), right = colourAt<R>(a.in, o + 1),
+                  top = colourAt<R>(a.in, o - a.stride), bottom = colourAt<R>(a.in, o + a.stride);
     const R own = load<R>(a.luma + o);
     R sum(Elem<R>(0));
-    const vec3<R> vertical = shifted_by(mean_of_16<R>(a.luma + o, a.stride) - own, left, centre, right, sum);
-    const vec3<R> horizontal = shifted_by(mean_of_16<R>(a.luma + o, 1) - own, top, centre, bottom, sum);
+    const vec3<R> vertical = shiftedBy(meanOf16<R>(a.luma + o, a.stride) - own, left, centre, right, sum);
+    const vec3<R> horizontal = shiftedBy(meanOf16<R>(a.luma + o, 1) - own, top, centre, bottom, sum);
     const R shifts = saturate(sum * R(Elem<R>(1 / kDlaaFade)));  // all four zero: no shift
     c = mix(c, mix(centre, vertical, shifts), maskV);
     return mix(c, mix(centre, horizontal, shifts), maskH);
 }
 template <class R>
-AA_INLINE R bilinear_corner(const float* p, long across, long down) {  // tap at (+-1.5, +-1.5)
+AA_INLINE R bilinearCorner(const float* p, long across, long down) {  // tap at (+-1.5, +-1.5)
     return (load<R>(p + across + down) + load<R>(p + 2 * across + down)) +
            (load<R>(p + across + 2 * down) + load<R>(p + 2 * across + 2 * down));
 }
 template <class R>
-AA_INLINE R highlight_mask(const DlaaArgs& a, long o) {
+AA_INLINE R highlightMask(const DlaaArgs& a, long o) {
     using T = Elem<R>;
     const float* const e = a.edge + o;
     const long s = a.stride;
-    const R corners = bilinear_corner<R>(e, 1, s) + bilinear_corner<R>(e, 1, -s) + bilinear_corner<R>(e, -1, s) +
-                      bilinear_corner<R>(e, -1, -s);  // 4 * mean of 4 pixels each
+    const R corners = bilinearCorner<R>(e, 1, s) + bilinearCorner<R>(e, 1, -s) + bilinearCorner<R>(e, -1, s) +
+                      bilinearCorner<R>(e, -1, -s);  // 4 * mean of 4 pixels each
     R cross = load<R>(e);
     for (int i = 1; i <= 2; i++)
         cross = cross + (load<R>(e - i) + load<R>(e + i)) + (load<R>(e - i * s) + load<R>(e + i * s));
@@ -163,30 +163,30 @@ struct GroupWork {
     }
 };
 template <class R>
-AA_INLINE void filter_pixels(const DlaaArgs& a, long o, uint8_t work) {
+AA_INLINE void filterPixels(const DlaaArgs& a, long o, uint8_t work) {
     using T = Elem<R>;
     const R sixth(T(1.0 / 6)), zero(T(0)), one(T(1)), two(T(2));
-    const vec3<R> centre = colour_at<R>(a.in, o);
+    const vec3<R> centre = colourAt<R>(a.in, o);
     vec3<R> c = centre;
     R maskH = zero, maskV = zero, onlyLong = zero;
     if (work & kShortEdges) {
-        const vec3<R> wideH = wide_difference(a, o, 1, centre), wideV = wide_difference(a, o, a.stride, centre);
-        const R strengthH = short_strength(a, wideH), strengthV = short_strength(a, wideV);
-        if (mask_bits<R>(either(strengthH > zero, strengthV > zero))) {
+        const vec3<R> wideH = wideDifference(a, o, 1, centre), wideV = wideDifference(a, o, a.stride, centre);
+        const R strengthH = shortStrength(a, wideH), strengthV = shortStrength(a, wideV);
+        if (maskBits<R>(either(strengthH > zero, strengthV > zero))) {
             const vec3<R> blurH = centre + wideH * sixth, blurV = centre + wideV * sixth;
-            maskH = short_mask(strengthH, blurV), maskV = short_mask(strengthV, blurH);
+            maskH = shortMaskOf(strengthH, blurV), maskV = shortMaskOf(strengthV, blurH);
             c = mix(centre, blurH, maskV);
             c = mix(c, blurV, maskH * R(T(0.5)));  // half: the two passes would over-blur
         }
     }
     if (work & kLongEdges) {
-        const R longH = saturate(mean_of_16<R>(a.edge + o, 1) * two - one);
-        const R longV = saturate(mean_of_16<R>(a.edge + o, a.stride) * two - one);
+        const R longH = saturate(meanOf16<R>(a.edge + o, 1) * two - one);
+        const R longV = saturate(meanOf16<R>(a.edge + o, a.stride) * two - one);
         const R dominance = saturate((abs(longH - longV) - R(T(a.longThreshold))) * R(T(1 / kDlaaFade)));
-        if (mask_bits<R>(dominance > zero)) c = long_edges(a, o, centre, c, longH * dominance, longV * dominance);
+        if (maskBits<R>(dominance > zero)) c = longEdges(a, o, centre, c, longH * dominance, longV * dominance);
         onlyLong = (longH - longV) * dominance;
     }
-    if (a.preserveHighlights) c = mix(c, centre, highlight_mask<R>(a, o));
+    if (a.preserveHighlights) c = mix(c, centre, highlightMask<R>(a, o));
     store(c.x, a.out.c[0] + o);
     store(c.y, a.out.c[1] + o);
     store(c.z, a.out.c[2] + o);
@@ -196,7 +196,7 @@ AA_INLINE void filter_pixels(const DlaaArgs& a, long o, uint8_t work) {
     }
 }
 template <class R>
-AA_INLINE void keep_pixels(const DlaaArgs& a, long o) {
+AA_INLINE void keepPixels(const DlaaArgs& a, long o) {
     for (long p = o; p < o + 8; p += N<R>) {
         for (int c = 0; c < 3; c++) store(load<R>(a.in.c[c] + p), a.out.c[c] + p);
         if (a.shortMask) store(R(Elem<R>(0)), a.shortMask + p), store(R(Elem<R>(0)), a.longMask + p);
@@ -212,9 +212,9 @@ __attribute__((flatten)) void filterRows(const DlaaArgs& a, int y0, int y1) {
             const long o = long(y) * a.stride + 8 * g;
             const uint8_t work = groups.work[g];
             if (work == kNothing)
-                keep_pixels<R>(a, o);
+                keepPixels<R>(a, o);
             else
-                for (int i = 0; i < 8; i += N<R>) filter_pixels<R>(a, o + i, work);
+                for (int i = 0; i < 8; i += N<R>) filterPixels<R>(a, o + i, work);
         }
         groups.add(y + kDlaaReach + 1);
         groups.remove(y - kDlaaReach);

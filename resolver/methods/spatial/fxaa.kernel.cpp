@@ -2,24 +2,24 @@
 
 namespace AA_ARCH {
 
-AA_INLINE void fxaa311_pixel(const FxaaArgs& a, int x, int y, int i, const Classes& classes) {
+AA_INLINE void fxaa311Pixel(const FxaaArgs& a, int x, int y, int i, const Classes& classes) {
     const bool horizontal = classes.horizontal >> i & 1;
     const double negativeStep = classes.negativeStep[i], positiveStep = classes.positiveStep[i];
     const bool positiveSide = !(negativeStep >= positiveStep);
-    const EdgeLine line = line_beside(a, x, y, horizontal, positiveSide, positiveSide ? positiveStep : negativeStep);
-    const LineEnds ends = find_ends(a, line);
+    const EdgeLine line = lineBeside(a, x, y, horizontal, positiveSide, positiveSide ? positiveStep : negativeStep);
+    const LineEnds ends = findEnds(a, line);
     const double subShift = smooth(classes.contrast[i]);
-    const double shiftPx = max(edge_shift(ends, double(*line.own) - line.middle < 0), subShift * subShift * a.subpix);
+    const double shiftPx = max(edgeShift(ends, double(*line.own) - line.middle < 0), subShift * subShift * a.subpix);
     const long o = long(y) * a.stride + x, across = horizontal ? a.stride : 1;
-    write_shifted(a, o, positiveSide ? across : -across, shiftPx);
-    write_debug(a, o, horizontal, ends, shiftPx);
+    writeShifted(a, o, positiveSide ? across : -across, shiftPx);
+    writeDebug(a, o, horizontal, ends, shiftPx);
 }
 
 template <class R>
 __attribute__((flatten)) void fxaa311Rows(const FxaaArgs& a, int y0, int y1) {
-    for_classified_pixels<R>(
+    forClassifiedPixels<R>(
         a, y0, y1, [&](int x, int y, int i, const Classes& classes) __attribute__((always_inline)) {
-            fxaa311_pixel(a, x, y, i, classes);
+            fxaa311Pixel(a, x, y, i, classes);
         });
 }
 

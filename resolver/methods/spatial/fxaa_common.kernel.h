@@ -11,16 +11,16 @@ using namespace aa;
 
 #ifdef __AVX512DQ__
 inline constexpr int kWide = 8;
-AA_INLINE unsigned sign_bits(Lanes<double, kWide>::V v) { return _mm512_movepi64_mask((__m512i)v); }
+AA_INLINE unsigned signBits(Lanes<double, kWide>::V v) { return _mm512_movepi64_mask((__m512i)v); }
 #elif defined(__AVX2__)
 inline constexpr int kWide = 4;
-AA_INLINE unsigned sign_bits(Lanes<double, kWide>::V v) { return unsigned(_mm256_movemask_pd((__m256d)v)); }
+AA_INLINE unsigned signBits(Lanes<double, kWide>::V v) { return unsigned(_mm256_movemask_pd((__m256d)v)); }
 #else
 inline constexpr int kWide = 2;
-AA_INLINE unsigned sign_bits(Lanes<double, kWide>::V v) { return unsigned(_mm_movemask_pd((__m128d)v)); }
+AA_INLINE unsigned signBits(Lanes<double, kWide>::V v) { return unsigned(_mm_movemask_pd((__m128d)v)); }
 #endif
 using Wide = Lanes<double, kWide>;  // one register of doubles
-AA_INLINE Wide load_wide(const float* p) {
+AA_INLINE Wide loadWide(const float* p) {
 #ifdef __AVX512DQ__
     return Wide((Wide::V)_mm512_maskz_cvtps_pd(0xff, _mm256_loadu_ps(p)));  // GCC 12 converts in four steps by itself
 #endif
@@ -29,7 +29,7 @@ AA_INLINE Wide load_wide(const float* p) {
     __builtin_memcpy(&f, p, sizeof f);
     return __builtin_convertvector(f, Wide::V);
 }
-AA_INLINE unsigned mask_of(Mask<Wide> m) { return sign_bits((Wide::V)m); }
+AA_INLINE unsigned maskOf(Mask<Wide> m) { return signBits((Wide::V)m); }
 
 struct Neighbourhood {
     double m, n, s, w, e, nw, ne, sw, se;
@@ -40,16 +40,16 @@ AA_INLINE Neighbourhood neighbourhood(const float* luma, long o, int stride) {
 }
 // Second differences across rows against those across columns. Where their signs agree the two sums are equal.
 template <class R>
-AA_INLINE Mask<R> runs_horizontally(R m, R n, R s, R w, R e, R nw, R ne, R sw, R se) {
+AA_INLINE Mask<R> runsHorizontally(R m, R n, R s, R w, R e, R nw, R ne, R sw, R se) {
     const R two(Elem<R>(2));
     const R acrossRows = abs(nw + sw - two * w) + two * abs(n + s - two * m) + abs(ne + se - two * e);
     const R acrossColumns = abs(nw + ne - two * n) + two * abs(w + e - two * m) + abs(sw + se - two * s);
     return acrossRows >= acrossColumns * R(Elem<R>(1 - 1e-6));
 }
-AA_INLINE bool horizontal_edge(const Neighbourhood& l) {
-    return runs_horizontally(l.m, l.n, l.s, l.w, l.e, l.nw, l.ne, l.sw, l.se);
+AA_INLINE bool horizontalEdge(const Neighbourhood& l) {
+    return runsHorizontally(l.m, l.n, l.s, l.w, l.e, l.nw, l.ne, l.sw, l.se);
 }
-AA_INLINE double range_of(const Neighbourhood& l) {
+AA_INLINE double rangeOf(const Neighbourhood& l) {
     return max(max(max(l.n, l.s), max(l.w, l.e)), l.m) - min(min(min(l.n, l.s), min(l.w, l.e)), l.m);
 }
 template <class R>
@@ -68,11 +68,11 @@ struct Classes {
 AA_INLINE void classify(const float* l, long s, Classes& to, int at) {
     for (int i = 0; i < 8; i += kWide) {
         const float* const p = l + i;
-        const Wide m = load_wide(p), n = load_wide(p - s), so = load_wide(p + s), w = load_wide(p - 1),
-                   e = load_wide(p + 1), nw = load_wide(p - s - 1), ne = load_wide(p - s + 1),
-                   sw = load_wide(p + s - 1), se = load_wide(p + s + 1);
-        const auto horizontal = runs_horizontally(m, n, so, w, e, nw, ne, sw, se);
-        to.horizontal |= uint64_t(mask_of(horizontal)) << (at + i);
+        const Wide m = loadWide(p), n = loadWide(p - s), so = loadWide(p + s), w = loadWide(p - 1),
+                   e = loadWide(p + 1), nw = loadWide(p - s - 1), ne = loadWide(p - s + 1),
+                   sw = loadWide(p + s - 1), se = loadWide(p + s + 1);
+        const auto horizontal = runsHorizontally(m, n, so, w, e, nw, ne, sw, se);
+        to.horizontal |= uint64_t(maskOf(horizontal)) << (at + i);
         store(abs(select(horizontal, n, w) - m), to.negativeStep + at + i);
         store(abs(select(horizontal, so, e) - m), to.positiveStep + at + i);
         const Wide range = max(max(max(n, so), max(w, e)), m) - min(min(min(n, so), min(w, e)), m);
@@ -99,8 +99,8 @@ AA_INLINE unsigned ended(const EdgeLine& line, const float* own, const float* si
     unsigned bits = 0;
     below = 0;
     for (int i = 0; i < 8; i += kWide) {
-        const Wide near = load_wide(own + i) + load_wide(side + i);
-        const Wide far = load_wide(own + i + further) + load_wide(side + i + further);
+        const Wide near = loadWide(own + i) + loadWide(side + i);
+        const Wide far = loadWide(own + i + further) + loadWide(side + i + further);
 #ifdef __AVX512DQ__
         const Wide e =
             Wide((Wide::V)_mm512_mask_blend_pd(__mmask8(half), (__m512d)near.v, (__m512d)far.v)) + near - middle;
@@ -110,15 +110,15 @@ AA_INLINE unsigned ended(const EdgeLine& line, const float* own, const float* si
         Mask<Wide> lane;
         for (int k = 0; k < kWide; k++) lane[k] = 1ll << (i + k);
         const Wide e = select((lane & (long long)half) != 0, far, near) + near - middle;
-        bits |= mask_of(abs(e) >= threshold) << i;
-        below |= mask_of(e < Wide(0.0)) << i;
+        bits |= maskOf(abs(e) >= threshold) << i;
+        below |= maskOf(e < Wide(0.0)) << i;
 #endif
     }
     return bits;
 }
 // Marches both ways until the luma leaves the pair's mean by a quarter of the gradient. The last distance is a jump
 // whose end is never sampled.
-AA_INLINE LineEnds find_ends(const FxaaArgs& a, const EdgeLine& line) {
+AA_INLINE LineEnds findEnds(const FxaaArgs& a, const EdgeLine& line) {
     const int last = a.distanceHalfPx[a.steps - 1];
     LineEnds ends{last, last, false, false};
     for (int w = 0; w < a.windows; w++) {
@@ -146,14 +146,14 @@ AA_INLINE LineEnds find_ends(const FxaaArgs& a, const EdgeLine& line) {
     return ends;
 }
 // Shift that makes the pixel pair follow the line: nothing unless the nearer end bends toward this pixel.
-AA_INLINE double edge_shift(const LineEnds& ends, bool pixelBelowMiddle) {
+AA_INLINE double edgeShift(const LineEnds& ends, bool pixelBelowMiddle) {
     const bool nearNegative = ends.negativeHalfPx < ends.positiveHalfPx;
     const bool bends = ((int(nearNegative) & int(ends.negativeBelow)) |
                         (int(!nearNegative) & int(ends.positiveBelow))) != int(pixelBelowMiddle);
     const int nearest = ends.negativeHalfPx < ends.positiveHalfPx ? ends.negativeHalfPx : ends.positiveHalfPx;
     return double(bends) * (0.5 - double(nearest) / double(ends.negativeHalfPx + ends.positiveHalfPx));
 }
-AA_INLINE void write_shifted(const FxaaArgs& a, long o, long across, double shiftPx) {
+AA_INLINE void writeShifted(const FxaaArgs& a, long o, long across, double shiftPx) {
     using Channels = Lanes<double, 4>;  // without branches: nobody can foretell whether a pixel shifts
     const auto channels = [&](long at) __attribute__((always_inline)) {
         return Channels(Channels::V{a.in.c[0][at], a.in.c[1][at], a.in.c[2][at], 0});
@@ -162,7 +162,7 @@ AA_INLINE void write_shifted(const FxaaArgs& a, long o, long across, double shif
     const Channels shifted = own + select(shift > zero, (channels(o + across) - own) * shift, zero);
     for (int c = 0; c < 3; c++) a.out.c[c][o] = float(shifted.v[c]);
 }
-AA_INLINE void write_debug(const FxaaArgs& a, long o, bool horizontal, const LineEnds& ends, double shiftPx) {
+AA_INLINE void writeDebug(const FxaaArgs& a, long o, bool horizontal, const LineEnds& ends, double shiftPx) {
     if (!a.orientation) return;
     a.orientation[o] = horizontal ? 1 : 2;
     a.negativePx[o] = float(ends.negativeHalfPx) * 0.5f;
@@ -172,7 +172,7 @@ AA_INLINE void write_debug(const FxaaArgs& a, long o, bool horizontal, const Lin
 
 // Copies 8 pixels and marks those whose local contrast reaches the threshold.
 template <class R>
-AA_INLINE unsigned copy_and_mark(const FxaaArgs& a, int x, int y) {
+AA_INLINE unsigned copyAndMark(const FxaaArgs& a, int x, int y) {
     const R thresholdMin(Elem<R>(a.edgeThresholdMin)), threshold(Elem<R>(a.edgeThreshold)), zero(Elem<R>(0));
     unsigned bits = 0;
     for (int i = 0; i < 8; i += N<R>) {
@@ -183,20 +183,20 @@ AA_INLINE unsigned copy_and_mark(const FxaaArgs& a, int x, int y) {
                 e = load<R>(l + 1);
         const R highest = max(max(max(n, s), max(w, e)), m), lowest = min(min(min(n, s), min(w, e)), m);
         const R range = highest - lowest;
-        bits |= mask_bits<R>(both(range >= max(thresholdMin, highest * threshold), range > zero)) << i;
+        bits |= maskBits<R>(both(range >= max(thresholdMin, highest * threshold), range > zero)) << i;
     }
     return a.width - x < 8 ? bits & ((1u << (a.width - x)) - 1u) : bits;
 }
 // Runs pixel(x, y) on every edge pixel of the rows, after the copy of its group.
 template <class R, class Pixel>
-AA_INLINE void for_edge_pixels(const FxaaArgs& a, int y0, int y1, const Pixel& pixel) {
+AA_INLINE void forEdgePixels(const FxaaArgs& a, int y0, int y1, const Pixel& pixel) {
     for (int y = y0; y < y1; y++)
         for (int x = 0; x < a.width; x += 8)
-            for (unsigned bits = copy_and_mark<R>(a, x, y); bits; bits &= bits - 1) pixel(x + __builtin_ctz(bits), y);
+            for (unsigned bits = copyAndMark<R>(a, x, y); bits; bits &= bits - 1) pixel(x + __builtin_ctz(bits), y);
 }
 // The form for searches by windows: pixel(x, y, i, classes) gets the classes of its chunk, of which it is the i-th.
 template <class R, class Pixel>
-AA_INLINE void for_classified_pixels(const FxaaArgs& a, int y0, int y1, const Pixel& pixel) {
+AA_INLINE void forClassifiedPixels(const FxaaArgs& a, int y0, int y1, const Pixel& pixel) {
     Classes classes;
     for (int y = y0; y < y1; y++)
         for (int x0 = 0; x0 < a.width; x0 += kChunk) {
@@ -204,7 +204,7 @@ AA_INLINE void for_classified_pixels(const FxaaArgs& a, int y0, int y1, const Pi
             uint64_t marked = 0;
             classes.horizontal = 0;
             for (int i = 0; i < end; i += 8) {
-                const unsigned bits = copy_and_mark<R>(a, x0 + i, y);
+                const unsigned bits = copyAndMark<R>(a, x0 + i, y);
                 if (!bits) continue;
                 marked |= uint64_t(bits) << i;
                 classify(a.luma + long(y) * a.lumaStride + x0 + i, a.lumaStride, classes, i);
@@ -215,7 +215,7 @@ AA_INLINE void for_classified_pixels(const FxaaArgs& a, int y0, int y1, const Pi
             }
         }
 }
-AA_INLINE EdgeLine line_beside(const FxaaArgs& a, int x, int y, bool horizontal, bool positiveSide, double gradient) {
+AA_INLINE EdgeLine lineBeside(const FxaaArgs& a, int x, int y, bool horizontal, bool positiveSide, double gradient) {
     const float* const own =
         horizontal ? a.luma + long(y) * a.lumaStride + x : a.transposedLuma + long(x) * a.transposedStride + y;
     const long across = horizontal ? a.lumaStride : a.transposedStride;

@@ -12,7 +12,7 @@ struct SteppedLine {
     double middle;       // mean luma of the pair
     double gradient;     // |difference| of the pair
 };
-AA_INLINE SteppedLine stepped_line(const FxaaArgs& a, int x, int y, bool horizontal, bool positiveSide) {
+AA_INLINE SteppedLine steppedLine(const FxaaArgs& a, int x, int y, bool horizontal, bool positiveSide) {
     SteppedLine line;
     line.m = a.luma + long(y) * a.lumaStride + x;
     line.along = horizontal ? 1 : a.lumaStride;
@@ -25,7 +25,7 @@ AA_INLINE SteppedLine stepped_line(const FxaaArgs& a, int x, int y, bool horizon
     return line;
 }
 // Mean luma of the pair over `length` pixels that start `from` pixels along the line.
-AA_INLINE double mean_luma_on(const SteppedLine& line, int from, int length) {
+AA_INLINE double meanLumaOn(const SteppedLine& line, int from, int length) {
     double sum = 0;
     for (int i = from; i < from + length; i++) {
         const long o = (i < line.first ? line.first : i > line.last ? line.last : i) * line.along;
@@ -33,13 +33,13 @@ AA_INLINE double mean_luma_on(const SteppedLine& line, int from, int length) {
     }
     return sum / (2 * length);
 }
-AA_INLINE LineEnds find_ends_accelerated(const Fxaa1Args& a, const SteppedLine& line) {
+AA_INLINE LineEnds findEndsAccelerated(const Fxaa1Args& a, const SteppedLine& line) {
     const double threshold = line.gradient * (0.25 * (1 - 1e-6));
     const int step = a.acceleration, beyondHalfPx = step + 1 + 2 * step * a.steps;
     LineEnds ends{beyondHalfPx, beyondHalfPx, false, false};  // an unfinished search ends one step past its last read
     const auto search = [&](bool positive, int& endHalfPx, bool& below) __attribute__((always_inline)) {
         for (int k = 0; k < a.steps; k++) {
-            const double e = mean_luma_on(line, positive ? 1 + k * step : -(k + 1) * step, step) - line.middle;
+            const double e = meanLumaOn(line, positive ? 1 + k * step : -(k + 1) * step, step) - line.middle;
             below = e < 0;
             if (abs(e) >= threshold) {
                 endHalfPx = step + 1 + 2 * step * k;
@@ -51,57 +51,57 @@ AA_INLINE LineEnds find_ends_accelerated(const Fxaa1Args& a, const SteppedLine& 
     search(true, ends.positiveHalfPx, ends.positiveBelow);
     return ends;
 }
-AA_INLINE double low_pass(const float* c, int stride, bool cross) {
+AA_INLINE double lowPass(const float* c, int stride, bool cross) {
     const double plus = double(c[0]) + c[-1] + c[1] + c[-stride] + c[stride];
     if (cross) return plus * (1.0 / 5);
     return (plus + c[-stride - 1] + c[-stride + 1] + c[stride - 1] + c[stride + 1]) * (1.0 / 9);
 }
-AA_INLINE void fxaa1_pixel(const Fxaa1Args& a, int x, int y) {
+AA_INLINE void fxaa1Pixel(const Fxaa1Args& a, int x, int y) {
     const long o = long(y) * a.stride + x;
     const Neighbourhood l = neighbourhood(a.luma, long(y) * a.lumaStride + x, a.lumaStride);
-    const double contrast = abs((l.n + l.s + l.w + l.e) * 0.25 - l.m) / range_of(l);
+    const double contrast = abs((l.n + l.s + l.w + l.e) * 0.25 - l.m) / rangeOf(l);
     const double blend = min(a.subpixCap, max(0.0, contrast - a.subpixTrim) / (1 - a.subpixTrim));
-    const bool horizontal = horizontal_edge(l);
+    const bool horizontal = horizontalEdge(l);
     const double negativeStep = abs((horizontal ? l.n : l.w) - l.m), positiveStep = abs((horizontal ? l.s : l.e) - l.m);
     const bool positiveSide = !(negativeStep >= positiveStep);
-    const SteppedLine line = stepped_line(a, x, y, horizontal, positiveSide);
-    const LineEnds ends = find_ends_accelerated(a, line);
-    const double shiftPx = edge_shift(ends, l.m - line.middle < 0);
+    const SteppedLine line = steppedLine(a, x, y, horizontal, positiveSide);
+    const LineEnds ends = findEndsAccelerated(a, line);
+    const double shiftPx = edgeShift(ends, l.m - line.middle < 0);
     const long across = (horizontal ? a.stride : 1) * (positiveSide ? 1 : -1);
     for (int c = 0; c < 3; c++) {
         const float* const p = a.in.c[c] + o;
         const double shifted = double(p[0]) + (double(p[across]) - p[0]) * shiftPx;
-        a.out.c[c][o] = float(shifted + (low_pass(p, a.stride, a.crossLowPass) - shifted) * blend);
+        a.out.c[c][o] = float(shifted + (lowPass(p, a.stride, a.crossLowPass) - shifted) * blend);
     }
-    write_debug(a, o, horizontal, ends, shiftPx);
+    writeDebug(a, o, horizontal, ends, shiftPx);
 }
 template <class R>
 __attribute__((flatten)) void fxaa1Rows(const Fxaa1Args& a, int y0, int y1) {
-    for_edge_pixels<R>(
-        a, y0, y1, [&](int x, int y) __attribute__((always_inline)) { fxaa1_pixel(a, x, y); });
+    forEdgePixels<R>(
+        a, y0, y1, [&](int x, int y) __attribute__((always_inline)) { fxaa1Pixel(a, x, y); });
 }
 
 // ---- FXAA for compute shaders: methods/02 s.2.3
 
-AA_INLINE void fxaa_cs_pixel(const FxaaCsArgs& a, int x, int y, int i, const Classes& classes) {
+AA_INLINE void fxaaCsPixel(const FxaaCsArgs& a, int x, int y, int i, const Classes& classes) {
     const double contrast = smooth(classes.contrast[i]);
     const int code = int(floor(254 * saturate(contrast * contrast * a.subpix * 2))) & ~1;  // 7 bits in the queue
     const double subShift = code * (0.5 / 254);
     const bool horizontal = classes.horizontal >> i & 1;
     const double negativeStep = classes.negativeStep[i], positiveStep = classes.positiveStep[i];
     const bool positiveSide = positiveStep >= negativeStep;
-    const EdgeLine line = line_beside(a, x, y, horizontal, positiveSide, positiveSide ? positiveStep : negativeStep);
-    const LineEnds ends = find_ends(a, line);
-    const double shiftPx = max(subShift, edge_shift(ends, double(*line.own) - line.middle < 0));
+    const EdgeLine line = lineBeside(a, x, y, horizontal, positiveSide, positiveSide ? positiveStep : negativeStep);
+    const LineEnds ends = findEnds(a, line);
+    const double shiftPx = max(subShift, edgeShift(ends, double(*line.own) - line.middle < 0));
     const long o = long(y) * a.stride + x, across = horizontal ? a.stride : 1;
-    write_shifted(a, o, positiveSide ? across : -across, shiftPx > 0.01 ? shiftPx : 0.0);
-    write_debug(a, o, horizontal, ends, shiftPx);
+    writeShifted(a, o, positiveSide ? across : -across, shiftPx > 0.01 ? shiftPx : 0.0);
+    writeDebug(a, o, horizontal, ends, shiftPx);
 }
 template <class R>
 __attribute__((flatten)) void fxaaCsRows(const FxaaCsArgs& a, int y0, int y1) {
-    for_classified_pixels<R>(
+    forClassifiedPixels<R>(
         a, y0, y1, [&](int x, int y, int i, const Classes& classes) __attribute__((always_inline)) {
-            fxaa_cs_pixel(a, x, y, i, classes);
+            fxaaCsPixel(a, x, y, i, classes);
         });
 }
 
@@ -114,15 +114,15 @@ AA_INLINE double bilinear(const float* plane, const FxaaArgs& a, double px, doub
     const double bottom = p[a.stride] + (double(p[a.stride + 1]) - p[a.stride]) * fx;
     return top + (bottom - top) * fy;
 }
-AA_INLINE double corner_luma(const float* c, long across, long down) {
+AA_INLINE double cornerLuma(const float* c, long across, long down) {
     return (double(c[0]) + c[across] + c[down] + c[across + down]) * 0.25;
 }
-AA_INLINE void console_pixel(const FxaaConsoleArgs& a, int x, int y) {
+AA_INLINE void consolePixel(const FxaaConsoleArgs& a, int x, int y) {
     const long o = long(y) * a.stride + x;
     const float* const l = a.luma + long(y) * a.lumaStride + x;
     // The bias keeps the direction of a saddle from vanishing.
-    const double nw = corner_luma(l, -1, -a.lumaStride), ne = corner_luma(l, 1, -a.lumaStride) + 1.0 / 384,
-                 sw = corner_luma(l, -1, a.lumaStride), se = corner_luma(l, 1, a.lumaStride), m = l[0];
+    const double nw = cornerLuma(l, -1, -a.lumaStride), ne = cornerLuma(l, 1, -a.lumaStride) + 1.0 / 384,
+                 sw = cornerLuma(l, -1, a.lumaStride), se = cornerLuma(l, 1, a.lumaStride), m = l[0];
     const double highest = max(max(nw, ne), max(sw, se)), lowest = min(min(nw, ne), min(sw, se));
     if (max(highest, m) - min(lowest, m) < max(double(a.edgeThresholdMin), highest * double(a.edgeThreshold))) return;
     double dx = (sw - ne) + (se - nw), dy = (sw - ne) - (se - nw);
@@ -167,11 +167,11 @@ __attribute__((flatten)) void consoleRows(const FxaaConsoleArgs& a, int y0, int 
                     highest = max(highest, v);
                     lowest = min(lowest, v);
                 }
-            const unsigned bits = mask_bits<R>(highest - lowest >= thresholdMin);
+            const unsigned bits = maskBits<R>(highest - lowest >= thresholdMin);
             if (!bits) continue;
             int list[N<R> + 1];
-            const int count = append_marked(bits, x, a.width, list, 0);
-            for (int i = 0; i < count; i++) console_pixel(a, list[i], y);
+            const int count = appendMarked(bits, x, a.width, list, 0);
+            for (int i = 0; i < count; i++) consolePixel(a, list[i], y);
         }
 }
 }  // namespace AA_ARCH

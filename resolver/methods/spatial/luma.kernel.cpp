@@ -11,14 +11,14 @@ AA_INLINE R weighted(vec3<R> c, double r, double g, double b) {
 }
 // saturate() that maps NaN to 0.
 template <class R>
-AA_INLINE vec3<R> display_range(vec3<R> c) {
+AA_INLINE vec3<R> displayRange(vec3<R> c) {
     const vec3<R> zero(R(Elem<R>(0))), one(R(Elem<R>(1)));
     return min(one, max(zero, c));
 }
 // log2(x) for 1 <= x <= 16: the exponent by halving, then log2(m) = 2/ln 2 * atanh((m-1)/(m+1)) on [1/sqrt 2, sqrt 2]:
 // |s| <= 0.1716, and the first omitted term s^13/13 is below 1e-11.
 template <class R>
-AA_INLINE R log2_1_16(R x) {
+AA_INLINE R log2From1To16(R x) {
     using T = Elem<R>;
     const R zero(T(0)), one(T(1));
     R exponent = zero;
@@ -34,7 +34,7 @@ AA_INLINE R log2_1_16(R x) {
     return exponent + R(T(2.8853900817779268)) * s * series;
 }
 template <class R>
-AA_INLINE R luma_of(vec3<R> c, LumaKind kind) {
+AA_INLINE R lumaOf(vec3<R> c, LumaKind kind) {
     using T = Elem<R>;
     switch (kind) {
         case LumaKind::rec601:
@@ -46,12 +46,12 @@ AA_INLINE R luma_of(vec3<R> c, LumaKind kind) {
         case LumaKind::redGreen:
             return c.y * R(T(0.587 / 0.299)) + c.x;
         case LumaKind::sqrtLinear:
-            return sqrt(weighted(display_range(c), 0.299, 0.587, 0.114));
+            return sqrt(weighted(displayRange(c), 0.299, 0.587, 0.114));
         case LumaKind::linearOfSqrt:
-            return weighted(sqrt(display_range(c)), 0.299, 0.587, 0.114);
+            return weighted(sqrt(displayRange(c)), 0.299, 0.587, 0.114);
         case LumaKind::log2Linear: {
-            const R one(T(1)), y = min(one, weighted(display_range(c), 0.212671, 0.715160, 0.072169));
-            return log2_1_16(one + R(T(15)) * y) * R(T(0.25));
+            const R one(T(1)), y = min(one, weighted(displayRange(c), 0.212671, 0.715160, 0.072169));
+            return log2From1To16(one + R(T(15)) * y) * R(T(0.25));
         }
         case LumaKind::nfaa:
             return weighted(c, 0.212, 0.716, 0.072);
@@ -63,7 +63,7 @@ AA_INLINE void lumaRowsOf(const LumaArgs& a, int y0, int y1) {
     for (int y = y0; y < y1; y++)
         for (int x = 0; x < a.width; x += N<R>) {
             const long o = long(y) * a.stride + x;
-            store(luma_of(vec3<R>(load<R>(a.in.c[0] + o), load<R>(a.in.c[1] + o), load<R>(a.in.c[2] + o)), kind),
+            store(lumaOf(vec3<R>(load<R>(a.in.c[0] + o), load<R>(a.in.c[1] + o), load<R>(a.in.c[2] + o)), kind),
                   a.luma + long(y) * a.lumaStride + x);
         }
 }

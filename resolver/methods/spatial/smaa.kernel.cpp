@@ -6,14 +6,14 @@ namespace AA_ARCH {
 using namespace aa;
 
 template <class R>
-AA_INLINE vec3<R> colour_at(const float* const c[3], long o) {
+AA_INLINE vec3<R> colourAt(const float* const c[3], long o) {
     return {load<R>(c[0] + o), load<R>(c[1] + o), load<R>(c[2] + o)};
 }
 // What the edge test compares: |difference| of luma, largest |difference| of a channel, relative difference of depth.
 template <class R, SmaaEdges kind>
 AA_INLINE R difference(const SmaaEdgeArgs& a, long o, long p) {
     if constexpr (kind == SmaaEdges::colour)
-        return max_component(abs(colour_at<R>(a.color.c, o) - colour_at<R>(a.color.c, p)));
+        return maxComponent(abs(colourAt<R>(a.color.c, o) - colourAt<R>(a.color.c, p)));
     const R u = load<R>(a.scalar + o), v = load<R>(a.scalar + p);
     if constexpr (kind == SmaaEdges::depth) return abs(u - v) / max(R(Elem<R>(1e-12)), min(u, v));
     return abs(u - v);
@@ -25,7 +25,7 @@ AA_INLINE R predicated(const SmaaEdgeArgs& a, long o, long p) {
     if (a.predication == SmaaPredication::off) return R(T(a.threshold));
     const R high = R(T(a.predicationScale) * T(a.threshold)), low = high * R(T(1) - T(a.predicationStrength));
     if (a.predication == SmaaPredication::object)
-        return select(ids_differ<R>(a.objectId + o, a.objectId + p), low, high);
+        return select(idsDiffer<R>(a.objectId + o, a.objectId + p), low, high);
     const R u = load<R>(a.depthView + o), v = load<R>(a.depthView + p);
     const R relative = abs(u - v) / max(R(T(1e-12)), min(u, v));
     return select(relative >= R(T(a.predicationThreshold)), low, high);
@@ -35,11 +35,11 @@ struct EdgeBits {
 };
 // The bits of N<R> pixels from index o.
 template <class R, SmaaEdges kind>
-AA_INLINE EdgeBits edge_bits(const SmaaEdgeArgs& a, long o) {
+AA_INLINE EdgeBits edgeBits(const SmaaEdgeArgs& a, long o) {
     const long s = a.stride;
     const R left = difference<R, kind>(a, o, o - 1), top = difference<R, kind>(a, o, o - s);
     auto isLeft = left >= predicated<R>(a, o, o - 1), isTop = top >= predicated<R>(a, o, o - s);
-    if (!mask_bits<R>(either(isLeft, isTop))) return {0, 0};
+    if (!maskBits<R>(either(isLeft, isTop))) return {0, 0};
     if constexpr (kind != SmaaEdges::depth) {  // local contrast adaptation
         const bool fromCentre = kind == SmaaEdges::colour && !a.consistent;
         const R right = difference<R, kind>(a, o, o + 1), bottom = difference<R, kind>(a, o, o + s),
@@ -50,7 +50,7 @@ AA_INLINE EdgeBits edge_bits(const SmaaEdgeArgs& a, long o) {
         isLeft = both(isLeft, factor * left >= strongest);
         isTop = both(isTop, factor * top >= strongest);
     }
-    return {mask_bits<R>(isLeft), mask_bits<R>(isTop)};
+    return {maskBits<R>(isLeft), maskBits<R>(isTop)};
 }
 template <class R, SmaaEdges kind>
 AA_INLINE void edgeRowsOf(const SmaaEdgeArgs& a, int y0, int y1) {
@@ -58,7 +58,7 @@ AA_INLINE void edgeRowsOf(const SmaaEdgeArgs& a, int y0, int y1) {
         for (int x = 0; x < a.width; x += 8) {
             EdgeBits bits{0, 0};
             for (int i = 0; i < 8; i += N<R>) {
-                const EdgeBits few = edge_bits<R, kind>(a, long(y) * a.stride + x + i);
+                const EdgeBits few = edgeBits<R, kind>(a, long(y) * a.stride + x + i);
                 bits.left |= few.left << i;
                 bits.top |= few.top << i;
             }

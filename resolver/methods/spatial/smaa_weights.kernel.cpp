@@ -19,29 +19,29 @@ AA_INLINE Pair<T> smoothed(Pair<T> a, T d) {
 }
 // Crossing codes of the two ends (0 none, 1 above, 3 below, 4 both), distances to them in px -> weights.
 template <class T>
-AA_INLINE Pair<T> ortho_area(int left, int right, int leftPx, int rightPx, T offset) {
+AA_INLINE Pair<T> orthoArea(int left, int right, int leftPx, int rightPx, T offset) {
     const Pair<T> nothing{T(0), T(0)};
     const bool single1 = left == 1 || left == 3, single2 = right == 1 || right == 3;
     if (!single1 && !single2) return nothing;
     const T l = T(leftPx), d = T(leftPx + rightPx + 1), above = T(0.5) + offset, below = T(-0.5) + offset;
     const T h1 = left == 1 ? above : below, h2 = right == 1 ? above : below;
     if (single1 && single2) {
-        if (left == right) return smoothed(first_half(h1, d, l), d) + smoothed(second_half(h2, d, l), d);
-        const Pair<T> z = segment_area(T(0), h1, d, h2, l);
+        if (left == right) return smoothed(firstHalf(h1, d, l), d) + smoothed(secondHalf(h2, d, l), d);
+        const Pair<T> z = segmentArea(T(0), h1, d, h2, l);
         if (offset == T(0)) return z;
-        const Pair<T> both_halves = first_half(h1, d, l) + second_half(h2, d, l);
-        return {(z.own + both_halves.own) * T(0.5), (z.opposite + both_halves.opposite) * T(0.5)};
+        const Pair<T> bothHalves = firstHalf(h1, d, l) + secondHalf(h2, d, l);
+        return {(z.own + bothHalves.own) * T(0.5), (z.opposite + bothHalves.opposite) * T(0.5)};
     }
     if (single1) {
-        if (right == 4) return segment_area(T(0), h1, d, left == 1 ? below : above, l);
-        return leftPx <= rightPx ? first_half(h1, d, l) : nothing;
+        if (right == 4) return segmentArea(T(0), h1, d, left == 1 ? below : above, l);
+        return leftPx <= rightPx ? firstHalf(h1, d, l) : nothing;
     }
-    if (left == 4) return segment_area(T(0), right == 1 ? below : above, d, h2, l);
-    return leftPx >= rightPx ? second_half(h2, d, l) : nothing;
+    if (left == 4) return segmentArea(T(0), right == 1 ? below : above, d, h2, l);
+    return leftPx >= rightPx ? secondHalf(h2, d, l) : nothing;
 }
 // The published form: 16 x 16 entries at square distances, bilinear in the roots.
 template <class T>
-AA_INLINE Pair<T> table_area(const float* table, int left, int right, int leftPx, int rightPx) {
+AA_INLINE Pair<T> tableArea(const float* table, int left, int right, int leftPx, int rightPx) {
     const float* const block = table + (left * 5 + right) * 16 * 16 * 2;
     const T u = min(sqrt(T(leftPx)), T(15)), v = min(sqrt(T(rightPx)), T(15));
     const int i = int(u) < 14 ? int(u) : 14, j = int(v) < 14 ? int(v) : 14;
@@ -58,15 +58,15 @@ AA_INLINE Pair<T> table_area(const float* table, int left, int right, int leftPx
 
 struct EdgesAt {
     const SmaaBlendArgs& a;
-    AA_INLINE bool top(int x, int y) const { return bit_at(a.top.along + long(y) * a.top.stride, x); }
-    AA_INLINE bool left(int x, int y) const { return bit_at(a.top.cross + long(y) * a.top.stride, x); }
+    AA_INLINE bool top(int x, int y) const { return bitAt(a.top.along + long(y) * a.top.stride, x); }
+    AA_INLINE bool left(int x, int y) const { return bitAt(a.top.cross + long(y) * a.top.stride, x); }
 };
 struct DiagonalEnd {
     int distance;
     bool found;
 };
 // One arm: pixels at n * (dx, dy) as long as both bits of the staircase are set; the left bit is read `leftShift` away.
-AA_INLINE DiagonalEnd diagonal_arm(const EdgesAt& e, int x, int y, int dx, int dy, int leftShift, bool countLast) {
+AA_INLINE DiagonalEnd diagonalArm(const EdgesAt& e, int x, int y, int dx, int dy, int leftShift, bool countLast) {
     const int steps = e.a.diagonalSteps;
     int n = 1, passed = 0;
     bool success = true;
@@ -79,7 +79,7 @@ AA_INLINE DiagonalEnd diagonal_arm(const EdgesAt& e, int x, int y, int dx, int d
     return {distance + (last ? 1 : 0), !success};
 }
 template <class T>
-AA_INLINE Pair<T> diagonal_lookup(const float* table, bool h1, bool v1, bool found1, bool h2, bool v2, bool found2,
+AA_INLINE Pair<T> diagonalLookup(const float* table, bool h1, bool v1, bool found1, bool h2, bool v2, bool found2,
                                   int d1, int d2) {
     const int c1 = found1 ? 2 * h1 + v1 : 0, c2 = found2 ? 2 * h2 + v2 : 0;
     const float* const p = table + 2 * (((c1 * 4 + c2) * kDiagonals + d1) * kDiagonals + d2);
@@ -93,32 +93,32 @@ struct DiagonalCandidates {
         const uint8_t *top = a.top.along + long(y) * a.top.stride, *left = a.top.cross + long(y) * a.top.stride;
         const uint8_t *topAbove = top - a.top.stride, *leftAbove = left - a.top.stride, *topBelow = top + a.top.stride,
                       *leftBelow = left + a.top.stride;
-        rising = (bits_from(topAbove, x + 1) & bits_from(leftAbove, x + 1)) |
-                 (bits_from(left, x) & bits_from(topBelow, x - 1) & bits_from(leftBelow, x - 1));
-        falling = (bits_from(topAbove, x - 1) & bits_from(leftAbove, x)) |
-                  (bits_from(left, x + 1) & bits_from(topBelow, x + 1) & bits_from(leftBelow, x + 2));
+        rising = (bitsFrom(topAbove, x + 1) & bitsFrom(leftAbove, x + 1)) |
+                 (bitsFrom(left, x) & bitsFrom(topBelow, x - 1) & bitsFrom(leftBelow, x - 1));
+        falling = (bitsFrom(topAbove, x - 1) & bitsFrom(leftAbove, x)) |
+                  (bitsFrom(left, x + 1) & bitsFrom(topBelow, x + 1) & bitsFrom(leftBelow, x + 2));
     }
 };
 template <class T>
-AA_INLINE Pair<T> diagonal_weights(const SmaaBlendArgs& a, int x, int y) {
+AA_INLINE Pair<T> diagonalWeights(const SmaaBlendArgs& a, int x, int y) {
     const EdgesAt e{a};
     Pair<T> sum{T(0), T(0)};
     const DiagonalCandidates candidates(a, x, y);
     if (candidates.rising & 1) {
-        const DiagonalEnd d1 = e.left(x, y) ? diagonal_arm(e, x, y, -1, 1, 0, true) : DiagonalEnd{0, true};
-        const DiagonalEnd d2 = diagonal_arm(e, x, y, 1, -1, 0, false);
+        const DiagonalEnd d1 = e.left(x, y) ? diagonalArm(e, x, y, -1, 1, 0, true) : DiagonalEnd{0, true};
+        const DiagonalEnd d2 = diagonalArm(e, x, y, 1, -1, 0, false);
         const int n = d1.distance, m = d2.distance;
         if (n + m > 2)
-            sum = diagonal_lookup<T>(a.diagonalTable[0], e.top(x - n - 1, y + n), e.left(x - n, y + n), d1.found,
+            sum = diagonalLookup<T>(a.diagonalTable[0], e.top(x - n - 1, y + n), e.left(x - n, y + n), d1.found,
                                      e.top(x + m + 1, y - m), e.left(x + m + 1, y - m - 1), d2.found, n, m);
     }
     if (candidates.falling & 1) {  // the same shape mirrored, so that own and opposite change places
-        const DiagonalEnd d1 = diagonal_arm(e, x, y, -1, -1, 1, false);
-        const DiagonalEnd d2 = e.left(x + 1, y) ? diagonal_arm(e, x, y, 1, 1, 1, true) : DiagonalEnd{0, true};
+        const DiagonalEnd d1 = diagonalArm(e, x, y, -1, -1, 1, false);
+        const DiagonalEnd d2 = e.left(x + 1, y) ? diagonalArm(e, x, y, 1, 1, 1, true) : DiagonalEnd{0, true};
         const int n = d1.distance, m = d2.distance;
         if (n + m > 2) {
             const Pair<T> w =
-                diagonal_lookup<T>(a.diagonalTable[1], e.top(x - n - 1, y - n), e.left(x - n, y - n - 1), d1.found,
+                diagonalLookup<T>(a.diagonalTable[1], e.top(x - n - 1, y - n), e.left(x - n, y - n - 1), d1.found,
                                    e.top(x + m + 1, y + m), e.left(x + m + 1, y + m), d2.found, n, m);
             sum = sum + Pair<T>{w.opposite, w.own};
         }
@@ -129,11 +129,11 @@ AA_INLINE Pair<T> diagonal_weights(const SmaaBlendArgs& a, int x, int y) {
 // ---- lines along rows or columns (s.3.2.2, 3.2.3, 3.2.5)
 
 // Edges that cross the end of a line, from its row -2 to +1: bits 1 and 2 touch it, 0 and 3 lie beyond.
-AA_INLINE unsigned crossing_bits(const SmaaAxis& axis, int p, int q) {
+AA_INLINE unsigned crossingBits(const SmaaAxis& axis, int p, int q) {
     const int row = p < 0 ? 0 : p < axis.crossTransposedRows ? p : axis.crossTransposedRows - 1;  // the sampler clamps
-    return unsigned(bits_from(axis.crossTransposed + long(row) * axis.crossTransposedStride, q - 2)) & 15u;
+    return unsigned(bitsFrom(axis.crossTransposed + long(row) * axis.crossTransposedStride, q - 2)) & 15u;
 }
-AA_INLINE int crossing_code(unsigned bits) { return (bits & 2 ? 1 : 0) + (bits & 4 ? 3 : 0); }
+AA_INLINE int crossingCode(unsigned bits) { return (bits & 2 ? 1 : 0) + (bits & 4 ? 3 : 0); }
 // Crossing edges make the line turn: a sharp corner keeps part of its shape. The factors of both weights for every
 // combination of nearer end (left, right, both alike) and crossing edges beyond the line (rows -2 and +1, either end).
 template <class T>
@@ -164,22 +164,22 @@ AA_INLINE Pair<T> stored(const SmaaBlendArgs& a, Pair<T> w) {
 }
 // The edge at position p of line q; `pixel` is its index in the debug planes, negative where another block keeps it.
 template <class T>
-AA_INLINE Pair<T> line_weights(const SmaaBlendArgs& a, const SmaaAxis& axis, const Corners<T>& corners, int p, int q,
+AA_INLINE Pair<T> lineWeights(const SmaaBlendArgs& a, const SmaaAxis& axis, const Corners<T>& corners, int p, int q,
                                long pixel) {
     const int reach = 2 * a.searchSteps;
     const uint8_t *along = axis.along + long(q) * axis.stride, *cross = axis.cross + long(q) * axis.stride;
-    const int leftPx = run_down(along, cross, cross - axis.stride, p, reach - 1);
-    const int rightPx = run_up(along, cross, cross - axis.stride, p, reach);
-    const unsigned leftBits = crossing_bits(axis, p - leftPx, q), rightBits = crossing_bits(axis, p + rightPx + 1, q);
+    const int leftPx = runDown(along, cross, cross - axis.stride, p, reach - 1);
+    const int rightPx = runUp(along, cross, cross - axis.stride, p, reach);
+    const unsigned leftBits = crossingBits(axis, p - leftPx, q), rightBits = crossingBits(axis, p + rightPx + 1, q);
     Pair<T> w;
     if (std::is_same_v<T, float> && axis.exactTable) {
         const unsigned pair = (leftBits >> 1 & 3) * 4 + (rightBits >> 1 & 3);
         const float* const entry = axis.exactTable + 2 * ((long(pair) * reach + leftPx) * (reach + 1) + rightPx);
         w = {T(entry[0]), T(entry[1])};
     } else if (axis.publishedTable) {
-        w = table_area<T>(axis.publishedTable, crossing_code(leftBits), crossing_code(rightBits), leftPx, rightPx);
+        w = tableArea<T>(axis.publishedTable, crossingCode(leftBits), crossingCode(rightBits), leftPx, rightPx);
     } else {
-        w = ortho_area<T>(crossing_code(leftBits), crossing_code(rightBits), leftPx, rightPx, T(axis.offset));
+        w = orthoArea<T>(crossingCode(leftBits), crossingCode(rightBits), leftPx, rightPx, T(axis.offset));
     }
     w = {min(w.own, T(1)), min(w.opposite, T(1))};  // samples beyond their pixel (jitter + position) lift lines over it
     const Pair<T> rounding = corners.of(leftBits, rightBits, leftPx, rightPx);
@@ -214,48 +214,48 @@ struct RowWeights {
 // Of the row's top edges; sets the bits of the pixels that a diagonal took. `own`: the row lies in the block, and is
 // not the one after it.
 template <class T>
-AA_INLINE void top_weights(const SmaaBlendArgs& a, const Corners<T>& corners, int y, bool own, RowWeights weights,
+AA_INLINE void topWeights(const SmaaBlendArgs& a, const Corners<T>& corners, int y, bool own, RowWeights weights,
                            uint8_t* diagonals) {
     const uint8_t* const top = a.top.along + long(y) * a.top.stride;
     const auto pixel = [&](int x) { return own ? long(y) * a.width + x : -1; };
     __builtin_memset(diagonals, 0, size_t(a.width / 8 + 9));
     weights.clear(a.width);
     if (a.diagonalSteps > 0)
-        for_each_bit(
+        forEachBit(
             a.width,
             [&](int x) {
                 const DiagonalCandidates candidates(a, x, y);
-                return bits_from(top, x) & (candidates.rising | candidates.falling);
+                return bitsFrom(top, x) & (candidates.rising | candidates.falling);
             },
             [&](int x) __attribute__((always_inline)) {
-                const Pair<T> w = diagonal_weights<T>(a, x, y);
+                const Pair<T> w = diagonalWeights<T>(a, x, y);
                 if (!(w.own + w.opposite > T(0))) return;
                 diagonals[x >> 3] = uint8_t(diagonals[x >> 3] | 1 << (x & 7));
                 if (a.isDiagonal && own) a.isDiagonal[pixel(x)] = 1;
                 weights.set(x, stored(a, w), a.top, pixel(x));
             });
-    for_each_bit(
-        a.width, [&](int x) { return bits_from(top, x) & ~bits_from(diagonals, x); },
+    forEachBit(
+        a.width, [&](int x) { return bitsFrom(top, x) & ~bitsFrom(diagonals, x); },
         [&](int x) __attribute__((always_inline)) {
-            weights.set(x, line_weights<T>(a, a.top, corners, x, y, pixel(x)), a.top, pixel(x));
+            weights.set(x, lineWeights<T>(a, a.top, corners, x, y, pixel(x)), a.top, pixel(x));
         });
 }
 template <class T>
-AA_INLINE void left_weights(const SmaaBlendArgs& a, const Corners<T>& corners, int y, RowWeights weights,
+AA_INLINE void leftWeights(const SmaaBlendArgs& a, const Corners<T>& corners, int y, RowWeights weights,
                             const uint8_t* diagonals) {
     const uint8_t* const left = a.top.cross + long(y) * a.top.stride;
     weights.clear(a.width);
-    for_each_bit(
-        a.width, [&](int x) { return bits_from(left, x) & ~bits_from(diagonals, x); },
+    forEachBit(
+        a.width, [&](int x) { return bitsFrom(left, x) & ~bitsFrom(diagonals, x); },
         [&](int x) __attribute__((always_inline)) {
             const long pixel = long(y) * a.width + x;
-            weights.set(x, line_weights<T>(a, a.left, corners, y, x, pixel), a.left, pixel);
+            weights.set(x, lineWeights<T>(a, a.left, corners, y, x, pixel), a.left, pixel);
         });
     weights.opposite[a.width] = weights.opposite[a.width - 1];  // the sampler clamps
 }
 // N<R> pixels with the weights of their four borders.
 template <class R>
-AA_INLINE void blend_pixels(const SmaaBlendArgs& a, long o, R right, R left, R bottom, R top) {
+AA_INLINE void blendPixels(const SmaaBlendArgs& a, long o, R right, R left, R bottom, R top) {
     using T = Elem<R>;
     const auto active = right + left + bottom + top >= R(T(1e-5));
     // Symmetric corners weigh both axes alike; they count as vertical in every precision, as equal 8-bit weights do.
@@ -272,7 +272,7 @@ AA_INLINE void blend_pixels(const SmaaBlendArgs& a, long o, R right, R left, R b
     }
 }
 template <class R>
-AA_INLINE void blend_row(const SmaaBlendArgs& a, int y, RowWeights top, RowWeights below, RowWeights left) {
+AA_INLINE void blendRow(const SmaaBlendArgs& a, int y, RowWeights top, RowWeights below, RowWeights left) {
     const uint8_t *tops = a.top.along + long(y) * a.top.stride, *belows = tops + a.top.stride,
                   *lefts = a.top.cross + long(y) * a.top.stride;
     for (int x = 0; x < a.width; x += 8) {
@@ -280,7 +280,7 @@ AA_INLINE void blend_row(const SmaaBlendArgs& a, int y, RowWeights top, RowWeigh
         const unsigned edges = unsigned(tops[x >> 3] | belows[x >> 3] | lefts[x >> 3]) | (lefts[(x >> 3) + 1] & 1u);
         for (int i = 0; i < 8; i += N<R>)
             if (edges)
-                blend_pixels<R>(a, o + i, load<R>(left.opposite + x + i + 1), load<R>(left.own + x + i),
+                blendPixels<R>(a, o + i, load<R>(left.opposite + x + i + 1), load<R>(left.own + x + i),
                                 load<R>(below.opposite + x + i), load<R>(top.own + x + i));
             else
                 for (int c = 0; c < a.channels; c++) store(load<R>(a.in[c] + o + i), a.out[c] + o + i);
@@ -298,12 +298,12 @@ __attribute__((flatten)) void blendBlocks(const SmaaBlendArgs& a, int b0, int b1
         uint8_t* topDiagonals = a.diagonals + block * a.diagonalsSize;
         uint8_t* belowDiagonals = topDiagonals + a.diagonalsSize / 2;
         const int y0 = block * kSmaaBlockRows, y1 = y0 + kSmaaBlockRows < a.height ? y0 + kSmaaBlockRows : a.height;
-        top_weights<T>(a, corners, y0, true, top, topDiagonals);
+        topWeights<T>(a, corners, y0, true, top, topDiagonals);
         for (int y = y0; y < y1; y++) {
             const bool last = y + 1 == a.height;  // the sampler clamps
-            if (!last) top_weights<T>(a, corners, y + 1, y + 1 < y1, below, belowDiagonals);
-            left_weights<T>(a, corners, y, left, topDiagonals);
-            blend_row<R>(a, y, top, last ? top : below, left);
+            if (!last) topWeights<T>(a, corners, y + 1, y + 1 < y1, below, belowDiagonals);
+            leftWeights<T>(a, corners, y, left, topDiagonals);
+            blendRow<R>(a, y, top, last ? top : below, left);
             const RowWeights spare = top;
             top = below, below = spare;
             uint8_t* const spareDiagonals = topDiagonals;
@@ -315,7 +315,7 @@ template <class R>
 void areaRows(const SmaaAreaArgs& a, int from, int to) {
     for (int k = from; k < to; k++) {
         SmaaAreaQuery& q = a.queries[k];
-        const auto w = ortho_area<Elem<R>>(q.left, q.right, q.leftPx, q.rightPx, Elem<R>(q.offset));
+        const auto w = orthoArea<Elem<R>>(q.left, q.right, q.leftPx, q.rightPx, Elem<R>(q.offset));
         q.own = double(w.own);
         q.opposite = double(w.opposite);
     }

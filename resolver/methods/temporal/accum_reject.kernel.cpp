@@ -6,7 +6,7 @@ namespace AA_ARCH {
 
 // mean + residual, updated by (c - mean) / n without loss: Knuth's two-sum keeps what the float mean cannot hold.
 template <class R>
-AA_INLINE void compensated_step(R c, R n, R& mean, R& residual) {
+AA_INLINE void compensatedStep(R c, R n, R& mean, R& residual) {
     const R step = residual + (c - mean - residual) / n;
     const R sum = mean + step, taken = sum - mean;
     residual = (mean - (sum - taken)) + (step - taken);
@@ -23,14 +23,14 @@ AA_INLINE void accumRejectPixel(const AccumRejectArgs& a, int x, int y) {
     const R depth = load<R>(in.depthView + o);
 
     // reproject
-    const Motion<R> motion = dilated_motion<R>(in, o);
+    const Motion<R> motion = dilatedMotion<R>(in, o);
     const Reprojection<R> q = reproject(in, motion, x, y);
-    const Offsets<R> nearest = nearest_offsets(q, in.stride);
-    const vec3<R> history = fetch_history(in, x, y, q);
-    vec3<R> residual = fetch_bilinear<R>(a.residual + 4 * o, in.stride, q).rgb;
+    const Offsets<R> nearest = nearestOffsets(q, in.stride);
+    const vec3<R> history = fetchHistory(in, x, y, q);
+    vec3<R> residual = fetchBilinear<R>(a.residual + 4 * o, in.stride, q).rgb;
 
     // validate
-    const R expected = expected_previous_depth(a.expected, depth, x, y);
+    const R expected = expectedPreviousDepth(a.expected, depth, x, y);
     R reason = select(q.inside, zero, one);
     const auto reject = [&](Mask<R> when, Rejection why) __attribute__((always_inline)) {
         reason = select(both(reason == zero, when), R(T(int(why))), reason);
@@ -39,7 +39,7 @@ AA_INLINE void accumRejectPixel(const AccumRejectArgs& a, int x, int y) {
     if (a.depthTest != DepthTest::off) {
         const float tolerance = a.rejection.depthTolerance;
         auto hidden =
-            disoccluded(expected, fetch_depth(in.history + 4 * o, in.stride, q), tolerance, a.rejection.bothSides);
+            disoccluded(expected, fetchDepth(in.history + 4 * o, in.stride, q), tolerance, a.rejection.bothSides);
         // At rest the jitter alone moves a silhouette: no sample is lost to it. Behind a moving one the window would
         // pass what it uncovers.
         if (a.depthTest == DepthTest::window)
@@ -49,24 +49,24 @@ AA_INLINE void accumRejectPixel(const AccumRejectArgs& a, int x, int y) {
         reject(hidden, Rejection::disoccluded);
     }
     if (a.rejection.magnification > 0) reject(magnified(in, o, q, a.rejection.magnification), Rejection::magnified);
-    if (a.objectId) reject(id_lost<R>(a.objectId + o, a.previousId + o, in.stride, nearest), Rejection::otherObject);
+    if (a.objectId) reject(idLost<R>(a.objectId + o, a.previousId + o, in.stride, nearest), Rejection::otherObject);
     const auto valid = reason == zero;
 
     // accumulate
     const R nMax = select(still, R(T(a.nMaxStatic)), R(T(a.nMaxMoving)));
-    R count = fetch_rgba<R>(a.residual + 4 * o, nearest).a;
+    R count = fetchRgba<R>(a.residual + 4 * o, nearest).a;
     count = select(valid, min(count + one, nMax), one);
     vec3<R> mean = history;
-    compensated_step(current.x, count, mean.x, residual.x);
-    compensated_step(current.y, count, mean.y, residual.y);
-    compensated_step(current.z, count, mean.z, residual.z);
+    compensatedStep(current.x, count, mean.x, residual.x);
+    compensatedStep(current.y, count, mean.y, residual.y);
+    compensatedStep(current.z, count, mean.z, residual.z);
     const auto ok = both(valid, both(finite(mean), finite(residual)));
     mean = sanitised(select(valid, mean, current), current, history);
-    store_blend(in, x, y, mean, depth);
-    store_rgba(select(ok, residual, vec3<R>(zero)), count, a.nextResidual + 4 * o);
+    storeBlend(in, x, y, mean, depth);
+    storeRgba(select(ok, residual, vec3<R>(zero)), count, a.nextResidual + 4 * o);
 
     if (!in.debug.rejection) return;
-    store_debug(in.debug, o, motion, valid, Box<R>{history, history}, vec3<R>(zero), one - one / count);
+    storeDebug(in.debug, o, motion, valid, Box<R>{history, history}, vec3<R>(zero), one - one / count);
     store(reason, in.debug.rejection + o);
     if (a.debugCount) store(count, a.debugCount + o);
 }
@@ -80,8 +80,8 @@ __attribute__((flatten)) void accumRejectRows(const AccumRejectArgs& a, int y0, 
                 continue;
             }
             const long o = long(y) * a.in.stride + x;
-            store_first<R>(a.in, x, y, load3<R>(a.in.color.c, o), load<R>(a.in.depthView + o));
-            store_rgba(vec3<R>(R(T(0))), R(T(1)), a.nextResidual + 4 * o);
+            storeFirst<R>(a.in, x, y, load3<R>(a.in.color.c, o), load<R>(a.in.depthView + o));
+            storeRgba(vec3<R>(R(T(0))), R(T(1)), a.nextResidual + 4 * o);
             if (a.debugCount) store(R(T(1)), a.debugCount + o);
         }
 }

@@ -6,7 +6,7 @@ namespace AA_ARCH {
 
 // Displacement in px from p to where a static surface point lay in another camera.
 template <class R>
-AA_INLINE Motion<R> camera_displacement(const CameraPath& path, const TemporalIn& in, R depth, int x, int y) {
+AA_INLINE Motion<R> cameraDisplacement(const CameraPath& path, const TemporalIn& in, R depth, int x, int y) {
     using T = Elem<R>;
     const R zero(T(0));
     if (!path.moves) return {zero, zero};
@@ -28,19 +28,19 @@ struct TentSum {
 };
 // The four samples around p + (dx, dy) in a buffer, weighted by a tent of radius (rx, ry) px.
 template <class R>
-AA_INLINE void add_tent(const float* p, int stride, R dx, R dy, R rx, R ry, Mask<R> valid, TentSum<R>& sum) {
+AA_INLINE void addTent(const float* p, int stride, R dx, R dy, R rx, R ry, Mask<R> valid, TentSum<R>& sum) {
     using T = Elem<R>;
     const R zero(T(0)), one(T(1));
     Reprojection<R> q;
     q.wholeX = floor(dx), q.wholeY = floor(dy), q.fracX = dx - q.wholeX, q.fracY = dy - q.wholeY, q.inside = valid;
-    const Offsets<R> k = texel_offsets(q, stride);
+    const Offsets<R> k = texelOffsets(q, stride);
     const R ix = one / rx, iy = one / ry;
     const R wx[2] = {saturate(one - q.fracX * ix), saturate(one - (one - q.fracX) * ix)};
     const R wy[2] = {saturate(one - q.fracY * iy), saturate(one - (one - q.fracY) * iy)};
     for (int j = 0; j < 2; j++)
         for (int i = 0; i < 2; i++) {
             const R w = select(valid, wx[i] * wy[j], zero);
-            const vec3<R> c = fetch_rgba<R>(p + 4l * (j * stride + i), k).rgb;
+            const vec3<R> c = fetchRgba<R>(p + 4l * (j * stride + i), k).rgb;
             sum.color = sum.color + select(w == zero, vec3<R>(zero), c * w);
             sum.weight = sum.weight + w;
         }
@@ -55,14 +55,14 @@ AA_INLINE void asaaPixel(const AsaaArgs& a, int x, int y) {
     const vec3<R> sample = load3<R>(in.color.c, o);
     const R depth = load<R>(in.depthView + o);
     if (!a.anyHistory) {
-        store_blend(in, x, y, sanitised(sample, sample, vec3<R>(zero)), depth);
+        storeBlend(in, x, y, sanitised(sample, sample, vec3<R>(zero)), depth);
         store(one, a.nextCount + o);  // nothing was rejected: 0 + 1
         if (in.debug.rejection) store(R(T(int(Rejection::firstFrame))), in.debug.rejection + o);
         return;
     }
-    const Motion<R> motion = load_motion<R>(in, o), right = load_motion<R>(in, o + 1),
-                    down = load_motion<R>(in, o + in.stride);
-    const Motion<R> camera = camera_displacement(a.lastFrame, in, depth, x, y);
+    const Motion<R> motion = loadMotion<R>(in, o), right = loadMotion<R>(in, o + 1),
+                    down = loadMotion<R>(in, o + in.stride);
+    const Motion<R> camera = cameraDisplacement(a.lastFrame, in, depth, x, y);
     const Motion<R> own{-motion.x - camera.x, -motion.y - camera.y};  // of the object, px per frame
 
     // 2-4: both sums over the valid buffers
@@ -71,14 +71,14 @@ AA_INLINE void asaaPixel(const AsaaArgs& a, int x, int y) {
     for (const AsaaBuffer& buffer : a.buffer) {
         if (!buffer.rgba) continue;
         const R age(T(buffer.age));
-        const Motion<R> path = camera_displacement(buffer.path, in, depth, x, y);
+        const Motion<R> path = cameraDisplacement(buffer.path, in, depth, x, y);
         const Motion<R> back{-(path.x + own.x * age), -(path.y + own.y * age)};  // as a motion: current - then
         const Reprojection<R> q = reproject(in, back, x, y);
         const float* p = buffer.rgba + 4 * o;
         const R footX = max(abs(one - (right.x - motion.x) * age), abs((down.x - motion.x) * age)),
                 footY = max(abs((right.y - motion.y) * age), abs(one - (down.y - motion.y) * age));
-        const R expected = expected_previous_depth(buffer.expected, depth, x, y);
-        Mask<R> valid = both(q.inside, negate(disoccluded(expected, fetch_depth(p, in.stride, q),
+        const R expected = expectedPreviousDepth(buffer.expected, depth, x, y);
+        Mask<R> valid = both(q.inside, negate(disoccluded(expected, fetchDepth(p, in.stride, q),
                                                           a.rejection.depthTolerance, a.rejection.bothSides)));
         if (a.rejection.magnification > 0) {
             const R nearX = min(q.fracX, one - q.fracX), nearY = min(q.fracY, one - q.fracY);
@@ -89,8 +89,8 @@ AA_INLINE void asaaPixel(const AsaaArgs& a, int x, int y) {
         const R least(T(0.125)), most(T(1));  // the four nearest samples serve radii up to 1 px
         const R rx = min(max(footX * half, least), most), ry = min(max(footY * half, least), most);
         const R dx = q.wholeX + q.fracX, dy = q.wholeY + q.fracY;
-        add_tent(p, in.stride, dx + R(T(a.phiX - buffer.phiX)), dy + R(T(a.phiY - buffer.phiY)), rx, ry, valid, b);
-        add_tent(p, in.stride, dx - R(T(buffer.phiX)), dy - R(T(buffer.phiY)), min(rx + rx, most), min(ry + ry, most),
+        addTent(p, in.stride, dx + R(T(a.phiX - buffer.phiX)), dy + R(T(a.phiY - buffer.phiY)), rx, ry, valid, b);
+        addTent(p, in.stride, dx - R(T(buffer.phiX)), dy - R(T(buffer.phiY)), min(rx + rx, most), min(ry + ry, most),
                  valid, f);
     }
     const auto hasB = b.weight > R(T(1e-6)), hasF = f.weight > R(T(1e-6));
@@ -101,7 +101,7 @@ AA_INLINE void asaaPixel(const AsaaArgs& a, int x, int y) {
     // 5: weight of the current sample, 7: sample count
     const Reprojection<R> q = reproject(in, motion, x, y);
     const R count =
-        a.countAtPixel ? load<R>(a.previousCount + o) : gather<R>(a.previousCount + o, nearest_offsets(q, in.stride));
+        a.countAtPixel ? load<R>(a.previousCount + o) : gather<R>(a.previousCount + o, nearestOffsets(q, in.stride));
     R alpha, nextCount;
     if (a.eq331) {
         const R vx = abs(motion.x) - floor(abs(motion.x)), vy = abs(motion.y) - floor(abs(motion.y));
@@ -122,11 +122,11 @@ AA_INLINE void asaaPixel(const AsaaArgs& a, int x, int y) {
     const vec3<R> updated = previousB + (sample - previousB) * alpha;
     const vec3<R> shown = previousF + (sample - previousF) * (alpha * R(T(0.25)));
     const vec3<R> next = sanitised(select(alpha == one, sample, updated), sample, vec3<R>(zero));
-    store_rgba(next, depth, in.next + 4 * o);
+    storeRgba(next, depth, in.next + 4 * o);
     store3(sanitised(select(alpha == one, sample, shown), sample, next), in.out.c, o);
     store(min(nextCount, R(T(16777215))), a.nextCount + o);  // the last whole step of float
     if (!in.debug.rejection) return;
-    store_debug(in.debug, o, motion, hit, Box<R>{previousF, previousF}, vec3<R>(zero), one - alpha);
+    storeDebug(in.debug, o, motion, hit, Box<R>{previousF, previousF}, vec3<R>(zero), one - alpha);
     store(select(hit, zero, select(q.inside, R(T(int(Rejection::disoccluded))), R(T(int(Rejection::outside))))),
           in.debug.rejection + o);
 }

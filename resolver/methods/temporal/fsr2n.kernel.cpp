@@ -10,7 +10,7 @@ constexpr float kSimilarLuma = 1.05f;  // ratio up to which two pixels are of on
 constexpr float kLockedLuma = 0.9f;    // ratio down to which a lock's luma is unchanged (FSR 2)
 constexpr float kFastPx = 20;          // speed at which box and weight are those of motion (FSR 2)
 
-AA_INLINE void take_least(float* at, float z, bool shared) {
+AA_INLINE void takeLeast(float* at, float z, bool shared) {
     if (!shared) {
         if (z < *at) *at = z;
         return;
@@ -27,23 +27,23 @@ __attribute__((flatten)) void fsr2nScatterRows(const Fsr2nScatterArgs& a, int y0
     const TemporalIn& in = a.in;
     for (int y = y0; y < y1; y++)
         for (int x = 0; x < in.width; x += N<R>) {
-            const Surface<R> s = closest_surface<R>(in, long(y) * in.stride + x, false);
+            const Surface<R> s = closestSurface<R>(in, long(y) * in.stride + x, false);
             const Reprojection<R> q = reproject(in, s.motion, x, y);
             alignas(64) float z[N<R>];
             store(s.depthView, z);
-            const Offsets<R> texel = texel_offsets(q, in.stride);
+            const Offsets<R> texel = texelOffsets(q, in.stride);
             const R zero(T(0)), one(T(1)), left = R(T(x)) + iota<R>() + q.wholeX, top = R(T(y)) + q.wholeY;
             const auto known = both(both(q.inside, s.depthView > zero), iota<R>() < R(T(in.width - x)));
             for (int tap = 0; tap < 4; tap++) {
                 const int dx = tap & 1, dy = tap >> 1;
                 const R w = (dx ? q.fracX : one - q.fracX) * (dy ? q.fracY : one - q.fracY);
-                const auto in_x = both(left >= R(T(-dx)), left < R(T(in.width - dx))),
-                           in_y = both(top >= R(T(-dy)), top < R(T(in.height - dy)));
-                unsigned lanes = mask_bits<R>(both(both(known, w > R(T(kLeastSplat))), both(in_x, in_y)));
+                const auto inX = both(left >= R(T(-dx)), left < R(T(in.width - dx))),
+                           inY = both(top >= R(T(-dy)), top < R(T(in.height - dy)));
+                unsigned lanes = maskBits<R>(both(both(known, w > R(T(kLeastSplat))), both(inX, inY)));
                 float* at = a.nearest + long(y + dy) * in.stride + x + dx;
                 for (; lanes; lanes &= lanes - 1) {
                     const int i = __builtin_ctz(lanes);
-                    take_least(at + texel.k[i], z[i], a.shared);
+                    takeLeast(at + texel.k[i], z[i], a.shared);
                 }
             }
         }
@@ -51,21 +51,21 @@ __attribute__((flatten)) void fsr2nScatterRows(const Fsr2nScatterArgs& a, int y0
 
 // 0: the surface was visible a frame ago. 1: something nearer stood before it.
 template <class R>
-AA_INLINE R depth_clip(const Fsr2nArgs& a, const Reprojection<R>& q, R depth, long o) {
+AA_INLINE R depthClip(const Fsr2nArgs& a, const Reprojection<R>& q, R depth, long o) {
     using T = Elem<R>;
     const R zero(T(0)), one(T(1));
-    const Offsets<R> k = texel_offsets(q, a.in.stride);
+    const Offsets<R> k = texelOffsets(q, a.in.stride);
     const R wx[2] = {one - q.fracX, q.fracX}, wy[2] = {one - q.fracY, q.fracY};
     R visible(zero), weights(zero);
     for (int tap = 0; tap < 4; tap++) {
         const R found = gather<R>(a.nearest + o + long(tap >> 1) * a.in.stride + (tap & 1), k);
         const R behind = depth - found, w = wx[tap & 1] * wy[tap >> 1];
         const auto counts = both(behind > zero, w > R(T(kLeastSplat)));
-        if (mask_bits<R>(counts) == 0) continue;
+        if (maskBits<R>(counts) == 0) continue;
         const R least = max(depth, found) * R(T(a.separation));
         const R share = min(least / select(counts, behind, one), one);
         // From 1080p on the power is 3: no logarithm.
-        const R graded = a.power == 3 ? share * share * share : pow_positive(share, R(T(a.power)));
+        const R graded = a.power == 3 ? share * share * share : powPositive(share, R(T(a.power)));
         visible = visible + select(counts, w * graded, zero);
         weights = weights + select(counts, w, zero);
     }
@@ -74,7 +74,7 @@ AA_INLINE R depth_clip(const Fsr2nArgs& a, const Reprojection<R>& q, R depth, lo
 
 // A pixel brighter or darker than all that differ from it, and not part of a 2x2 block of its kind: a thin line's.
 template <class R, class LumaAt>
-AA_INLINE Mask<R> is_ridge(const LumaAt& at) {
+AA_INLINE Mask<R> isRidge(const LumaAt& at) {
     using T = Elem<R>;
     const R y = at(0, 0), far(T(1e30));
     R darkest(far), brightest(-far);
@@ -96,9 +96,9 @@ AA_INLINE Mask<R> is_ridge(const LumaAt& at) {
 // nothing cancels: with H = 1 + max(h), C = 1 + max(c), P = (1 - a) C and Q = a H the mean is
 // (P h + Q c) / (P + Q + least over the channels of P (H - 1 - h) + Q (C - 1 - c)).
 template <class R>
-AA_INLINE vec3<R> tone_mapped_mean(vec3<R> h, vec3<R> c, R a) {
+AA_INLINE vec3<R> toneMappedMean(vec3<R> h, vec3<R> c, R a) {
     using T = Elem<R>;
-    const R zero(T(0)), one(T(1)), mh = max_component(h), mc = max_component(c);
+    const R zero(T(0)), one(T(1)), mh = maxComponent(h), mc = maxComponent(c);
     const R P = (one - a) * (one + mc), Q = a * (one + mh);
     const vec3<R> below = (vec3<R>(mh) - h) * P + (vec3<R>(mc) - c) * Q;
     const R excess = min(below.x, min(below.y, below.z));
@@ -114,14 +114,14 @@ AA_INLINE void fsr2nPixel(const Fsr2nArgs& a, int x, int y) {
     const long o = long(y) * in.stride + x;
     const vec3<R> raw = load3<R>(in.color.c, o);
     const Window<R> at([&](int i, int j) __attribute__((always_inline)) {
-        return to_ycocg(load3<R>(in.color.c, o + long(j) * in.stride + i));
+        return toYcocg(load3<R>(in.color.c, o + long(j) * in.stride + i));
     });
 
     // 1
-    const Surface<R> surface = closest_surface<R>(in, o, false);
+    const Surface<R> surface = closestSurface<R>(in, o, false);
     const Motion<R> motion = surface.motion;
     const Reprojection<R> q = reproject(in, motion, x, y);
-    const R hidden = depth_clip(a, q, surface.depthView, o);
+    const R hidden = depthClip(a, q, surface.depthView, o);
     const R speed = sqrt(motion.x * motion.x + motion.y * motion.y), fast = saturate(speed * R(T(1 / kFastPx)));
 
     // 3. as deviations from the centre
@@ -146,33 +146,33 @@ AA_INLINE void fsr2nPixel(const Fsr2nArgs& a, int x, int y) {
     const Box<R> box{max(bounds.lo, mean - reach), min(bounds.hi, mean + reach)};
 
     // 2
-    const Offsets<R> nearest = nearest_offsets(q, in.stride);
-    R lock = fetch_rgba<R>(in.history + 4 * o, nearest).a;
+    const Offsets<R> nearest = nearestOffsets(q, in.stride);
+    R lock = fetchRgba<R>(in.history + 4 * o, nearest).a;
     const R luma = centre.x + around * R(T(1) / T(9)), usual = gather<R>(a.previousLuma + o, nearest);
     const R brighter = max(luma, usual), darker = min(luma, usual);
     const auto kept = both(q.inside, either(darker >= brighter * R(T(kLockedLuma)), brighter < R(T(1e-6))));
     lock = select(kept, max(lock - R(T(a.lockDecay)), zero) * (one - hidden), zero);
     if (a.locks)
-        lock = select(is_ridge<R>([&](int i, int j) __attribute__((always_inline)) { return at(i, j).x; }), one, lock);
+        lock = select(isRidge<R>([&](int i, int j) __attribute__((always_inline)) { return at(i, j).x; }), one, lock);
     const auto known = both(q.inside, hidden <= R(T(0.5)));
     const R nextUsual = select(known, usual + (luma - usual) * R(T(a.lockDecay)), luma);
 
     // 4
-    const vec3<R> past = fetch_lanczos(in.history + 4 * o, in.stride, q), history = to_ycocg(past);
+    const vec3<R> past = fetchLanczos(in.history + 4 * o, in.stride, q), history = toYcocg(past);
     const vec3<R> held = mix(clamp3(history, box.lo, box.hi), history, lock);
-    const auto toRgb = [&](vec3<R> c) __attribute__((always_inline)) { return max(from_ycocg(c), vec3<R>(zero)); };
+    const auto toRgb = [&](vec3<R> c) __attribute__((always_inline)) { return max(fromYcocg(c), vec3<R>(zero)); };
     const R w(T(a.weight));
     R accumulated = one - hidden;
     accumulated = min(accumulated, mix(accumulated, w * R(T(10)), saturate(speed * R(T(10)))));
     accumulated = min(accumulated, mix(accumulated, w, fast));
     const R alpha = max(w / (accumulated + w), R(T(1) - T(in.feedbackCeiling)));
-    const vec3<R> mixed = tone_mapped_mean(toRgb(held), toRgb(current), alpha);
+    const vec3<R> mixed = toneMappedMean(toRgb(held), toRgb(current), alpha);
     const vec3<R> result = select(q.inside, mixed, toRgb(current));
 
-    store_blend(in, x, y, sanitised(result, raw, past), select(finite(lock), lock, zero));
+    storeBlend(in, x, y, sanitised(result, raw, past), select(finite(lock), lock, zero));
     store(select(finite(nextUsual), nextUsual, zero), a.nextLuma + o);
     if (!in.debug.rejection) return;
-    store_debug(in.debug, o, motion, q.inside, box, held - history, one - alpha);
+    storeDebug(in.debug, o, motion, q.inside, box, held - history, one - alpha);
     store(select(known, zero, select(q.inside, R(T(int(Rejection::disoccluded))), R(T(int(Rejection::outside))))),
           in.debug.rejection + o);
     if (a.debugLock) store(hidden, a.debugDepthClip + o), store(lock, a.debugLock + o);
@@ -186,8 +186,8 @@ __attribute__((flatten)) void fsr2nRows(const Fsr2nArgs& a, int y0, int y1) {
                 continue;
             }
             const long o = long(y) * a.in.stride + x;
-            const R zero(Elem<R>(0)), luma = to_ycocg(load3<R>(a.in.color.c, o)).x;
-            store_first<R>(a.in, x, y, load3<R>(a.in.color.c, long(y) * a.in.stride + x), zero);
+            const R zero(Elem<R>(0)), luma = toYcocg(load3<R>(a.in.color.c, o)).x;
+            storeFirst<R>(a.in, x, y, load3<R>(a.in.color.c, long(y) * a.in.stride + x), zero);
             store(select(finite(luma), luma, zero), a.nextLuma + o);
             if (a.debugLock) store(zero, a.debugDepthClip + o), store(zero, a.debugLock + o);
         }

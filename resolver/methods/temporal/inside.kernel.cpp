@@ -7,7 +7,7 @@ namespace AA_ARCH {
 
 // Four bilinear taps at (+-s, +-s); at(i, j) are the window's colours. s = 0.5 px under motion, up to 0.6666 at rest.
 template <class R, class At>
-AA_INLINE Box<R> four_tap_box(const At& at, R s, vec3<R>& mean) {
+AA_INLINE Box<R> fourTapBox(const At& at, R s, vec3<R>& mean) {
     const vec3<R> c = at(0, 0);
     const auto tap = [&](int i, int j) __attribute__((always_inline)) {
         const vec3<R> near = mix(c, at(i, 0), s), far = mix(at(0, j), at(i, j), s);
@@ -20,10 +20,10 @@ AA_INLINE Box<R> four_tap_box(const At& at, R s, vec3<R>& mean) {
 
 // The current colours at p + (dx, dy), bilinear, held to the picture.
 template <class R>
-AA_INLINE vec3<R> color_at(TemporalIn in, R dx, R dy, int x, int y) {
+AA_INLINE vec3<R> colorAt(TemporalIn in, R dx, R dy, int x, int y) {
     in.clampOutside = true;
     const Reprojection<R> q = reproject(in, Motion<R>{-dx, -dy}, x, y);
-    const Offsets<R> k = texel_offsets(q, in.stride);
+    const Offsets<R> k = texelOffsets(q, in.stride);
     const auto channel = [&](const float* p) __attribute__((always_inline)) {
         const R top = mix(gather<R>(p, k), gather<R>(p + 1, k), q.fracX),
                 bottom = mix(gather<R>(p + in.stride, k), gather<R>(p + in.stride + 1, k), q.fracX);
@@ -35,18 +35,18 @@ AA_INLINE vec3<R> color_at(TemporalIn in, R dx, R dy, int x, int y) {
 // What the screen shows: seven taps along the motion of the current frame, offset by chance, instead of the result
 // where motion is fast (2 px: none of it, 15 px: all).
 template <class R>
-AA_INLINE vec3<R> blurred_by_motion(const InsideArgs& a, Motion<R> motion, vec3<R> result, int x, int y) {
+AA_INLINE vec3<R> blurredByMotion(const InsideArgs& a, Motion<R> motion, vec3<R> result, int x, int y) {
     using T = Elem<R>;
     const R zero(T(0));
     const R speed = sqrt(motion.x * motion.x + motion.y * motion.y);
     const R share = clamp(speed - R(T(2)), zero, R(T(13))) * R(T(1) / T(13));
     const R step = R(T(a.motionBlur) * T(0.5) / T(3));
-    const R chance = noise<R>(noise_seed(NoiseStream::motionBlur, a.frame, uint32_t(y)), uint32_t(x)) - R(T(0.5));
+    const R chance = noise<R>(noiseSeed(NoiseStream::motionBlur, a.frame, uint32_t(y)), uint32_t(x)) - R(T(0.5));
     const R ownX(a.unjitterColor ? -T(a.in.jitterXPx) : T(0)), ownY(a.unjitterColor ? -T(a.in.jitterYPx) : T(0));
     vec3<R> sum(zero);
     for (int tap = -3; tap <= 3; tap++) {
         const R at = (R(T(tap)) + chance) * step;
-        sum = sum + (color_at(a.in, ownX + motion.x * at, ownY + motion.y * at, x, y) - result);
+        sum = sum + (colorAt(a.in, ownX + motion.x * at, ownY + motion.y * at, x, y) - result);
     }
     const vec3<R> blurred = result + sum * (share * R(T(1) / T(7)));
     // A motion of more than two pictures is no motion (methods/08 s.8.1).
@@ -67,30 +67,30 @@ AA_INLINE void insidePixel(const InsideArgs& a, bool ycocg, bool unjitterWindow,
         return vec3<R>{unjittered(in.color.c[0] + n, in.stride), unjittered(in.color.c[1] + n, in.stride),
                        unjittered(in.color.c[2] + n, in.stride)};
     };
-    const auto space = [&](vec3<R> c) __attribute__((always_inline)) { return ycocg ? to_ycocg(c) : c; };
+    const auto space = [&](vec3<R> c) __attribute__((always_inline)) { return ycocg ? toYcocg(c) : c; };
     const auto luma = [&](vec3<R> c) __attribute__((always_inline)) { return ycocg ? c.x : luminance(c, a.luminance); };
     const vec3<R> currentRgb = fetch(a.unjitterColor, 0, 0), current = space(currentRgb);
 
     const Motion<R> motion = a.unjitterReprojection ? Motion<R>{unjittered(in.motionXPx + o, in.stride),
                                                                 unjittered(in.motionYPx + o, in.stride)}
-                                                    : dilated_motion<R>(in, o);
+                                                    : dilatedMotion<R>(in, o);
     const Reprojection<R> q = reproject(in, motion, x, y);
-    const vec3<R> past = fetch_history(in, x, y, q), history = space(past);
+    const vec3<R> past = fetchHistory(in, x, y, q), history = space(past);
 
     const Window<R> at([&](int i, int j) __attribute__((always_inline)) { return space(fetch(unjitterWindow, i, j)); });
     Box<R> box;
     vec3<R> mean(zero);
     if (a.neighbourhood == InsideNeighbourhood::fourTapVarying) {
         const R speed = sqrt(motion.x * motion.x + motion.y * motion.y);
-        const R depth = dilated_depth<R>(in, o);
+        const R depth = dilatedDepth<R>(in, o);
         // 0 * 1e10 is 0, and a far surface at any speed counts as moving (methods/08 s.8.3).
         const R still = saturate(R(T(0.5)) / max(speed * depth, R(T(1e-6))));
-        box = four_tap_box<R>(at, R(T(0.5)) + still * R(T(0.1666)), mean);
+        box = fourTapBox<R>(at, R(T(0.5)) + still * R(T(0.1666)), mean);
     } else {
         const Neighbourhood kind = Neighbourhood(int(a.neighbourhood));
         const Neighbours<R> window = neighbours<R>(at);
-        box = box_of(window, kind);
-        mean = mean_of(window, kind);
+        box = boxOf(window, kind);
+        mean = meanOf(window, kind);
     }
     if (ycocg) {
         const R chroma = (box.hi.x - box.lo.x) * R(T(0.125));
@@ -99,14 +99,14 @@ AA_INLINE void insidePixel(const InsideArgs& a, bool ycocg, bool unjitterWindow,
         mean = {mean.x, current.y, current.z};
     }
     const vec3<R> held = constrain(box, a.clipTarget, mean, current, history);
-    const R k = min(luminance_feedback(luma(current), luma(held), a.kMin, a.kMax), R(T(in.feedbackCeiling)));
+    const R k = min(luminanceFeedback(luma(current), luma(held), a.kMin, a.kMax), R(T(in.feedbackCeiling)));
     const vec3<R> mixed = blend(current, held, k);
-    const vec3<R> rgb = ycocg ? saturate(from_ycocg(mixed)) : mixed;
+    const vec3<R> rgb = ycocg ? saturate(fromYcocg(mixed)) : mixed;
 
     const vec3<R> result = sanitised(select(q.inside, rgb, currentRgb), load3<R>(in.color.c, o), past);
-    store_blend(in, x, y, result, R(T(1)));
-    if (a.motionBlur > 0) store3(blurred_by_motion(a, motion, result, x, y), in.out.c, o);
-    store_debug(in.debug, o, motion, q.inside, box, held - history, k);
+    storeBlend(in, x, y, result, R(T(1)));
+    if (a.motionBlur > 0) store3(blurredByMotion(a, motion, result, x, y), in.out.c, o);
+    storeDebug(in.debug, o, motion, q.inside, box, held - history, k);
 }
 template <class R>
 __attribute__((flatten)) void insideRows(const InsideArgs& a, int y0, int y1) {
@@ -117,9 +117,9 @@ __attribute__((flatten)) void insideRows(const InsideArgs& a, int y0, int y1) {
                 if (a.in.history)
                     insidePixel<R>(a, ycocg, unjitterWindow, x, y);
                 else
-                    store_first<R>(a.in, x, y);
+                    storeFirst<R>(a.in, x, y);
     };
-    with_options<R>(rows, !a.ycocg && !a.unjitterNeighbourhood);
+    withOptions<R>(rows, !a.ycocg && !a.unjitterNeighbourhood);
 }
 
 }  // namespace AA_ARCH

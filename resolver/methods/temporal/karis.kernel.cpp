@@ -42,14 +42,14 @@ struct KarisWindow {  // rows y - 1, y, y + 1
 template <class R>
 AA_INLINE vec3<R> karisColor(const KarisArgs& a, bool pq, long o) {
     const vec3<R> c = load3<R>(a.in.color.c, o);
-    return pq ? vec3<R>{pq_encode(*a.pq, c.x), pq_encode(*a.pq, c.y), pq_encode(*a.pq, c.z)} : c;
+    return pq ? vec3<R>{pqEncode(*a.pq, c.x), pqEncode(*a.pq, c.y), pqEncode(*a.pq, c.z)} : c;
 }
 template <class R>
 AA_INLINE void convertRow(const KarisArgs& a, bool ycocg, bool pq, const KarisRings<Elem<R>>& rings, int y) {
     Elem<R>*const c0 = rings.c[0](y), *const c1 = rings.c[1](y), *const c2 = rings.c[2](y),
                   *const weight = rings.weight(y);
     for (int x = 0; x < a.in.width; x += N<R>) {
-        const vec3<R> rgb = karisColor<R>(a, pq, long(y) * a.in.stride + x), c = ycocg ? to_ycocg(rgb) : rgb;
+        const vec3<R> rgb = karisColor<R>(a, pq, long(y) * a.in.stride + x), c = ycocg ? toYcocg(rgb) : rgb;
         store(c.x, c0 + x), store(c.y, c1 + x), store(c.z, c2 + x);
         const R one(Elem<R>(1));
         if (a.filtered) store(a.toneWeighted ? toneWeight(ycocg ? c.x : luma709(c), a.hdr4) : one, weight + x);
@@ -59,8 +59,8 @@ AA_INLINE void convertRow(const KarisArgs& a, bool ycocg, bool pq, const KarisRi
 }
 template <class R>
 AA_INLINE void storeResult(const KarisArgs& a, bool pq, long o, vec3<R> result) {
-    store_rgba(result, R(Elem<R>(1)), a.in.next + 4 * o);
-    if (pq) result = {pq_decode(*a.pq, result.x), pq_decode(*a.pq, result.y), pq_decode(*a.pq, result.z)};
+    storeRgba(result, R(Elem<R>(1)), a.in.next + 4 * o);
+    if (pq) result = {pqDecode(*a.pq, result.x), pqDecode(*a.pq, result.y), pqDecode(*a.pq, result.z)};
     store3(result, a.in.out.c, o);
 }
 
@@ -71,13 +71,13 @@ AA_INLINE void karisPixel(const KarisArgs& a, YCoCg ycocg, Pq pq, const KarisWin
     const TemporalIn& in = a.in;
     const R zero(T(0)), one(T(1));
     const long o = long(y) * in.stride + x;
-    const auto at = [&](int i, int j) __attribute__((always_inline)) { return load_own<R>(window.c[j + 1], x + i); };
+    const auto at = [&](int i, int j) __attribute__((always_inline)) { return loadOwn<R>(window.c[j + 1], x + i); };
     const auto luma = [&](vec3<R> c) __attribute__((always_inline)) { return ycocg ? c.x : luma709(c); };
     const vec3<R> centre = at(0, 0);
 
     // 1. filtered current colour and moments, as deviations from the centre: a constant stays exactly itself
     const auto filterWeight = [&](int i, int j) __attribute__((always_inline)) {
-        return R(T(a.filter[(j + 1) * 3 + i + 1])) * load_own<R>(window.weight[j + 1] + x + i);
+        return R(T(a.filter[(j + 1) * 3 + i + 1])) * loadOwn<R>(window.weight[j + 1] + x + i);
     };
     vec3<R> sum(zero);
     R weights(zero);
@@ -98,22 +98,22 @@ AA_INLINE void karisPixel(const KarisArgs& a, YCoCg ycocg, Pq pq, const KarisWin
 
     // 2. box
     Box<R> box;
-    if (spread) box = variance_box(m, a.gamma);
+    if (spread) box = varianceBox(m, a.gamma);
     if (!spread || a.box == BoxKind::intersection) {
-        const Box<R> bounds = box_of(neighbours<R>(at), a.neighbourhood);
+        const Box<R> bounds = boxOf(neighbours<R>(at), a.neighbourhood);
         box = spread ? Box<R>{max(box.lo, bounds.lo), min(box.hi, bounds.hi)} : bounds;
     }
     box.lo = min(box.lo, box.hi);
 
     // 3. history
-    const Motion<R> motion = dilated_motion<R>(in, o);
+    const Motion<R> motion = dilatedMotion<R>(in, o);
     const Reprojection<R> q = reproject(in, motion, x, y);
-    const vec3<R> past = fetch_history(in, x, y, q);
-    const vec3<R> history = ycocg ? to_ycocg(past) : past;
+    const vec3<R> past = fetchHistory(in, x, y, q);
+    const vec3<R> history = ycocg ? toYcocg(past) : past;
     const vec3<R> held =
         a.constraint == HistoryConstraint::clamp
             ? clamp3(history, box.lo, box.hi)
-            : clip_toward(box, a.constraint == HistoryConstraint::clipMean ? m.mean : current, history);
+            : clipToward(box, a.constraint == HistoryConstraint::clipMean ? m.mean : current, history);
 
     // 4. weight of the current colour
     R alpha(T(a.alpha));
@@ -122,18 +122,18 @@ AA_INLINE void karisPixel(const KarisArgs& a, YCoCg ycocg, Pq pq, const KarisWin
     const R k = min(one - alpha, R(T(in.feedbackCeiling)));
 
     // 5. blend
-    const vec3<R> mixed = a.inverseLuminance ? inverse_luminance_blend(current, luma(current), held, luma(held), k)
+    const vec3<R> mixed = a.inverseLuminance ? inverseLuminanceBlend(current, luma(current), held, luma(held), k)
                                              : blend(current, held, k);
     const auto toRgb = [&](vec3<R> c) __attribute__((always_inline)) {
-        return max(ycocg ? from_ycocg(c) : c, vec3<R>(zero));
+        return max(ycocg ? fromYcocg(c) : c, vec3<R>(zero));
     };
     vec3<R> result = toRgb(mixed);
-    if (mask_bits<R>(negate(both(q.inside, finite(result))))) {
+    if (maskBits<R>(negate(both(q.inside, finite(result))))) {
         const vec3<R> raw = karisColor<R>(a, pq, o);
         result = sanitised(select(q.inside, result, filtered ? toRgb(current) : raw), raw, past);
     }
     storeResult(a, pq, o, result);
-    store_debug(in.debug, o, motion, q.inside, box, held - history, k);
+    storeDebug(in.debug, o, motion, q.inside, box, held - history, k);
 }
 template <class R>
 __attribute__((flatten)) void karisRows(const KarisArgs& a, int y0, int y1) {
@@ -149,7 +149,7 @@ __attribute__((flatten)) void karisRows(const KarisArgs& a, int y0, int y1) {
                     const long o = long(y) * in.stride + x;
                     const vec3<R> current = karisColor<R>(a, pq, o);
                     storeResult(a, pq, o, sanitised(current, current, vec3<R>(R(Elem<R>(0)))));
-                    store_first_debug(in, o, current);
+                    storeFirstDebug(in, o, current);
                 }
             return;
         }
@@ -165,10 +165,10 @@ __attribute__((flatten)) void karisRows(const KarisArgs& a, int y0, int y1) {
             for (int x = 0; x < in.width; x += N<R>) karisPixel<R>(a, ycocg, pq, window, x, y);
         }
     };
-    with_options<R>(rows, a.ycocg, a.pq != nullptr);
+    withOptions<R>(rows, a.ycocg, a.pq != nullptr);
 }
 
-void fillPqTables(PqTables& t) { fill_tables(t); }
+void fillPqTables(PqTables& t) { fillTables(t); }
 
 }  // namespace AA_ARCH
 

@@ -16,33 +16,33 @@ namespace {
 using namespace testing;
 
 TEST(Pq, PartsAgreeWithLibm) {
-    for (double u = -0.5; u <= 0.5; u += 0.01) EXPECT_NEAR(block_test::expm1_small(u), std::expm1(u), 2e-16);
+    for (double u = -0.5; u <= 0.5; u += 0.01) EXPECT_NEAR(block_test::expm1Small(u), std::expm1(u), 2e-16);
     for (double t = -0.17; t <= 0.17; t += 0.01)
-        EXPECT_NEAR(block_test::log2_of_ratio(t), std::log2((1 + t) / (1 - t)), 1e-15);
+        EXPECT_NEAR(block_test::log2OfRatio(t), std::log2((1 + t) / (1 - t)), 1e-15);
     // ST 2084: 100 units encode to 0.508078.
-    EXPECT_NEAR(block_test::pq_encode(100.0), 0.508078, 1e-6);
-    EXPECT_NEAR(block_test::pq_encode(10000.0), 1.0, 1e-12);
+    EXPECT_NEAR(block_test::pqEncode(100.0), 0.508078, 1e-6);
+    EXPECT_NEAR(block_test::pqEncode(10000.0), 1.0, 1e-12);
 }
 
 TEST(Pq, TablesAgreeWithTheCurve) {
     static PqTables tables;
-    block_test::fill_tables(tables);
+    block_test::fillTables(tables);
     double encoded = 0, decoded = 0;
     for (int i = 0; i <= 100000; i++) {
         const float linear = float(std::pow(10.0, -12 + 16.0 * i / 100000));
-        const float e = block_test::pq_encode(tables, linear), back = block_test::pq_decode(tables, e);
-        encoded = std::max(encoded, std::abs(double(e) - block_test::pq_encode(double(linear))));
-        const double exact = block_test::pq_decode(double(e));
+        const float e = block_test::pqEncode(tables, linear), back = block_test::pqDecode(tables, e);
+        encoded = std::max(encoded, std::abs(double(e) - block_test::pqEncode(double(linear))));
+        const double exact = block_test::pqDecode(double(e));
         decoded = std::max(decoded, std::abs(double(back) - exact) / exact);
     }
     EXPECT_LT(encoded, 1.2e-7);
     EXPECT_LT(decoded, 2e-7);
     for (float e = 0; e < 1e-6f; e = std::nextafter(e, 1.0f), e += e < 6e-7f ? 1e-9f : 0.0f)
-        EXPECT_GE(block_test::pq_decode(tables, e), 0.0f) << e;
+        EXPECT_GE(block_test::pqDecode(tables, e), 0.0f) << e;
     for (const float dark : {0.0f, -1.0f, 1e-30f, NAN, -INFINITY})
-        EXPECT_EQ(block_test::pq_decode(tables, block_test::pq_encode(tables, dark)), 0.0f) << dark;
+        EXPECT_EQ(block_test::pqDecode(tables, block_test::pqEncode(tables, dark)), 0.0f) << dark;
     for (const float bright : {1e4f, 1e6f, INFINITY})
-        EXPECT_EQ(block_test::pq_decode(tables, block_test::pq_encode(tables, bright)), 1e4f) << bright;
+        EXPECT_EQ(block_test::pqDecode(tables, block_test::pqEncode(tables, bright)), 1e4f) << bright;
 }
 // A linear value through donut: first frame encodes and decodes only.
 TEST(Donut, PqIsItsOwnInverse) {

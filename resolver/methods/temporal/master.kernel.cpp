@@ -17,54 +17,54 @@ struct MasterRings {
 };
 
 template <class R>
-AA_INLINE R in_depth_unit(const MasterArgs& a, R depthView) {
+AA_INLINE R inDepthUnit(const MasterArgs& a, R depthView) {
     using T = Elem<R>;
     const R far(T(a.farDepth)), z = min(far, depthView);
     if (a.depthUnit == DepthUnit::world) return z;
     return a.depthUnit == DepthUnit::zfar ? z * R(T(1) / T(a.farDepth)) : (z + z) / (z + far);
 }
 template <class R>
-AA_INLINE void depth_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
+AA_INLINE void depthRow(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
     Elem<R>* const row = rings.depth(y);
     for (int x = 0; x < a.in.width; x += N<R>)
-        store(in_depth_unit(a, load<R>(a.depthOfTexel + long(y) * a.in.stride + x)), row + x);
+        store(inDepthUnit(a, load<R>(a.depthOfTexel + long(y) * a.in.stride + x)), row + x);
     rings.depth.continueBeyond(y);
 }
 // Calls one(x) for one value at x = -1 and x = width, and lanes(x) for all between.
 template <class R, class Lanes, class One>
-AA_INLINE void with_both_ends(int width, const Lanes& lanes, const One& one) {
+AA_INLINE void withBothEnds(int width, const Lanes& lanes, const One& one) {
     for (int x = 0; x < width; x += N<R>) lanes(x);
     one(-1), one(width);
 }
 // B0 of the colours, row y of -1 .. height.
 template <class R>
-AA_INLINE void current_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
+AA_INLINE void currentRow(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
     using T = Elem<R>;
     const UniformFetch<R> fetch(a.in.readXPx, a.in.readYPx);
     const UniformFetch<T> fetchOne(a.in.readXPx, a.in.readYPx);
     for (int c = 0; c < 3; c++) {
         T* const row = rings.current[c](y + 1);
         const float* const from = a.in.color.c[c] + long(y) * a.in.stride;
-        with_both_ends<R>(
+        withBothEnds<R>(
             a.in.width, [&](int x) __attribute__((always_inline)) { store(fetch(from + x, a.in.stride), row + x); },
             [&](int x) __attribute__((always_inline)) { row[x] = fetchOne(from + x, a.in.stride); });
     }
 }
 // And of the Sobel values.
 template <class R>
-AA_INLINE void sobel_at_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
+AA_INLINE void sobelAtRow(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
     using T = Elem<R>;
     const UniformFetch<R> fetch(a.in.readXPx, a.in.readYPx);
     const UniformFetch<T> fetchOne(a.in.readXPx, a.in.readYPx);
     T* const row = rings.sobelAt(y + 1);
     const T *const upper = rings.sobel(y + fetch.dy), *const lower = rings.sobel(y + fetch.dy + 1);
-    with_both_ends<R>(
+    withBothEnds<R>(
         a.in.width, [&](int x) __attribute__((always_inline)) { store(fetch(upper + x, lower + x), row + x); },
         [&](int x) __attribute__((always_inline)) { row[x] = fetchOne(upper + x, lower + x); });
 }
 
 template <class R>
-AA_INLINE void luminance_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
+AA_INLINE void luminanceRow(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
     Elem<R>*const albedo = rings.luminanceAlbedo(y), *const lit = rings.luminanceLit(y);
     for (int x = 0; x < a.in.width; x += N<R>) {
         const long o = long(y) * a.in.stride + x;
@@ -76,7 +76,7 @@ AA_INLINE void luminance_row(const MasterArgs& a, const MasterRings<Elem<R>>& ri
 }
 // S: one Sobel value per pixel.
 template <class R>
-AA_INLINE void sobel_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
+AA_INLINE void sobelRow(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
     using T = Elem<R>;
     T* const sobel = rings.sobel(y);
     const T *const albedo[3] = {rings.luminanceAlbedo(y - 1), rings.luminanceAlbedo(y), rings.luminanceAlbedo(y + 1)},
@@ -88,18 +88,18 @@ AA_INLINE void sobel_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings,
             continue;
         }
         const auto magnitude = [&](const T* const(&rows)[3]) __attribute__((always_inline)) {
-            return sobel_magnitude<R>([&](int i, int j)
-                                          __attribute__((always_inline)) { return load_own<R>(rows[j + 1] + x + i); });
+            return sobelMagnitude<R>([&](int i, int j)
+                                          __attribute__((always_inline)) { return loadOwn<R>(rows[j + 1] + x + i); });
         };
         const R sum = magnitude(albedo) * R(T(a.weightAlbedo)) + magnitude(lit) * R(T(a.weightLit)) + magnitude(depth);
-        store(sobel_curve(sum), sobel + x);
+        store(sobelCurve(sum), sobel + x);
     }
     rings.sobel.continueBeyond(y);
 }
 
 // T: the Sobel value over time, and the past of colour and depth.
 template <class R>
-AA_INLINE void past_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
+AA_INLINE void pastRow(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
     using T = Elem<R>;
     const TemporalIn& in = a.in;
     T* const filteredRow = rings.filtered(y);
@@ -108,11 +108,11 @@ AA_INLINE void past_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, 
              *const pastDepth = rings.pastDepth(y);
     for (int x = 0; x < in.width; x += N<R>) {
         const long o = long(y) * in.stride + x;
-        const Motion<R> motion = dilated_motion<R>(in, o);
+        const Motion<R> motion = dilatedMotion<R>(in, o);
         const Reprojection<R> q = reproject(in, motion, x, y);
-        const Texel<R> past = fetch_bilinear<R>(in.history + 4 * o, in.stride, q);
+        const Texel<R> past = fetchBilinear<R>(in.history + 4 * o, in.stride, q);
 
-        const auto at = [&](int i, int j) __attribute__((always_inline)) { return load_own<R>(sobel[j + 1] + x + i); };
+        const auto at = [&](int i, int j) __attribute__((always_inline)) { return loadOwn<R>(sobel[j + 1] + x + i); };
         const R now = at(0, 0);
         R filtered = now;
         if (a.temporalSobel) {
@@ -121,15 +121,15 @@ AA_INLINE void past_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, 
             const R low = min(plusLow, min(min(at(-1, -1), at(1, -1)), min(at(-1, 1), at(1, 1))));
             const R high = max(plusHigh, max(max(at(-1, -1), at(1, -1)), max(at(-1, 1), at(1, 1))));
             const R half(T(0.5)), held = clamp(past.a, (low + plusLow) * half, (high + plusHigh) * half);
-            const R k = min(luminance_feedback(now, held, a.kMin, a.kMax), R(T(in.feedbackCeiling)));
+            const R k = min(luminanceFeedback(now, held, a.kMin, a.kMax), R(T(in.feedbackCeiling)));
             filtered = select(q.inside, held + (now - held) * (R(T(1)) - k), now);
         }
         store(filtered, filteredRow + x);
 
-        const Offsets<R> k = nearest_offsets(q, in.stride);
+        const Offsets<R> k = nearestOffsets(q, in.stride);
         const R depth = a.samePixelDepth ? load<R>(a.previousDepth + o) : gather<R>(a.previousDepth + o, k);
         store(select(q.inside, depth, R(T(__builtin_nanf("")))), pastDepth + x);
-        const vec3<R> color = in.filter == HistoryFilter::bilinear ? past.rgb : fetch_history(in, x, y, q);
+        const vec3<R> color = in.filter == HistoryFilter::bilinear ? past.rgb : fetchHistory(in, x, y, q);
         store(color.x, pastX + x), store(color.y, pastY + x), store(color.z, pastZ + x);
     }
     rings.filtered.continueBeyond(y);
@@ -157,37 +157,37 @@ AA_INLINE void masterPixel(const MasterArgs& a, const MasterWindow<Elem<R>>& row
     const R zero(T(0)), one(T(1));
     const long o = long(y) * in.stride + x;
     const auto colour = [&](int i, int j) __attribute__((always_inline)) {
-        return load_own<R>(rows.current[j + 1], x + i);
+        return loadOwn<R>(rows.current[j + 1], x + i);
     };
     const vec3<R> current = colour(0, 0);
-    const vec3<R> history = load_own<R>(rows.past, x);
-    const R pastDepth = load_own<R>(rows.pastDepth + x);
+    const vec3<R> history = loadOwn<R>(rows.past, x);
+    const R pastDepth = loadOwn<R>(rows.pastDepth + x);
     const auto inside = pastDepth == pastDepth;
 
     // How aliased is this pixel?
     R model(zero), sobel(zero);
     PseudoVariances<R> variance{zero, zero};
     if (a.useModel)
-        model = model_average<R>([&](int i, int j) __attribute__((always_inline)) {
-            return ids_differ<R>(a.objectId + o + long(j) * in.stride + i, a.objectId + o);
+        model = modelAverage<R>([&](int i, int j) __attribute__((always_inline)) {
+            return idsDiffer<R>(a.objectId + o + long(j) * in.stride + i, a.objectId + o);
         });
     if (a.useDepth || a.useDepthTemporal) {
-        const R depth = load_own<R>(rows.depth[1] + x);
-        const DepthWindow<R> window = depth_window<R>([&](int i, int j) __attribute__((always_inline)) {
-            return load_own<R>(rows.depth[j + 1] + x + i);
+        const R depth = loadOwn<R>(rows.depth[1] + x);
+        const DepthWindow<R> window = depthWindow<R>([&](int i, int j) __attribute__((always_inline)) {
+            return loadOwn<R>(rows.depth[j + 1] + x + i);
         });
         R past = pastDepth - depth;
         if (a.compensate)
-            past = pastDepth - in_depth_unit(a, expected_previous_depth(a.expected, load<R>(in.depthView + o), x, y));
+            past = pastDepth - inDepthUnit(a, expectedPreviousDepth(a.expected, load<R>(in.depthView + o), x, y));
         R threshold(T(a.depthThreshold));
         if (a.relativeThreshold) threshold = threshold * max(depth + window.mean, one);
-        variance = pseudo_variances(window, past, threshold);
+        variance = pseudoVariances(window, past, threshold);
         if (!a.useDepth) variance.depth = zero;
         variance.depthTemporal = a.useDepthTemporal ? select(inside, variance.depthTemporal, one) : zero;
     }
     if (a.useSobel) {
         const auto s = [&](int i, int j) __attribute__((always_inline)) {
-            return load_own<R>(rows.filtered[j + 1] + x + i);
+            return loadOwn<R>(rows.filtered[j + 1] + x + i);
         };
         const R plus = s(0, 0) + ((s(-1, 0) + s(1, 0)) + (s(0, -1) + s(0, 1)));
         const R square = plus + ((s(-1, -1) + s(1, -1)) + (s(-1, 1) + s(1, 1)));
@@ -204,22 +204,22 @@ AA_INLINE void masterPixel(const MasterArgs& a, const MasterWindow<Elem<R>>& row
     const vec3<R> clipped = constrain(box, a.clipTarget, mean, current, history);
 
     const R k =
-        min(luminance_feedback(luminance(current, a.luminance), luminance(clipped, a.luminance), a.kMin, a.kMax),
+        min(luminanceFeedback(luminance(current, a.luminance), luminance(clipped, a.luminance), a.kMin, a.kMax),
             R(T(in.feedbackCeiling)));
     const vec3<R> mixed = select(inside, blend(current, clipped, k), current);
 
-    store_blend(in, x, y, sanitised(mixed, current, history), load_own<R>(rows.filtered[1] + x));
+    storeBlend(in, x, y, sanitised(mixed, current, history), loadOwn<R>(rows.filtered[1] + x));
     if (!in.debug.feedback) {
-        store_debug(in.debug, o, Motion<R>{k, k}, inside, box, history, k);
+        storeDebug(in.debug, o, Motion<R>{k, k}, inside, box, history, k);
     } else {
-        store_debug(in.debug, o, dilated_motion<R>(in, o), inside, box, clipped - history, k);
+        storeDebug(in.debug, o, dilatedMotion<R>(in, o), inside, box, clipped - history, k);
         store(aliased, a.debugAliased + o), store(sobel, a.debugSobel + o), store(model, a.debugModel + o);
         store(variance.depth, a.debugDepth + o), store(variance.depthTemporal, a.debugDepthTemporal + o);
     }
 }
 // Brings in what the next row of each step will be the first to read or write, while this one computes.
 template <class R>
-AA_INLINE void prefetch_next_rows(const MasterArgs& a, int x, int y) {
+AA_INLINE void prefetchNextRows(const MasterArgs& a, int x, int y) {
     if constexpr (N<R> == 1) return;
     const TemporalIn& in = a.in;
     const auto at = [&](int row) __attribute__((always_inline)) {
@@ -244,29 +244,29 @@ AA_INLINE void prefetch_next_rows(const MasterArgs& a, int x, int y) {
     __builtin_prefetch(a.keptDepth + own, 0, 2);
 }
 template <class R>
-AA_INLINE void resolve_row(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
+AA_INLINE void resolveRow(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
     const TemporalIn& in = a.in;
     const long o = long(y) * in.stride;
     const MasterWindow<Elem<R>> rows(a, rings, y);
     const Elem<R>* const sobel = rings.sobelAt(y + 1);
     for (int x = 0; x < in.width; x += N<R>) {
         if (in.history) {
-            prefetch_next_rows<R>(a, x, y);
+            prefetchNextRows<R>(a, x, y);
             masterPixel<R>(a, rows, x, y);
         } else
-            store_first<R>(in, x, y, load_own<R>(rows.current[1], x), load_own<R>(sobel + x));
-        store(load_own<R>(rows.depth[1] + x), a.keptDepth + o + x);
+            storeFirst<R>(in, x, y, loadOwn<R>(rows.current[1], x), loadOwn<R>(sobel + x));
+        store(loadOwn<R>(rows.depth[1] + x), a.keptDepth + o + x);
     }
     float* const row = in.next + 4 * o;
     for (int c = 0; c < 4; c++) row[c - 4] = row[c], row[4 * in.width + c] = row[4 * in.width - 4 + c];
 }
 template <class R>
-AA_INLINE void sharpen_resolved_row(const MasterArgs& a, int y) {
+AA_INLINE void sharpenResolvedRow(const MasterArgs& a, int y) {
     const TemporalIn& in = a.in;
     const auto row = [&](int r) __attribute__((always_inline)) {
         return in.next + 4l * in.stride * (r < 0 ? 0 : r >= in.height ? in.height - 1 : r);
     };
-    sharpen_row<R>(row(y - 1), row(y), row(y + 1), a.sharpenGain, a.sharpened, long(y) * in.stride, in.width);
+    sharpenRow<R>(row(y - 1), row(y), row(y + 1), a.sharpenGain, a.sharpened, long(y) * in.stride, in.width);
 }
 template <class R>
 __attribute__((flatten)) void masterRows(const MasterArgs& a, int y0, int y1) {
@@ -289,16 +289,16 @@ __attribute__((flatten)) void masterRows(const MasterArgs& a, int y0, int y1) {
         return y >= -beyond && y < height + beyond && y >= y0 - margin && y < y1 + margin;
     };
     for (int y = y0 - 2 * luminance; y <= y1; y++) {
-        if (a.useSobel && within(y + luminance, luminance)) luminance_row<R>(a, rings, y + luminance);
-        if (within(y + luminance, luminance)) depth_row<R>(a, rings, y + luminance);
-        if (within(y + sobel, sobel)) sobel_row<R>(a, rings, y + sobel);
-        if (within(y + sobelAt, sobelAt, 1)) sobel_at_row<R>(a, rings, y + sobelAt);
-        if (within(y + 1, 1, 1)) current_row<R>(a, rings, y + 1);
-        if (in.history && within(y + past, past)) past_row<R>(a, rings, y + past);
-        if (within(y, 0)) resolve_row<R>(a, rings, y);
+        if (a.useSobel && within(y + luminance, luminance)) luminanceRow<R>(a, rings, y + luminance);
+        if (within(y + luminance, luminance)) depthRow<R>(a, rings, y + luminance);
+        if (within(y + sobel, sobel)) sobelRow<R>(a, rings, y + sobel);
+        if (within(y + sobelAt, sobelAt, 1)) sobelAtRow<R>(a, rings, y + sobelAt);
+        if (within(y + 1, 1, 1)) currentRow<R>(a, rings, y + 1);
+        if (in.history && within(y + past, past)) pastRow<R>(a, rings, y + past);
+        if (within(y, 0)) resolveRow<R>(a, rings, y);
         const int r = y - 1;
         if (a.sharpened.c[0] && r >= y0 && (r > y0 || r == 0) && (r + 1 < y1 || r + 1 == height))
-            sharpen_resolved_row<R>(a, r);
+            sharpenResolvedRow<R>(a, r);
     }
 }
 

@@ -6,7 +6,7 @@ namespace AA_ARCH {
 
 // |G| of a 3x3 window, at(i, j); eqs 3.4-3.6 with factor 1.
 template <class R, class At>
-AA_INLINE R sobel_magnitude(const At& at) {
+AA_INLINE R sobelMagnitude(const At& at) {
     const R a = at(-1, -1), b = at(0, -1), c = at(1, -1), d = at(-1, 0), f = at(1, 0), g = at(-1, 1), h = at(0, 1),
             i = at(1, 1);
     const R ca = c - a, ig = i - g, fd = f - d;
@@ -17,14 +17,14 @@ AA_INLINE R sobel_magnitude(const At& at) {
 }
 // Eqs 4.9, 4.10; NaN counts as aliased.
 template <class R>
-AA_INLINE R sobel_curve(R weightedSum) {
+AA_INLINE R sobelCurve(R weightedSum) {
     using T = Elem<R>;
     const R one(T(1)), g = saturate(select(weightedSum == weightedSum, weightedSum, one));
     return sqrt(g * g * (R(T(3)) - (g + g)));
 }
 // Eq 4.1: share of the nine pixels that show another model.
 template <class R, class Differs>
-AA_INLINE R model_average(const Differs& differs) {
+AA_INLINE R modelAverage(const Differs& differs) {
     using T = Elem<R>;
     const R zero(T(0)), one(T(1));
     R count(zero);
@@ -43,7 +43,7 @@ struct DepthWindow {  // deviations from the centre's depth
     R mean, lowest, highest;
 };
 template <class R, class At>
-AA_INLINE DepthWindow<R> depth_window(const At& at) {
+AA_INLINE DepthWindow<R> depthWindow(const At& at) {
     using T = Elem<R>;
     const R centre = at(0, 0), zero(T(0));
     DepthWindow<R> w{zero, zero, zero};
@@ -58,7 +58,7 @@ AA_INLINE DepthWindow<R> depth_window(const At& at) {
 }
 // `past`: depth of the past minus the centre's depth. `threshold` is the least D that counts as an edge.
 template <class R>
-AA_INLINE PseudoVariances<R> pseudo_variances(const DepthWindow<R>& w, R past, R threshold) {
+AA_INLINE PseudoVariances<R> pseudoVariances(const DepthWindow<R>& w, R past, R threshold) {
     using T = Elem<R>;
     const R zero(T(0)), one(T(1)), cap(T(1e3));
     const R D = min(abs(w.lowest - w.mean), abs(w.highest - w.mean));

@@ -21,12 +21,12 @@ using Matrix = std::array<double, 9>;  // row-major, centre at 4
 auto entry(const Matrix& m) {
     return [&m](int i, int j) { return m[size_t((j + 1) * 3 + i + 1)]; };
 }
-double sobelOf(const Matrix& m) { return sobel_magnitude<double>(entry(m)); }
+double sobelOf(const Matrix& m) { return sobelMagnitude<double>(entry(m)); }
 PseudoVariances<double> variancesOf(const Matrix& m, double past) {
-    return pseudo_variances(depth_window<double>(entry(m)), past - m[4], 0.002);
+    return pseudoVariances(depthWindow<double>(entry(m)), past - m[4], 0.002);
 }
 double modelOf(const Matrix& ids) {
-    return model_average<double>([&](int i, int j) { return entry(ids)(i, j) != ids[4]; });
+    return modelAverage<double>([&](int i, int j) { return entry(ids)(i, j) != ids[4]; });
 }
 
 TEST(Master, SobelVectors) {
@@ -38,12 +38,12 @@ TEST(Master, SobelVectors) {
     EXPECT_NEAR(sobelOf({1, 0, 0, 0, 0, 0, 0, 0, 0}), std::sqrt(2.0), 1e-12);
 }
 TEST(Master, SobelCurve) {
-    EXPECT_NEAR(sobel_curve(0.5), 0.70711, 1e-5);
-    EXPECT_EQ(sobel_curve(1.0), 1);
-    EXPECT_EQ(sobel_curve(7.0), 1);
-    EXPECT_NEAR(sobel_curve(0.1), 0.16733, 1e-5);
-    EXPECT_EQ(sobel_curve(-1.0), 0);
-    EXPECT_EQ(sobel_curve(std::nan("")), 1);
+    EXPECT_NEAR(sobelCurve(0.5), 0.70711, 1e-5);
+    EXPECT_EQ(sobelCurve(1.0), 1);
+    EXPECT_EQ(sobelCurve(7.0), 1);
+    EXPECT_NEAR(sobelCurve(0.1), 0.16733, 1e-5);
+    EXPECT_EQ(sobelCurve(-1.0), 0);
+    EXPECT_EQ(sobelCurve(std::nan("")), 1);
 }
 TEST(Master, ModelAverage) {
     EXPECT_NEAR(modelOf({3, 3, 3, 3, 3, 3, 1, 2, 2}), 3.0 / 9, 1e-12);  // matrix 4.2

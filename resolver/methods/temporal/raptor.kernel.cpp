@@ -6,7 +6,7 @@ namespace AA_ARCH {
 
 template <class R>
 AA_INLINE vec3<R> compressed(vec3<R> c) {
-    return c * (R(Elem<R>(1)) / (R(Elem<R>(1)) + max(R(Elem<R>(0)), max_component(c))));
+    return c * (R(Elem<R>(1)) / (R(Elem<R>(1)) + max(R(Elem<R>(0)), maxComponent(c))));
 }
 template <class R>
 AA_INLINE vec3<R> constrained(const RaptorArgs& a, const Box<R>& bounds, const Box<R>& variance, vec3<R> h) {
@@ -16,13 +16,13 @@ AA_INLINE vec3<R> constrained(const RaptorArgs& a, const Box<R>& bounds, const B
         case RaptorConstraint::clamp:
             return clamp3(h, bounds.lo, bounds.hi);
         case RaptorConstraint::clip:
-            return clip_to_centre(bounds, h);
+            return clipToCentre(bounds, h);
         case RaptorConstraint::varianceClip:
-            return clip_to_centre(variance, h);
+            return clipToCentre(variance, h);
         case RaptorConstraint::varianceClipClamp:
             break;
     }
-    return clip_to_centre(variance, clamp3(h, bounds.lo, bounds.hi));
+    return clipToCentre(variance, clamp3(h, bounds.lo, bounds.hi));
 }
 
 template <class R, class YCoCg>
@@ -33,17 +33,17 @@ AA_INLINE void raptorPixel(const RaptorArgs& a, YCoCg ycocg, int x, int y) {
     const long o = long(y) * in.stride + x;
     const auto at = [&](int i, int j) __attribute__((always_inline)) {
         const vec3<R> c = load3<R>(in.color.c, o + long(j) * in.stride + i);
-        return ycocg ? to_ycocg(c) : c;
+        return ycocg ? toYcocg(c) : c;
     };
     const auto luma = [&](vec3<R> c) __attribute__((always_inline)) { return ycocg ? c.x : luma709(c); };
     const auto toRgb = [&](vec3<R> c) __attribute__((always_inline)) {
-        return max(ycocg ? from_ycocg(c) : c, vec3<R>(zero));
+        return max(ycocg ? fromYcocg(c) : c, vec3<R>(zero));
     };
 
     // 1, 2
-    const Motion<R> motion = dilated_motion<R>(in, o);
+    const Motion<R> motion = dilatedMotion<R>(in, o);
     const Reprojection<R> q = reproject(in, motion, x, y);
-    const vec3<R> past = fetch_history(in, x, y, q), history = ycocg ? to_ycocg(past) : past;
+    const vec3<R> past = fetchHistory(in, x, y, q), history = ycocg ? toYcocg(past) : past;
 
     // 3. moments, bounds and filtered colour, all about the centre
     const vec3<R> centre = at(0, 0);
@@ -69,7 +69,7 @@ AA_INLINE void raptorPixel(const RaptorArgs& a, YCoCg ycocg, int x, int y) {
         bounds.lo = {bounds.lo.x, current.y - chroma, current.z - chroma};
         bounds.hi = {bounds.hi.x, current.y + chroma, current.z + chroma};
     }
-    const Box<R> spread = variance_box(m, a.gamma);
+    const Box<R> spread = varianceBox(m, a.gamma);
     const vec3<R> held = constrained(a, bounds, spread, history);
 
     // 9
@@ -95,14 +95,14 @@ AA_INLINE void raptorPixel(const RaptorArgs& a, YCoCg ycocg, int x, int y) {
         shown = k.y;
     } else {  // 10 replaces both
         shown = weighted(a.luminanceDifference == LuminanceDifference::corrected
-                             ? luminance_feedback(lumaCurrent, lumaHistory, a.kMin, a.kMax)
-                             : one - luminance_feedback(lumaCurrent, lumaHistory, 0.0f, 1.0f));
+                             ? luminanceFeedback(lumaCurrent, lumaHistory, a.kMin, a.kMax)
+                             : one - luminanceFeedback(lumaCurrent, lumaHistory, 0.0f, 1.0f));
         mixed = blend(current, held, shown);
     }
 
     const vec3<R> result = select(q.inside, toRgb(mixed), toRgb(current));  // 4
-    store_blend(in, x, y, sanitised(result, load3<R>(in.color.c, o), past), one);
-    store_debug(in.debug, o, motion, q.inside, bounds, held - history, shown);
+    storeBlend(in, x, y, sanitised(result, load3<R>(in.color.c, o), past), one);
+    storeDebug(in.debug, o, motion, q.inside, bounds, held - history, shown);
 }
 template <class R>
 __attribute__((flatten)) void raptorRows(const RaptorArgs& a, int y0, int y1) {
@@ -112,9 +112,9 @@ __attribute__((flatten)) void raptorRows(const RaptorArgs& a, int y0, int y1) {
                 if (a.in.history)
                     raptorPixel<R>(a, ycocg, x, y);
                 else
-                    store_first<R>(a.in, x, y);
+                    storeFirst<R>(a.in, x, y);
     };
-    with_options<R>(rows, a.ycocg);
+    withOptions<R>(rows, a.ycocg);
 }
 
 }  // namespace AA_ARCH

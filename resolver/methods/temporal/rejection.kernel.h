@@ -7,15 +7,15 @@ namespace AA_ARCH {
 // Bilinear depth from the history's alpha. Bilinear over a silhouette invents depths: when the taps differ more than
 // tenfold (background), the nearest counts (methods/08 s.8.1).
 template <class R>
-AA_INLINE R fetch_depth(const float* p, int stride, const Reprojection<R>& q) {
+AA_INLINE R fetchDepth(const float* p, int stride, const Reprojection<R>& q) {
     using T = Elem<R>;
-    const Offsets<R> k = texel_offsets(q, stride);
+    const Offsets<R> k = texelOffsets(q, stride);
     const R zero(T(0));
     const auto wholeX = q.fracX == zero, wholeY = q.fracY == zero;
-    const R a = fetch_rgba<R>(p, k).a;
-    const R b = select(wholeX, a, fetch_rgba<R>(p + 4, k).a);
-    const R c = select(wholeY, a, fetch_rgba<R>(p + 4l * stride, k).a);
-    const R d = select(wholeY, b, select(wholeX, c, fetch_rgba<R>(p + 4l * stride + 4, k).a));
+    const R a = fetchRgba<R>(p, k).a;
+    const R b = select(wholeX, a, fetchRgba<R>(p + 4, k).a);
+    const R c = select(wholeY, a, fetchRgba<R>(p + 4l * stride, k).a);
+    const R d = select(wholeY, b, select(wholeX, c, fetchRgba<R>(p + 4l * stride + 4, k).a));
     const R nearest = min(min(a, b), min(c, d)), farthest = max(max(a, b), max(c, d));
     const R top = a + (b - a) * q.fracX, bottom = c + (d - c) * q.fracX;
     return select(farthest > nearest * R(T(10)), nearest, top + (bottom - top) * q.fracY);
@@ -33,8 +33,8 @@ template <class R>
 AA_INLINE Mask<R> magnified(const TemporalIn& in, long o, const Reprojection<R>& q, float scale) {
     using T = Elem<R>;
     const R one(T(1));
-    const Motion<R> m = load_motion<R>(in, o), right = load_motion<R>(in, o + 1),
-                    down = load_motion<R>(in, o + in.stride);
+    const Motion<R> m = loadMotion<R>(in, o), right = loadMotion<R>(in, o + 1),
+                    down = loadMotion<R>(in, o + in.stride);
     const R footprintX = max(abs(one - (right.x - m.x)), abs(down.x - m.x)),
             footprintY = max(abs(right.y - m.y), abs(one - (down.y - m.y)));
     const R distanceX = min(q.fracX, one - q.fracX), distanceY = min(q.fracY, one - q.fracY);
@@ -43,10 +43,10 @@ AA_INLINE Mask<R> magnified(const TemporalIn& in, long o, const Reprojection<R>&
 // Lane mask of pixels whose id is nowhere in the previous 3x3 around q. The window is searched only where q's own pixel
 // shows another object.
 template <class R>
-AA_INLINE Mask<R> id_lost(const uint32_t* ids, const uint32_t* previous, int stride, const Offsets<R>& nearest) {
+AA_INLINE Mask<R> idLost(const uint32_t* ids, const uint32_t* previous, int stride, const Offsets<R>& nearest) {
     if (nearest.together) {
-        const Mask<R> elsewhere = ids_differ<R>(ids, previous + nearest.k[0]);
-        if (!mask_bits<R>(elsewhere)) return elsewhere;
+        const Mask<R> elsewhere = idsDiffer<R>(ids, previous + nearest.k[0]);
+        if (!maskBits<R>(elsewhere)) return elsewhere;
     }
     const auto lostAt = [&](int lane) {
         const uint32_t* p = previous + nearest.k[lane];

@@ -10,7 +10,7 @@ struct Velocity {
 // Difference of two speeds by that of the velocities' squares: nothing is lost where they are nearly equal, which its
 // root would show.
 template <class R>
-AA_INLINE R speed_difference(const SmaaTemporalArgs& a, Velocity<R> v, Velocity<R> w) {
+AA_INLINE R speedDifference(const SmaaTemporalArgs& a, Velocity<R> v, Velocity<R> w) {
     using T = Elem<R>;
     const R sx(T(a.scaleX)), sy(T(a.scaleY)), zero(T(0));
     const auto speed = [&](Velocity<R> u) __attribute__((always_inline)) {
@@ -35,9 +35,9 @@ __attribute__((flatten)) void resolveRows(const SmaaTemporalArgs& a, int y0, int
             R weight = half;
             Reprojection<R> q{zero, zero, zero, zero, zero == zero};
             if (a.reproject) q = reproject(in, Motion<R>{load<R>(a.motionX + o), load<R>(a.motionY + o)}, x, y);
-            const Offsets<R> at = nearest_offsets_within(in, q, x, y);
+            const Offsets<R> at = nearestOffsetsWithin(in, q, x, y);
             if (a.reproject) {
-                const R difference = speed_difference<R>(
+                const R difference = speedDifference<R>(
                     a, {load<R>(a.velocityX + o), load<R>(a.velocityY + o)},
                     {gather<R>(a.previousVelocityX + o, at), gather<R>(a.previousVelocityY + o, at)});
                 weight = select(q.inside, half * max(zero, one - R(T(a.rejection)) * sqrt(difference)), zero);

@@ -30,29 +30,29 @@ AA_INLINE void t2msaaPixel(const T2msaaArgs& a, int x, int y) {
     const vec3<R> first = sampleColour<R>(a, 0, o), current = first + (sampleColour<R>(a, 1, o) - first) * half;
     const R depth = (load<R>(a.sampleDepth[0] + o) + load<R>(a.sampleDepth[1] + o)) * half;
     if (!in.history) {
-        store_blend(in, x, y, sanitised(current, current, vec3<R>(zero)), depth);
+        storeBlend(in, x, y, sanitised(current, current, vec3<R>(zero)), depth);
         store(one, a.nextCount + o);
         if (in.debug.rejection) store(R(T(int(Rejection::firstFrame))), in.debug.rejection + o);
         return;
     }
 
-    const Motion<R> motion = load_motion<R>(in, o);
+    const Motion<R> motion = loadMotion<R>(in, o);
     const Reprojection<R> q = reproject(in, motion, x, y);
-    const vec3<R> history = fetch_bilinear<R>(in.history + 4 * o, in.stride, q).rgb;
+    const vec3<R> history = fetchBilinear<R>(in.history + 4 * o, in.stride, q).rgb;
 
-    const R expected = expected_previous_depth(a.expected, depth, x, y);
+    const R expected = expectedPreviousDepth(a.expected, depth, x, y);
     R reason = select(q.inside, zero, one);
     const auto reject = [&](Mask<R> when, Rejection why) __attribute__((always_inline)) {
         reason = select(both(reason == zero, when), R(T(int(why))), reason);
     };
     const RejectionTest& test = a.rejection;
-    reject(disoccluded(expected, fetch_depth(in.history + 4 * o, in.stride, q), test.depthTolerance, test.bothSides),
+    reject(disoccluded(expected, fetchDepth(in.history + 4 * o, in.stride, q), test.depthTolerance, test.bothSides),
            Rejection::disoccluded);
     if (test.magnification > 0) reject(magnified(in, o, q, test.magnification), Rejection::magnified);
     const auto hit = reason == zero;
 
     const R count =
-        a.countAtPixel ? load<R>(a.previousCount + o) : gather<R>(a.previousCount + o, nearest_offsets(q, in.stride));
+        a.countAtPixel ? load<R>(a.previousCount + o) : gather<R>(a.previousCount + o, nearestOffsets(q, in.stride));
     const R mean = one / (count + one);
     // Listing 4.19: velocity in UV; eq 3.31 means the fraction of a pixel.
     const R vx = a.fractionalVelocity ? fraction(abs(motion.x)) : abs(motion.x) * R(T(1) / T(in.width)),
@@ -61,13 +61,13 @@ AA_INLINE void t2msaaPixel(const T2msaaArgs& a, int x, int y) {
     const auto still = both(motion.x == zero, motion.y == zero);
     const R least = select(still, zero, saturate(blur));
     const R alpha = max(mean, least);
-    const vec3<R> mixed = inverse_luminance_blend(current, luma601(current), history, luma601(history), one - alpha);
+    const vec3<R> mixed = inverseLuminanceBlend(current, luma601(current), history, luma601(history), one - alpha);
 
     const R most(T(16777215));  // the last whole step of float
     const R grown = select(alpha > least, min(count + one, most), count);
-    store_blend(in, x, y, sanitised(select(hit, mixed, current), current, history), depth);
+    storeBlend(in, x, y, sanitised(select(hit, mixed, current), current, history), depth);
     store(select(hit, grown, one), a.nextCount + o);
-    store_debug(in.debug, o, motion, hit, Box<R>{history, history}, vec3<R>(zero), one - alpha);
+    storeDebug(in.debug, o, motion, hit, Box<R>{history, history}, vec3<R>(zero), one - alpha);
     if (in.debug.rejection) store(reason, in.debug.rejection + o);
 }
 template <class R>

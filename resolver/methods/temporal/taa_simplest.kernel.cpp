@@ -11,13 +11,13 @@ AA_INLINE void taaSimplestPixel(const TaaSimplestArgs& a, int x, int y) {
     const vec3<R> current = load3<R>(in.color.c, o);
     const R k(Elem<R>(min(a.feedback, in.feedbackCeiling)));
 
-    const Motion<R> motion = load_motion<R>(in, o);
+    const Motion<R> motion = loadMotion<R>(in, o);
     const Reprojection<R> q = reproject(in, motion, x, y);
-    const vec3<R> history = fetch_history(in, x, y, q);
+    const vec3<R> history = fetchHistory(in, x, y, q);
     const vec3<R> mixed = select(q.inside, blend(current, history, k), current);
 
-    store_blend(in, x, y, sanitised(mixed, current, history), R(Elem<R>(1)));
-    store_debug(in.debug, o, motion, q.inside, Box<R>{history, history}, vec3<R>(R(Elem<R>(0))), k);
+    storeBlend(in, x, y, sanitised(mixed, current, history), R(Elem<R>(1)));
+    storeDebug(in.debug, o, motion, q.inside, Box<R>{history, history}, vec3<R>(R(Elem<R>(0))), k);
 }
 template <class R>
 __attribute__((flatten)) void taaSimplestRows(const TaaSimplestArgs& a, int y0, int y1) {
@@ -26,7 +26,7 @@ __attribute__((flatten)) void taaSimplestRows(const TaaSimplestArgs& a, int y0, 
             if (a.in.history)
                 taaSimplestPixel<R>(a, x, y);
             else
-                store_first<R>(a.in, x, y);
+                storeFirst<R>(a.in, x, y);
 }
 
 }  // namespace AA_ARCH

@@ -9,12 +9,12 @@ __attribute__((flatten)) void sharpenHistoryRows(const SharpenHistoryArgs& a, in
     const long rowStep = 4l * a.stride;
     for (int y = y0; y < y1; y++) {
         const float* row = a.rgba + y * rowStep;
-        sharpen_row<R>(row - rowStep, row, row + rowStep, a.gain, a.out, long(y) * a.stride, a.width);
+        sharpenRow<R>(row - rowStep, row, row + rowStep, a.gain, a.out, long(y) * a.stride, a.width);
     }
 }
 
 // binary16 and back: to nearest even, or, with `chance` in [0, 1), up in that share of cases which keeps the mean.
-AA_INLINE float as_half(float x, bool dither, float chance) {
+AA_INLINE float asHalf(float x, bool dither, float chance) {
     const float held = min(max(x, -65504.0f), 65504.0f);  // NaN: the history is finite (sanitised())
     if (abs(held) < 0x1p-14f) {                           // subnormal: multiples of 2^-24
         const float units = held * 0x1p24f;
@@ -30,19 +30,19 @@ AA_INLINE float as_half(float x, bool dither, float chance) {
     return min(max(half, -65504.0f), 65504.0f);
 }
 // Codes of 1/255; the dither is INSIDE's: +- half a code before the store.
-AA_INLINE float as_byte(float x, bool dither, float chance) {
+AA_INLINE float asByte(float x, bool dither, float chance) {
     return min(floor(saturate(x) * 255.0f + (dither ? chance : 0.5f)), 255.0f) / 255.0f;
 }
 // An emulation of narrower storage, so float in every precision.
 template <class R>
 __attribute__((flatten)) void narrowHistoryRows(const NarrowHistoryArgs& a, int y0, int y1) {
     for (int y = y0; y < y1; y++) {
-        const uint32_t seed = noise_seed(NoiseStream::historyDither, a.frame, uint32_t(y));
+        const uint32_t seed = noiseSeed(NoiseStream::historyDither, a.frame, uint32_t(y));
         float* p = a.rgba + 4l * y * a.stride;
         for (int i = 0; i < 4 * a.width; i++) {
             if (i % 4 == 3) continue;
             const float chance = a.dither ? noise<float>(seed, uint32_t(i)) : 0.0f;
-            p[i] = a.format == HistoryFormat::half ? as_half(p[i], a.dither, chance) : as_byte(p[i], a.dither, chance);
+            p[i] = a.format == HistoryFormat::half ? asHalf(p[i], a.dither, chance) : asByte(p[i], a.dither, chance);
         }
     }
 }

@@ -8,7 +8,7 @@ namespace AA_ARCH {
 
 // ---- B2 dilation ----------------------------------------------------------------------------------------------------
 template <class R>
-AA_INLINE Motion<R> load_motion(const TemporalIn& in, long o) {
+AA_INLINE Motion<R> loadMotion(const TemporalIn& in, long o) {
     return {load<R>(in.motionXPx + o), load<R>(in.motionYPx + o)};
 }
 // The surface nearest to the camera in 3x3, or of the centre and the diagonals alone. The centre wins ties, otherwise
@@ -19,8 +19,8 @@ struct Surface {
     Motion<R> motion;
 };
 template <class R>
-AA_INLINE Surface<R> closest_surface(const TemporalIn& in, long o, bool diagonalsOnly) {
-    Surface<R> best{load<R>(in.depthView + o), load_motion<R>(in, o)};
+AA_INLINE Surface<R> closestSurface(const TemporalIn& in, long o, bool diagonalsOnly) {
+    Surface<R> best{load<R>(in.depthView + o), loadMotion<R>(in, o)};
     for (int j = -1; j <= 1; j++)
         for (int i = -1; i <= 1; i++) {
             if ((i == 0 && j == 0) || (diagonalsOnly && (i == 0 || j == 0))) continue;
@@ -34,16 +34,16 @@ AA_INLINE Surface<R> closest_surface(const TemporalIn& in, long o, bool diagonal
     return best;
 }
 template <class R>
-AA_INLINE Motion<R> dilated_motion(const TemporalIn& in, long o) {
-    if (in.dilation == Dilation::closest3x3) return closest_surface<R>(in, o, false).motion;
-    if (in.dilation == Dilation::closestX) return closest_surface<R>(in, o, true).motion;
-    Motion<R> best = load_motion<R>(in, o);
+AA_INLINE Motion<R> dilatedMotion(const TemporalIn& in, long o) {
+    if (in.dilation == Dilation::closest3x3) return closestSurface<R>(in, o, false).motion;
+    if (in.dilation == Dilation::closestX) return closestSurface<R>(in, o, true).motion;
+    Motion<R> best = loadMotion<R>(in, o);
     if (in.dilation == Dilation::longest3x3) {
         R longest = best.x * best.x + best.y * best.y;
         for (int j = -1; j <= 1; j++)
             for (int i = -1; i <= 1; i++) {
                 if (i == 0 && j == 0) continue;
-                const Motion<R> m = load_motion<R>(in, o + long(j) * in.stride + i);
+                const Motion<R> m = loadMotion<R>(in, o + long(j) * in.stride + i);
                 const R length = m.x * m.x + m.y * m.y;
                 const auto longer = length > longest;
                 longest = select(longer, length, longest);
@@ -54,11 +54,11 @@ AA_INLINE Motion<R> dilated_motion(const TemporalIn& in, long o) {
     return best;
 }
 
-// Of the surface that dilated_motion() takes by its depth; otherwise the pixel's own.
+// Of the surface that dilatedMotion() takes by its depth; otherwise the pixel's own.
 template <class R>
-AA_INLINE R dilated_depth(const TemporalIn& in, long o) {
-    if (in.dilation == Dilation::closest3x3) return closest_surface<R>(in, o, false).depthView;
-    if (in.dilation == Dilation::closestX) return closest_surface<R>(in, o, true).depthView;
+AA_INLINE R dilatedDepth(const TemporalIn& in, long o) {
+    if (in.dilation == Dilation::closest3x3) return closestSurface<R>(in, o, false).depthView;
+    if (in.dilation == Dilation::closestX) return closestSurface<R>(in, o, true).depthView;
     return load<R>(in.depthView + o);
 }
 
@@ -101,14 +101,14 @@ AA_INLINE Neighbours<R> neighbours(const At& at) {
 }
 // "Rounded": the mean of both windows' bounds (Pedersen 2016).
 template <class R>
-AA_INLINE Box<R> box_of(const Neighbours<R>& b, Neighbourhood kind) {
+AA_INLINE Box<R> boxOf(const Neighbours<R>& b, Neighbourhood kind) {
     const R half(Elem<R>(0.5));
     if (kind == Neighbourhood::box3x3) return b.square;
     if (kind == Neighbourhood::plus) return b.plus;
     return {(b.square.lo + b.plus.lo) * half, (b.square.hi + b.plus.hi) * half};
 }
 template <class R>
-AA_INLINE vec3<R> mean_of(const Neighbours<R>& b, Neighbourhood kind) {
+AA_INLINE vec3<R> meanOf(const Neighbours<R>& b, Neighbourhood kind) {
     if (kind == Neighbourhood::box3x3) return b.meanSquare;
     if (kind == Neighbourhood::plus) return b.meanPlus;
     return (b.meanSquare + b.meanPlus) * R(Elem<R>(0.5));
@@ -119,7 +119,7 @@ AA_INLINE vec3<R> mean_of(const Neighbours<R>& b, Neighbourhood kind) {
 // over 0 is infinite, as it should be; 0 over 0 is the caller's to avoid. Exact up to rounding while the products stay
 // finite (colours below 1e18).
 template <class R>
-AA_INLINE R least_ratio(vec3<R> n, vec3<R> d) {
+AA_INLINE R leastRatio(vec3<R> n, vec3<R> d) {
     const auto xy = n.x * d.y <= n.y * d.x;
     const R nxy = select(xy, n.x, n.y), dxy = select(xy, d.x, d.y);
     const auto xyz = nxy * d.z <= n.z * dxy;
@@ -127,33 +127,33 @@ AA_INLINE R least_ratio(vec3<R> n, vec3<R> d) {
 }
 // Clip toward the box centre (Pedersen 2016): h moves on the line to the centre until it meets the box's surface.
 template <class R>
-AA_INLINE vec3<R> clip_to_centre(Box<R> box, vec3<R> h) {
+AA_INLINE vec3<R> clipToCentre(Box<R> box, vec3<R> h) {
     using T = Elem<R>;
     const R half(T(0.5));
     // Scaled floor: with an absolute 1e-8 a flat bright box would divide rounding noise by almost nothing (methods/08).
-    const R floorExtent = max(R(T(1e-8)), max_component(abs(box.hi)) * R(T(1e-6)));
+    const R floorExtent = max(R(T(1e-8)), maxComponent(abs(box.hi)) * R(T(1e-6)));
     const vec3<R> centre = (box.lo + box.hi) * half, extent = (box.hi - box.lo) * half + vec3<R>(floorExtent);
     const vec3<R> offset = h - centre;
-    const R t = least_ratio(extent, abs(offset));  // infinite at the centre
+    const R t = leastRatio(extent, abs(offset));  // infinite at the centre
     return select(t < R(T(1)), centre + offset * t, h);
 }
 // Exact line clip toward a point r of the box.
 template <class R>
-AA_INLINE vec3<R> clip_toward(Box<R> box, vec3<R> r, vec3<R> h) {
+AA_INLINE vec3<R> clipToward(Box<R> box, vec3<R> r, vec3<R> h) {
     const R zero(Elem<R>(0)), one(Elem<R>(1));
     r = clamp3(r, box.lo, box.hi);
     // Share of the way from r to h that each channel allows: (bound - r) / (h - r) outside, 1 inside.
     const vec3<R> way = h - r, room = clamp3(h, box.lo, box.hi) - r;
     const auto allowed = [&](R part, R whole) { return select(whole == zero, one, abs(part)); };
-    const R t = least_ratio(vec3<R>{allowed(room.x, way.x), allowed(room.y, way.y), allowed(room.z, way.z)}, abs(way));
+    const R t = leastRatio(vec3<R>{allowed(room.x, way.x), allowed(room.y, way.y), allowed(room.z, way.z)}, abs(way));
     return select(t < one, r + way * t, h);
 }
 template <class R>
 AA_INLINE vec3<R> constrain(Box<R> box, ClipTarget target, vec3<R> mean, vec3<R> current, vec3<R> h) {
-    if (target == ClipTarget::mean) return clip_toward(box, mean, h);
-    if (target == ClipTarget::current) return clip_toward(box, current, h);
+    if (target == ClipTarget::mean) return clipToward(box, mean, h);
+    if (target == ClipTarget::current) return clipToward(box, current, h);
     if (target == ClipTarget::clamp) return clamp3(h, box.lo, box.hi);
-    return clip_to_centre(box, h);
+    return clipToCentre(box, h);
 }
 
 // ---- B7 variance box ------------------------------------------------------------------------------------------------
@@ -185,7 +185,7 @@ AA_INLINE Moments<R> moments(const At& at) {
     return moments<R>(at, [](int, int, vec3<R>) __attribute__((always_inline)){});
 }
 template <class R>
-AA_INLINE Box<R> variance_box(const Moments<R>& m, float gamma) {
+AA_INLINE Box<R> varianceBox(const Moments<R>& m, float gamma) {
     const vec3<R> e = m.sigma * R(Elem<R>(gamma));
     return {m.mean - e, m.mean + e};
 }
@@ -193,7 +193,7 @@ AA_INLINE Box<R> variance_box(const Moments<R>& m, float gamma) {
 // ---- B8, B9 feedback and blends -------------------------------------------------------------------------------------
 // Weight of history from the relative luminance difference (Lottes 2012; Pedersen 2016).
 template <class R>
-AA_INLINE R luminance_feedback(R current, R history, float kMin, float kMax) {
+AA_INLINE R luminanceFeedback(R current, R history, float kMin, float kMax) {
     using T = Elem<R>;
     const R d = min(abs(current - history) / max(max(current, history), R(T(0.2))), R(T(1)));
     const R u = R(T(1)) - d;
@@ -208,7 +208,7 @@ AA_INLINE vec3<R> blend(vec3<R> current, vec3<R> history, R k) {
 }
 // Each colour weighted by 1 / (1 + luminance), against fireflies (Karis 2014).
 template <class R>
-AA_INLINE vec3<R> inverse_luminance_blend(vec3<R> current, R luminanceCurrent, vec3<R> history, R luminanceHistory,
+AA_INLINE vec3<R> inverseLuminanceBlend(vec3<R> current, R luminanceCurrent, vec3<R> history, R luminanceHistory,
                                           R k) {
     using T = Elem<R>;
     const R zero(T(0)), one(T(1));
@@ -223,40 +223,40 @@ AA_INLINE vec3<R> inverse_luminance_blend(vec3<R> current, R luminanceCurrent, v
 template <class R>
 AA_INLINE vec3<R> sanitised(vec3<R> blended, vec3<R> current, vec3<R> history) {
     const Mask<R> good = finite(blended);
-    if (!mask_bits<R>(negate(good))) return blended;
+    if (!maskBits<R>(negate(good))) return blended;
     const vec3<R> fallback = select(finite(current), current, select(finite(history), history, vec3<R>(R(Elem<R>(0)))));
     return select(good, blended, fallback);
 }
 template <class R>
-AA_INLINE void store_blend(const TemporalIn& in, int x, int y, vec3<R> result, R alpha) {
+AA_INLINE void storeBlend(const TemporalIn& in, int x, int y, vec3<R> result, R alpha) {
     const long o = long(y) * in.stride + x;
-    store_rgba(result, alpha, in.next + 4 * o);
+    storeRgba(result, alpha, in.next + 4 * o);
     if (in.out.c[0]) store3(result, in.out.c, o);
 }
 // The first frame after a reset: the current colour.
 template <class R>
-AA_INLINE void store_first_debug(const TemporalIn& in, long o, vec3<R> current) {
+AA_INLINE void storeFirstDebug(const TemporalIn& in, long o, vec3<R> current) {
     const TemporalDebug& d = in.debug;
     if (!d.rejection) return;
     const R zero(Elem<R>(0));
     store(R(Elem<R>(int(Rejection::firstFrame))), d.rejection + o);
     if (!d.feedback) return;
-    const Motion<R> motion = load_motion<R>(in, o);
+    const Motion<R> motion = loadMotion<R>(in, o);
     store(motion.x, d.motionXPx + o), store(motion.y, d.motionYPx + o);
     store3(current, d.boxLow, o), store3(current, d.boxHigh, o);
     store(zero, d.clipAmount + o), store(zero, d.feedback + o);
 }
 template <class R>
-AA_INLINE void store_first(const TemporalIn& in, int x, int y, vec3<R> current, R alpha) {
-    store_blend(in, x, y, sanitised(current, current, vec3<R>(R(Elem<R>(0)))), alpha);
-    store_first_debug(in, long(y) * in.stride + x, current);
+AA_INLINE void storeFirst(const TemporalIn& in, int x, int y, vec3<R> current, R alpha) {
+    storeBlend(in, x, y, sanitised(current, current, vec3<R>(R(Elem<R>(0)))), alpha);
+    storeFirstDebug(in, long(y) * in.stride + x, current);
 }
 template <class R>
-AA_INLINE void store_first(const TemporalIn& in, int x, int y) {
-    store_first<R>(in, x, y, load3<R>(in.color.c, long(y) * in.stride + x), R(Elem<R>(1)));
+AA_INLINE void storeFirst(const TemporalIn& in, int x, int y) {
+    storeFirst<R>(in, x, y, load3<R>(in.color.c, long(y) * in.stride + x), R(Elem<R>(1)));
 }
 template <class R>
-AA_INLINE void store_debug(const TemporalDebug& d, long o, Motion<R> motion, Mask<R> inside, const Box<R>& box,
+AA_INLINE void storeDebug(const TemporalDebug& d, long o, Motion<R> motion, Mask<R> inside, const Box<R>& box,
                            vec3<R> moved, R k) {
     if (!d.rejection) return;
     using T = Elem<R>;
@@ -264,7 +264,7 @@ AA_INLINE void store_debug(const TemporalDebug& d, long o, Motion<R> motion, Mas
     if (!d.feedback) return;
     store(motion.x, d.motionXPx + o), store(motion.y, d.motionYPx + o);
     store3(box.lo, d.boxLow, o), store3(box.hi, d.boxHigh, o);
-    store(max_component(abs(moved)), d.clipAmount + o);
+    store(maxComponent(abs(moved)), d.clipAmount + o);
     store(select(inside, k, R(T(0))), d.feedback + o);
 }
 

@@ -43,33 +43,33 @@ TemporalIn input(const RgbaPlane& p) {
 template <class R>
 Texel<R> bilinearAt(const RgbaPlane& p, int x, int y, R mx, R my) {
     const TemporalIn in = input(p);
-    return fetch_bilinear<R>(in.history + 4 * (y * in.stride + x), in.stride, reproject<R>(in, {mx, my}, x, y));
+    return fetchBilinear<R>(in.history + 4 * (y * in.stride + x), in.stride, reproject<R>(in, {mx, my}, x, y));
 }
 
 TEST(TemporalBlocks, FeedbackVectors) {
-    EXPECT_NEAR(luminance_feedback(0.5, 0.25, 0.88f, 0.97f), 0.9025, 1e-7);
-    EXPECT_NEAR(luminance_feedback(0.5, 0.5, 0.88f, 0.97f), 0.97, 1e-7);
-    EXPECT_NEAR(luminance_feedback(0.0, 0.1, 0.88f, 0.97f), 0.9025, 1e-7);
-    EXPECT_NEAR(luminance_feedback(1.0, 0.0, 0.88f, 0.97f), 0.88, 1e-7);
+    EXPECT_NEAR(luminanceFeedback(0.5, 0.25, 0.88f, 0.97f), 0.9025, 1e-7);
+    EXPECT_NEAR(luminanceFeedback(0.5, 0.5, 0.88f, 0.97f), 0.97, 1e-7);
+    EXPECT_NEAR(luminanceFeedback(0.0, 0.1, 0.88f, 0.97f), 0.9025, 1e-7);
+    EXPECT_NEAR(luminanceFeedback(1.0, 0.0, 0.88f, 0.97f), 0.88, 1e-7);
     // Negative luminance may not raise the feedback again.
-    EXPECT_NEAR(luminance_feedback(1.0, -3.0, 0.88f, 0.97f), 0.88, 1e-7);
+    EXPECT_NEAR(luminanceFeedback(1.0, -3.0, 0.88f, 0.97f), 0.88, 1e-7);
 }
 
 TEST(TemporalBlocks, ClipVectors) {
     const Box<double> box{V(0.0), V(0.5)};
     const V h(1.0, 0.5, 0.25), inside(0.3, 0.49999, 0.0);
-    expectNear(clip_to_centre(box, h), 0.5, 1.0 / 3, 0.25, 1e-6);
-    expectNear(clip_toward(box, V(0.1), h), 0.5, 0.2777778, 0.1666667, 1e-6);
+    expectNear(clipToCentre(box, h), 0.5, 1.0 / 3, 0.25, 1e-6);
+    expectNear(clipToward(box, V(0.1), h), 0.5, 0.2777778, 0.1666667, 1e-6);
     expectNear(clamp3(h, box.lo, box.hi), 0.5, 0.5, 0.25, 0);
-    for (const V& v : {clip_to_centre(box, inside), clip_toward(box, V(0.1), inside)}) {
+    for (const V& v : {clipToCentre(box, inside), clipToward(box, V(0.1), inside)}) {
         EXPECT_EQ(v.x, inside.x);
         EXPECT_EQ(v.y, inside.y);
         EXPECT_EQ(v.z, inside.z);
     }
     // A box of one colour: the exact clip gives that colour, the centre clip up to its floor of the extent.
     const Box<double> point{V(0.7), V(0.7)};
-    expectNear(clip_toward(point, V(0.7), h), 0.7, 0.7, 0.7, 0);
-    expectNear(clip_to_centre(point, h), 0.7, 0.7, 0.7, 1e-6);
+    expectNear(clipToward(point, V(0.7), h), 0.7, 0.7, 0.7, 0);
+    expectNear(clipToCentre(point, h), 0.7, 0.7, 0.7, 1e-6);
 }
 
 V oneInWindow(int i, int j, int oneI, int oneJ) { return V(i == oneI && j == oneJ ? 1.0 : 0.0); }
@@ -88,7 +88,7 @@ TEST(TemporalBlocks, VarianceOfABrightWindowKeepsItsDigits) {
 }
 TEST(TemporalBlocks, RoundedBoxVectors) {
     const auto roundedHigh = [](int oi, int oj) {
-        return box_of(neighbours<double>([&](int i, int j) { return oneInWindow(i, j, oi, oj); }),
+        return boxOf(neighbours<double>([&](int i, int j) { return oneInWindow(i, j, oi, oj); }),
                       Neighbourhood::rounded)
             .hi.x;
     };
@@ -96,7 +96,7 @@ TEST(TemporalBlocks, RoundedBoxVectors) {
     EXPECT_EQ(roundedHigh(0, 0), 1.0);
     EXPECT_EQ(roundedHigh(0, -1), 1.0);
     const auto corner =
-        box_of(neighbours<double>([&](int i, int j) { return oneInWindow(i, j, 1, 1); }), Neighbourhood::rounded);
+        boxOf(neighbours<double>([&](int i, int j) { return oneInWindow(i, j, 1, 1); }), Neighbourhood::rounded);
     EXPECT_EQ(corner.lo.x, 0.0);
     const auto window = neighbours<double>([](int i, int j) { return oneInWindow(i, j, 1, 1); });
     EXPECT_EQ(window.plus.hi.x, 0.0);
@@ -115,12 +115,12 @@ TEST(TemporalBlocks, BlendIsExactAtBothEnds) {
 }
 TEST(TemporalBlocks, InverseLuminanceBlendVector) {
     // methods/06 s.6.15, T2MSAA: N = 1, c = 1, h = 0, a = 1/2 -> 1/3.
-    expectNear(inverse_luminance_blend(V(1.0), 1.0, V(0.0), 0.0, 0.5), 1.0 / 3, 1.0 / 3, 1.0 / 3, 1e-12);
+    expectNear(inverseLuminanceBlend(V(1.0), 1.0, V(0.0), 0.0, 0.5), 1.0 / 3, 1.0 / 3, 1.0 / 3, 1e-12);
 }
 
 TEST(TemporalBlocks, CatmullRomWeights) {
     double w[4];
-    catmull_rom_weights(0.25, w);
+    catmullRomWeights(0.25, w);
     const double expected[4] = {-0.0703125, 0.8671875, 0.2265625, -0.0234375};
     for (int i = 0; i < 4; i++) EXPECT_DOUBLE_EQ(w[i], expected[i]);
 }
@@ -153,8 +153,8 @@ TEST(TemporalBlocks, WholePixelMotionReadsTheTexelItself) {
             const TemporalIn in = input(p);
             const auto q = reproject<float>(in, {float(m), 0.0f}, x, 3);
             const float* texel = in.history + 4 * (3 * in.stride + x);
-            EXPECT_EQ(fetch_catmull_rom<true>(texel, in.stride, q).x, p.row(3)[4 * from]);
-            EXPECT_EQ(fetch_catmull_rom<false>(texel, in.stride, q).x, p.row(3)[4 * from]);
+            EXPECT_EQ(fetchCatmullRom<true>(texel, in.stride, q).x, p.row(3)[4 * from]);
+            EXPECT_EQ(fetchCatmullRom<false>(texel, in.stride, q).x, p.row(3)[4 * from]);
         }
 }
 
@@ -168,8 +168,8 @@ TEST(TemporalBlocks, CatmullRomReproducesALinearRamp) {
     const auto q = reproject<double>(in, {0.3, -0.6}, 9, 8);
     const double expected = 3 * (9 - 0.3) + 5 * (8 + 0.6);
     const float* texel = in.history + 4 * (8 * in.stride + 9);
-    EXPECT_NEAR(fetch_catmull_rom<true>(texel, in.stride, q).x, expected, 1e-9);
-    EXPECT_NEAR(fetch_catmull_rom<false>(texel, in.stride, q).x, expected, 0.7);  // without corners: not exact off axis
+    EXPECT_NEAR(fetchCatmullRom<true>(texel, in.stride, q).x, expected, 1e-9);
+    EXPECT_NEAR(fetchCatmullRom<false>(texel, in.stride, q).x, expected, 0.7);  // without corners: not exact off axis
 }
 
 TEST(TemporalBlocks, ClosedIntervalDecidesInside) {
@@ -202,7 +202,7 @@ TEST(TemporalBlocks, DilationTakesTheNearestAndTheCentreOnTies) {
         depth.fillBorder(), mx.fillBorder(), my.fillBorder();
         in.depthView = depth.row(0), in.motionXPx = mx.row(0), in.motionYPx = my.row(0);
         in.dilation = d;
-        return dilated_motion<double>(in, 2 * in.stride + 2).x;
+        return dilatedMotion<double>(in, 2 * in.stride + 2).x;
     };
     mx.at(2, 2) = 7;
     EXPECT_EQ(motionAt22(Dilation::closest3x3), 7);  // all equal: the centre

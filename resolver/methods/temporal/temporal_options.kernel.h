@@ -6,29 +6,29 @@ namespace AA_ARCH {
 
 // Options that every read of a window depends on. Lanes get one copy of a kernel per combination, so that nothing but
 // the chosen one is in its loop; the one-lane forms, which no one waits for, decide at run time. Same text for all:
-// with_options(run, f1, f2, ...) calls run(Fixed<f1>{}, Fixed<f2>{}, ...) or run(f1, f2, ...).
+// withOptions(run, f1, f2, ...) calls run(Fixed<f1>{}, Fixed<f2>{}, ...) or run(f1, f2, ...).
 template <bool value>
 struct Fixed {
     AA_INLINE constexpr operator bool() const { return value; }
 };
 template <class Run>
-AA_INLINE void with_fixed(const Run& run) {
+AA_INLINE void withFixed(const Run& run) {
     run();
 }
 template <class Run, class... Rest>
-AA_INLINE void with_fixed(const Run& run, bool flag, Rest... rest) {
+AA_INLINE void withFixed(const Run& run, bool flag, Rest... rest) {
     const auto bind = [&](auto fixed) __attribute__((always_inline)) {
-        with_fixed(
+        withFixed(
             [&](auto... others) __attribute__((always_inline)) { run(fixed, others...); }, rest...);
     };
     flag ? bind(Fixed<true>{}) : bind(Fixed<false>{});
 }
 template <class R, class Run, class... Flags>
-AA_INLINE void with_options(const Run& run, Flags... flags) {
+AA_INLINE void withOptions(const Run& run, Flags... flags) {
     if constexpr (N<R> == 1)
         run(flags...);
     else
-        with_fixed(run, flags...);
+        withFixed(run, flags...);
 }
 
 }  // namespace AA_ARCH

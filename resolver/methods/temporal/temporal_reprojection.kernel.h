@@ -44,13 +44,13 @@ AA_INLINE Reprojection<R> reproject(const TemporalIn& in, Motion<R> motion, int 
 }
 // Pixel offsets from (x, y); products stay in integers: float would lose them above 2^24 pixels.
 template <class R>
-AA_INLINE Offsets<R> texel_offsets(const Reprojection<R>& q, int stride) {
+AA_INLINE Offsets<R> texelOffsets(const Reprojection<R>& q, int stride) {
     Offsets<R> at;
     if constexpr (N<R> == 1) {
         at.k[0] = int(q.wholeY) * stride + int(q.wholeX);
         at.together = true;
     } else {
-        using I = typename ints_of<N<R>>::type;
+        using I = typename IntsOf<N<R>>::type;
         const I ix = __builtin_convertvector(q.wholeX.v, I), iy = __builtin_convertvector(q.wholeY.v, I);
         at.set(iy * stride + ix + __builtin_convertvector(iota<R>().v, I));
     }
@@ -58,31 +58,31 @@ AA_INLINE Offsets<R> texel_offsets(const Reprojection<R>& q, int stride) {
 }
 // No lane lies between texels: at rest, or moving by whole pixels. Both fetches below then give the texel itself.
 template <class R>
-AA_INLINE bool all_whole(const Reprojection<R>& q) {
+AA_INLINE bool allWhole(const Reprojection<R>& q) {
     const R zero(Elem<R>(0));
-    return !mask_bits<R>(either(q.fracX != zero, q.fracY != zero));
+    return !maskBits<R>(either(q.fracX != zero, q.fracY != zero));
 }
 template <class R>
-AA_INLINE vec3<R> lerp_exact(vec3<R> a, vec3<R> b, R f, Mask<R> whole) {  // f = 0: a, whatever b is
+AA_INLINE vec3<R> lerpExact(vec3<R> a, vec3<R> b, R f, Mask<R> whole) {  // f = 0: a, whatever b is
     return select(whole, a, a + (b - a) * f);
 }
 // Bilinear with exact identity at fraction 0; texels of weight 0 cannot spread NaN. `p` is the texel of (x, y).
 template <class R>
-AA_INLINE Texel<R> fetch_bilinear(const float* p, int stride, const Reprojection<R>& q) {
-    const Offsets<R> k = texel_offsets(q, stride);
-    if (all_whole(q)) return fetch_rgba<R>(p, k);
+AA_INLINE Texel<R> fetchBilinear(const float* p, int stride, const Reprojection<R>& q) {
+    const Offsets<R> k = texelOffsets(q, stride);
+    if (allWhole(q)) return fetchRgba<R>(p, k);
     const Mask<R> wholeX = q.fracX == R(Elem<R>(0)), wholeY = q.fracY == R(Elem<R>(0));
     auto row = [&](const float* r) __attribute__((always_inline)) {
-        const Texel<R> a = fetch_rgba<R>(r, k), b = fetch_rgba<R>(r + 4, k);
-        return Texel<R>{lerp_exact(a.rgb, b.rgb, q.fracX, wholeX), select(wholeX, a.a, a.a + (b.a - a.a) * q.fracX)};
+        const Texel<R> a = fetchRgba<R>(r, k), b = fetchRgba<R>(r + 4, k);
+        return Texel<R>{lerpExact(a.rgb, b.rgb, q.fracX, wholeX), select(wholeX, a.a, a.a + (b.a - a.a) * q.fracX)};
     };
     const Texel<R> top = row(p), bottom = row(p + 4l * stride);
-    return {lerp_exact(top.rgb, bottom.rgb, q.fracY, wholeY),
+    return {lerpExact(top.rgb, bottom.rgb, q.fracY, wholeY),
             select(wholeY, top.a, top.a + (bottom.a - top.a) * q.fracY)};
 }
 // Catmull-Rom weights of taps -1, 0, 1, 2 (methods/00 s.1).
 template <class R>
-AA_INLINE void catmull_rom_weights(R f, R* w) {
+AA_INLINE void catmullRomWeights(R f, R* w) {
     using T = Elem<R>;
     w[0] = f * (R(T(-0.5)) + f * (R(T(1)) - R(T(0.5)) * f));
     w[1] = R(T(1)) + f * f * (R(T(-2.5)) + R(T(1.5)) * f);
@@ -97,7 +97,7 @@ AA_INLINE R lanczos2(R distanceSquared) {
     return (a * a * R(T(1.5625)) - R(T(0.5625))) * (b * b);
 }
 template <class R>
-AA_INLINE void lanczos_weights(R f, R* w) {
+AA_INLINE void lanczosWeights(R f, R* w) {
     using T = Elem<R>;
     const R one(T(1)), two(T(2));
     w[0] = lanczos2((one + f) * (one + f)), w[1] = lanczos2(f * f);
@@ -108,11 +108,11 @@ AA_INLINE void lanczos_weights(R f, R* w) {
 // of the four central texels against overshoot at fireflies, and >= 0 (methods/08 s.8.1). Whole motion takes the texel
 // itself; beside it, taps of weight 0 are exact because a history is finite (sanitised()).
 template <bool corners, bool normalise, class R>
-AA_INLINE vec3<R> fetch_4x4(const float* p, int stride, const Reprojection<R>& q, const R (&wx)[4], const R (&wy)[4],
+AA_INLINE vec3<R> fetch4x4(const float* p, int stride, const Reprojection<R>& q, const R (&wx)[4], const R (&wy)[4],
                             bool clamped) {
     using T = Elem<R>;
-    const Offsets<R> k = texel_offsets(q, stride);
-    if (all_whole(q)) return fetch_rgba<R>(p, k).rgb;
+    const Offsets<R> k = texelOffsets(q, stride);
+    if (allWhole(q)) return fetchRgba<R>(p, k).rgb;
     const R zero(T(0)), inner = wx[1] + wx[2], all4 = corners ? inner + (wx[0] + wx[3]) : R(T(1));
     vec3<R> sum(zero), lo(zero), hi(zero), own(zero);
     R norm(zero);
@@ -120,10 +120,10 @@ AA_INLINE vec3<R> fetch_4x4(const float* p, int stride, const Reprojection<R>& q
     for (int j = 0; j < 4; j++) {
         const bool outerRow = j == 0 || j == 3;
         const float* r = p + 4l * (j - 1) * stride;
-        const vec3<R> t1 = fetch_rgba<R>(r, k).rgb, t2 = fetch_rgba<R>(r + 4, k).rgb;
+        const vec3<R> t1 = fetchRgba<R>(r, k).rgb, t2 = fetchRgba<R>(r + 4, k).rgb;
         vec3<R> line = t1 * wx[1] + t2 * wx[2];
         if (corners || !outerRow)
-            line = line + fetch_rgba<R>(r - 4, k).rgb * wx[0] + fetch_rgba<R>(r + 8, k).rgb * wx[3];
+            line = line + fetchRgba<R>(r - 4, k).rgb * wx[0] + fetchRgba<R>(r + 8, k).rgb * wx[3];
         if (j == 1) lo = min(t1, t2), hi = max(t1, t2), own = t1;
         if (j == 2) lo = min(lo, min(t1, t2)), hi = max(hi, max(t1, t2));
         sum = sum + line * wy[j];
@@ -134,28 +134,28 @@ AA_INLINE vec3<R> fetch_4x4(const float* p, int stride, const Reprojection<R>& q
     return select(both(q.fracX == zero, q.fracY == zero), own, held);
 }
 template <bool corners, class R>
-AA_INLINE vec3<R> fetch_catmull_rom(const float* p, int stride, const Reprojection<R>& q, bool clamped = true) {
+AA_INLINE vec3<R> fetchCatmullRom(const float* p, int stride, const Reprojection<R>& q, bool clamped = true) {
     R wx[4], wy[4];
-    catmull_rom_weights(q.fracX, wx);
-    catmull_rom_weights(q.fracY, wy);
-    return fetch_4x4<corners, !corners>(p, stride, q, wx, wy, clamped);
+    catmullRomWeights(q.fracX, wx);
+    catmullRomWeights(q.fracY, wy);
+    return fetch4x4<corners, !corners>(p, stride, q, wx, wy, clamped);
 }
 template <class R>
-AA_INLINE vec3<R> fetch_lanczos(const float* p, int stride, const Reprojection<R>& q) {
+AA_INLINE vec3<R> fetchLanczos(const float* p, int stride, const Reprojection<R>& q) {
     R wx[4], wy[4];
-    lanczos_weights(q.fracX, wx);
-    lanczos_weights(q.fracY, wy);
-    return fetch_4x4<true, true>(p, stride, q, wx, wy, true);
+    lanczosWeights(q.fracX, wx);
+    lanczosWeights(q.fracY, wy);
+    return fetch4x4<true, true>(p, stride, q, wx, wy, true);
 }
 template <class R>
-AA_INLINE vec3<R> fetch_history(const TemporalIn& in, int x, int y, const Reprojection<R>& q) {
+AA_INLINE vec3<R> fetchHistory(const TemporalIn& in, int x, int y, const Reprojection<R>& q) {
     const float* p = in.history + 4 * (long(y) * in.stride + x);
     const bool clamped = in.filter == HistoryFilter::catmullRom || in.filter == HistoryFilter::catmullRom5;
     if (in.filter == HistoryFilter::catmullRom || in.filter == HistoryFilter::catmullRomFree)
-        return fetch_catmull_rom<true>(p, in.stride, q, clamped);
+        return fetchCatmullRom<true>(p, in.stride, q, clamped);
     if (in.filter == HistoryFilter::catmullRom5 || in.filter == HistoryFilter::catmullRom5Free)
-        return fetch_catmull_rom<false>(p, in.stride, q, clamped);
-    return fetch_bilinear(p, in.stride, q).rgb;
+        return fetchCatmullRom<false>(p, in.stride, q, clamped);
+    return fetchBilinear(p, in.stride, q).rgb;
 }
 // B0: B(plane, p + offset) with one offset for the whole frame (un-jittering: offset = -jitter). A plane of float, or
 // of Elem<R>. Offset 0 gives the texel itself.
@@ -177,7 +177,7 @@ struct UniformFetch {
     // The same from rows y + dy and y + dy + 1, each at the pixel's x.
     AA_INLINE R operator()(const Elem<R>* upper, const Elem<R>* lower) const {
         return between(
-            upper + dx, lower + dx, [](const Elem<R>* r) __attribute__((always_inline)) { return load_own<R>(r); });
+            upper + dx, lower + dx, [](const Elem<R>* r) __attribute__((always_inline)) { return loadOwn<R>(r); });
     }
 
   private:
@@ -194,28 +194,28 @@ struct UniformFetch {
 
 // The pixel that contains q, as offset from (x, y): for values that must not be interpolated (depth, ids, counts).
 template <class R>
-AA_INLINE Reprojection<R> nearest_pixel(const Reprojection<R>& q) {
+AA_INLINE Reprojection<R> nearestPixel(const Reprojection<R>& q) {
     const R half(Elem<R>(0.5)), zero(Elem<R>(0)), one(Elem<R>(1));
     return {q.wholeX + select(q.fracX >= half, one, zero), q.wholeY + select(q.fracY >= half, one, zero), zero, zero,
             q.inside};
 }
 template <class R>
-AA_INLINE Offsets<R> nearest_offsets(const Reprojection<R>& q, int stride) {
-    return texel_offsets(nearest_pixel(q), stride);
+AA_INLINE Offsets<R> nearestOffsets(const Reprojection<R>& q, int stride) {
+    return texelOffsets(nearestPixel(q), stride);
 }
 // The same for planes without a border: on the picture's right and lower edge its last pixel.
 template <class R>
-AA_INLINE Offsets<R> nearest_offsets_within(const TemporalIn& in, const Reprojection<R>& q, int x, int y) {
+AA_INLINE Offsets<R> nearestOffsetsWithin(const TemporalIn& in, const Reprojection<R>& q, int x, int y) {
     using T = Elem<R>;
-    Reprojection<R> pixel = nearest_pixel(q);
+    Reprojection<R> pixel = nearestPixel(q);
     pixel.wholeX = min(pixel.wholeX, R(T(in.width - 1 - x)) - iota<R>());
     pixel.wholeY = min(pixel.wholeY, R(T(in.height - 1 - y)));
-    return texel_offsets(pixel, in.stride);
+    return texelOffsets(pixel, in.stride);
 }
 // Depth that the surface at (x, y) had in the previous camera, if it did not move by itself
 // (TemporalIn::expectedDepth).
 template <class R>
-AA_INLINE R expected_previous_depth(const ExpectedDepth& e, R depthView, int x, int y) {
+AA_INLINE R expectedPreviousDepth(const ExpectedDepth& e, R depthView, int x, int y) {
     using T = Elem<R>;
     if (!e.known) return depthView;
     const R px = R(T(x) + T(0.5)) + iota<R>(), py(T(y) + T(0.5));

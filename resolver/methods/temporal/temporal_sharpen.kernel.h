@@ -16,7 +16,7 @@ AA_INLINE V sharpened(const float* above, const float* p, const float* below, fl
 // One row of an interleaved history, and those above and below it, into planes at `o`: no planar copy of the blend is
 // kept. Texels -1 and `width` of the row are its border.
 template <class R>
-AA_INLINE void sharpen_row(const float* above, const float* row, const float* below, float gain, const RgbOut& out,
+AA_INLINE void sharpenRow(const float* above, const float* row, const float* below, float gain, const RgbOut& out,
                            long o, int width) {
     for (int x = 0; x < width; x += N<R>) {
         if constexpr (N<R> == 1) {
@@ -32,7 +32,7 @@ AA_INLINE void sharpen_row(const float* above, const float* row, const float* be
                 store(sharpened<R>(above + i, row + i, below + i, gain), texels + v * N<R>);
             }
             for (int i = 0; i < N<R>; i++) lane[i] = i;
-            store3(fetch_rgba<R>(texels, lane).rgb, out.c, o + x);
+            store3(fetchRgba<R>(texels, lane).rgb, out.c, o + x);
         }
     }
 }

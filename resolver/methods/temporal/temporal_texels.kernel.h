@@ -35,13 +35,13 @@ AA_INLINE vec3<R> clamp3(vec3<R> c, vec3<R> lo, vec3<R> hi) {
 
 // Y, Co, Cg (methods/00 s.4). The inverse does not clamp.
 template <class R>
-AA_INLINE vec3<R> to_ycocg(vec3<R> c) {
+AA_INLINE vec3<R> toYcocg(vec3<R> c) {
     using T = Elem<R>;
     const R half(T(0.5)), quarter(T(0.25)), rb = (c.x + c.z) * quarter;
     return {rb + c.y * half, (c.x - c.z) * half, c.y * half - rb};
 }
 template <class R>
-AA_INLINE vec3<R> from_ycocg(vec3<R> c) {
+AA_INLINE vec3<R> fromYcocg(vec3<R> c) {
     const R t = c.x - c.z;
     return {t + c.y, c.x + c.z, t - c.y};
 }

@@ -11,25 +11,25 @@ AA_INLINE void unchartedPixel(const UnchartedArgs& a, int x, int y) {
     const vec3<R> current = load3<R>(in.color.c, o);
 
     // 1. reproject
-    const Motion<R> motion = dilated_motion<R>(in, o);
+    const Motion<R> motion = dilatedMotion<R>(in, o);
     const Reprojection<R> q = reproject(in, motion, x, y);
-    const vec3<R> history = fetch_history(in, x, y, q);
+    const vec3<R> history = fetchHistory(in, x, y, q);
 
     // 2. rectify
     const Neighbours<R> window = neighbours<R>([&](int i, int j) __attribute__((always_inline)) {
         return load3<R>(in.color.c, o + long(j) * in.stride + i);
     });
-    const Box<R> box = box_of(window, a.neighbourhood);
-    const vec3<R> clipped = constrain(box, a.clipTarget, mean_of(window, a.neighbourhood), current, history);
+    const Box<R> box = boxOf(window, a.neighbourhood);
+    const vec3<R> clipped = constrain(box, a.clipTarget, meanOf(window, a.neighbourhood), current, history);
 
     // 3. blend
     const R k =
-        min(luminance_feedback(luminance(current, a.luminance), luminance(clipped, a.luminance), a.kMin, a.kMax),
+        min(luminanceFeedback(luminance(current, a.luminance), luminance(clipped, a.luminance), a.kMin, a.kMax),
             R(Elem<R>(in.feedbackCeiling)));
     const vec3<R> mixed = select(q.inside, blend(current, clipped, k), current);
 
-    store_blend(in, x, y, sanitised(mixed, current, history), R(Elem<R>(1)));
-    store_debug(in.debug, o, motion, q.inside, box, clipped - history, k);
+    storeBlend(in, x, y, sanitised(mixed, current, history), R(Elem<R>(1)));
+    storeDebug(in.debug, o, motion, q.inside, box, clipped - history, k);
 }
 template <class R>
 __attribute__((flatten)) void unchartedRows(const UnchartedArgs& a, int y0, int y1) {
@@ -38,7 +38,7 @@ __attribute__((flatten)) void unchartedRows(const UnchartedArgs& a, int y0, int 
             if (a.in.history)
                 unchartedPixel<R>(a, x, y);
             else
-                store_first<R>(a.in, x, y);
+                storeFirst<R>(a.in, x, y);
 }
 
 }  // namespace AA_ARCH
