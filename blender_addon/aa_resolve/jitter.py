@@ -98,7 +98,7 @@ _QUADRANTS: tuple[Offset, ...] = ((-0.25, -0.25), (-0.25, 0.25), (0.25, -0.25), 
 # The INSIDE lists are published with y up.
 _UNIFORM4: tuple[Offset, ...] = ((-0.25, 0.25), (0.25, -0.25), (0.25, 0.25), (-0.25, -0.25))
 _ROTATED4: tuple[Offset, ...] = ((-0.125, 0.375), (0.375, 0.125), (0.125, -0.375), (-0.375, -0.125))
-# Seed 001, Listing 4.2, which multiplies by the square of sigma by mistake.
+# [Stejmar n.d., listing 4.2], which multiplies by the square of sigma by mistake.
 _GAUSSIAN_SCALE: dict[str, float] = {
     "gaussian": 0.2575,
     "quadrantGaussian": 0.2575,
@@ -116,7 +116,7 @@ SEQUENCES: dict[str, str] = {
     "gaussian": "normal distribution, sigma 0.2575 px, clipped to the pixel",
     "quadrant": "the four quarter points in turn",
     "quadrantGaussian": "quarter points plus the normal distribution (asaa)",
-    "quadrantGaussianVariance": "labelled variant: quarter points plus a normal distribution of 0.0663 px, the square of sigma, as seed 001 lists it",
+    "quadrantGaussianVariance": "labelled variant: quarter points plus a normal distribution of 0.0663 px, the square of sigma, as [Stejmar n.d.] lists it",
     "insideUniform4": "four quarter points, helix order",
     "insideRotated4": "rotated grid of four",
     "msaa8": "the Direct3D 8x pattern in turn",
@@ -126,8 +126,8 @@ SEQUENCES: dict[str, str] = {
     "t2msaa1875": "(+.1875, -.1875) and (-.1875, +.1875) in turn, for sub-samples d3d2",
     "t2msaa125": "(+.125, -.125) and (-.125, +.125) in turn, for sub-samples d3d2",
 }
-# Two places in turn: SMAA's (methods/03 s.3.3 and 3.5, published with y up) and those of seed 001 s.4.4.2, whose tables
-# 5.18 and 5.19 have the two smaller ones: with these the samples of two frames lie in rows and columns of their own.
+# Two places in turn: SMAA's ([Jimenez 2012], published with y up) and those of [Stejmar n.d., 4.4.2], whose tables 5.18
+# and 5.19 have the two smaller ones: with these the samples of two frames lie in rows and columns of their own.
 _PAIRS: dict[str, tuple[Offset, Offset]] = {
     "smaaT2x": ((0.25, 0.25), (-0.25, -0.25)),
     "smaa4x": ((0.125, -0.125), (-0.125, 0.125)),

@@ -181,7 +181,7 @@ void compareWithDouble(Row& row, const MethodSpec& spec, const std::vector<Frame
     row.rmsError = std::sqrt(sum / count);
 }
 
-// In float planes of the image's size, the unit of the budget in DESIGN.md.
+// In float planes of the image's size, the unit of docs/precision.md.
 double statePlanes(const Row& row, const ShotInfo& info) {
     return double(row.stateBytes) / double(PlaneF(info.width, info.height).bytes());
 }

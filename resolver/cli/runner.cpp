@@ -130,7 +130,7 @@ std::string writeImage(const RunningMethod& m, int frame, const RunOptions& o) {
 }
 
 // ---- a full history ----
-constexpr size_t kHistoryPeriods = 10;  // methods/11 nr 13
+constexpr size_t kHistoryPeriods = 10;  // decisions 13
 
 std::vector<MethodSpec> withHistory(const std::vector<MethodSpec>& methods) {
     std::vector<MethodSpec> chosen;

@@ -1,9 +1,9 @@
-// Colour spaces and the display chain D of methods/00 s.4: linear * 2^exposure -> tone map -> clamp [0,1] -> transfer.
+// Colour spaces and the display chain D of conventions 4: linear * 2^exposure -> tone map -> clamp [0,1] -> transfer.
 //
 // "Linear" is scene-referred BT.709; "encoded" is what is displayed, in [0,1]: with the sRGB transfer its codes, with
-// the identity transfer the clamped values themselves (seed 000 has no gamma anywhere; methods/11 nr 49). The sRGB
-// functions use roots by Newton's method instead of libm's pow, so that every machine gives the same bits (error
-// <= 3e-7 in float).
+// the identity transfer the clamped values themselves ([Oliveros 2018] has no gamma anywhere; decisions 49). The sRGB
+// functions use roots by Newton's method instead of libm's pow, so that every machine gives the same bits
+// (error <= 3e-7 in float).
 #pragma once
 #include "image/plane.h"
 #include "kernels/dispatch.h"

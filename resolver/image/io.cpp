@@ -11,7 +11,7 @@
 
 namespace aa {
 namespace fs = std::filesystem;
-constexpr int kLargestSide = 16384;  // methods/08 s.8.2
+constexpr int kLargestSide = 16384;  // conventions 10
 
 using OIIO::ImageInput;
 using OIIO::ImageOutput;

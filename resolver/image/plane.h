@@ -57,7 +57,7 @@ class Plane {
     const T& at(int x, int y) const { return row(y)[ptrdiff_t(x) * Channels]; }
     const T& clamped(int x, int y) const { return at(std::clamp(x, 0, width_ - 1), std::clamp(y, 0, height_ - 1)); }
 
-    // Repeats the edge pixels into the border and the row padding (clamp-to-edge, methods/00 s.1).
+    // Repeats the edge pixels into the border and the row padding (clamp-to-edge, conventions 1).
     void fillBorder() {
         if (empty()) return;
         for (int y = 0; y < height_; y++) fillRowBorder(y);

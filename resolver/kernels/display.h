@@ -1,4 +1,4 @@
-// The display chain D of methods/00 s.4 in lanes: linear * 2^exposure -> tone map -> clamp [0,1] -> transfer. NaN gives
+// The display chain D of conventions 4 in lanes: linear * 2^exposure -> tone map -> clamp [0,1] -> transfer. NaN gives
 // 0. Include from *.kernel.cpp only.
 #pragma once
 #include "kernels/display_args.h"
@@ -11,7 +11,7 @@ AA_INLINE R toneMapped(R x, int kind) {
     using T = Elem<R>;
     const R one(T(1));
     if (kind == 1) return x / (one + x);  // Reinhard
-    if (kind == 2)                        // ACES fit, Narkowicz 2015
+    if (kind == 2)                        // ACES fit, [Narkowicz 2016]
         return (x * (x * R(T(2.51)) + R(T(0.03)))) / (x * (x * R(T(2.43)) + R(T(0.59))) + R(T(0.14)));
     return x;
 }

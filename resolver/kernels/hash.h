@@ -4,7 +4,7 @@
 
 namespace AA_ARCH {
 
-// A bijection of 32-bit words whose output bits each depend on every input bit (Wellons 2018, lowbias32).
+// A bijection of 32-bit words whose output bits each depend on every input bit ([Wellons 2018], lowbias32).
 template <class U>
 AA_INLINE U mixedBits(U h) {
     h ^= h >> 16;

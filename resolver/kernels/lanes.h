@@ -367,7 +367,7 @@ template <class R>
 AA_INLINE R maxComponent(vec3<R> a) {
     return max(a.x, max(a.y, a.z));
 }
-// Luminance of linear RGB, BT.709 (methods/00 s.4); SMAA, INSIDE and Uncharted apply the same weights to encoded RGB.
+// Luminance of linear RGB, BT.709 (conventions 4); SMAA, INSIDE and Uncharted apply the same weights to encoded RGB.
 template <class R>
 AA_INLINE R luma709(vec3<R> c) {
     using T = Elem<R>;

@@ -1,5 +1,5 @@
-// How far apart two surface points are: depth, normal, or SADP, the sum of absolute dot products (Reshetov 2012;
-// methods/05 s.5.5.1). Included by *.kernel.cpp files after kernels/lanes.h.
+// How far apart two surface points are: depth, normal, or SADP, the sum of absolute dot products [Reshetov 2012].
+// Included by *.kernel.cpp files after kernels/lanes.h.
 //
 // A point is its planar depth, its normal and its object. The vector between two points is formed from the difference
 // of their depths, which is exact for close points, and from their distance on the image plane, never from the
@@ -70,7 +70,8 @@ AA_INLINE R dissimilarity(const SurfacePoint<R>& a, const SurfacePoint<R>& b, co
 // False only where dissimilarity() < limit, up to rounding, without its root and divisions: what most pixels of a
 // picture need to know.
 template <aa::Dissimilarity kind, class R>
-AA_INLINE Mask<R> surfacesMayDiffer(const SurfacePoint<R>& a, const SurfacePoint<R>& b, const Separation<R>& s, R limit) {
+AA_INLINE Mask<R> surfacesMayDiffer(const SurfacePoint<R>& a, const SurfacePoint<R>& b, const Separation<R>& s,
+                                    R limit) {
     using T = Elem<R>;
     const auto emptyA = isBackground(a.depthView), emptyB = isBackground(b.depthView);
     Mask<R> same;

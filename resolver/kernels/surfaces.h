@@ -1,5 +1,5 @@
-// When two geometry samples belong to one surface (methods/05 s.5.6, step 2): their normals agree and one lies near the
-// other's tangent plane. Included by *.kernel.cpp files.
+// When two geometry samples belong to one surface [Salvi 2012]: their normals agree and one lies near the other's
+// tangent plane. Included by *.kernel.cpp files.
 #pragma once
 #include "kernels/subsamples.h"
 #include "kernels/surface_rule.h"
@@ -9,7 +9,7 @@ namespace AA_ARCH {
 // Two backgrounds are one surface. Without normals on both sides only the depths are compared.
 template <class R>
 AA_INLINE Mask<R> sameSurface(const aa::SurfaceRule& rule, const SurfacePoint<R>& a, const SurfacePoint<R>& b,
-                               const Separation<R>& s) {
+                              const Separation<R>& s) {
     using T = Elem<R>;
     const R tolerance = R(T(rule.planeDistance)) * a.depthView;
     const auto agree = both(dot(a.normalWorld, b.normalWorld) >= R(T(rule.cosine)),

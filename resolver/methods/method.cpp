@@ -18,7 +18,7 @@ const MethodDescriptor& findMethod(std::string_view id) {
 ParamSpec averagedSpaceParam() {
     return choiceParam("space", "linear", {"linear", "encoded"},
                        "values that are averaged: light, or display values as a GL accumulation buffer held",
-                       "methods/00 s.4, 01 s.1.3");
+                       "conventions 4");
 }
 Space averagedSpace(const Params& p) { return p.choice("space") == "encoded" ? Space::encoded : Space::linear; }
 

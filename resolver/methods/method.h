@@ -13,7 +13,7 @@
 
 namespace aa {
 
-enum class Space { linear, encoded };  // scene-referred radiance, or display-encoded sRGB in [0,1] (methods/00 s.4)
+enum class Space { linear, encoded };  // scene-referred radiance, or display-encoded sRGB in [0,1] (conventions 4)
 
 // What a method may know of a shot before its first frame.
 struct ShotInfo {
@@ -70,8 +70,7 @@ struct MethodDescriptor {
     std::vector<std::string_view> patterns = {};
 };
 
-// Parameter `space` of the methods that average samples (methods/00 s.4, "display-space resolve"), and what it makes
-// the output.
+// Parameter `space` of the methods that average samples (conventions 4), and what it makes the output.
 ParamSpec averagedSpaceParam();
 Space averagedSpace(const Params& params);
 

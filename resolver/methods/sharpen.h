@@ -1,8 +1,9 @@
-// Sharpening filters of the temporal methods (methods/06 s.6.10 and 6.2), applied to an output and never fed back.
+// Sharpening filters of the temporal methods ([Oliveros 2018, eq 3.1 and 4.17]; [Castorina 2023]), applied to an output
+// and never fed back.
 //
 // Both 3x3 crosses add gain * (4 c - sum of the cross) to the centre; "normalised" means gain 1/4 instead of 1.
 // Encoded results are clamped to [0,1]; linear ones to the range of their 3x3 neighbourhood and to >= 0, so that a
-// firefly cannot be multiplied by five (methods/08 s.8.3).
+// firefly cannot be multiplied by five (conventions 9).
 #pragma once
 #include "methods/method.h"
 #include "methods/sharpen_kernels.h"

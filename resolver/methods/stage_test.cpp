@@ -65,7 +65,7 @@ TEST(Sharpen, ClampsToTheDisplayOrToTheNeighbourhood) {
     image.fillBorder();
     for (const auto filter : {Sharpen::xu, Sharpen::norm, Sharpen::lumaPost}) {
         sharpen(image, filter, Space::linear, {}, out);
-        EXPECT_EQ(at(out, 2, 2), 1e6f);  // 5e6 without the clamp of methods/08
+        EXPECT_EQ(at(out, 2, 2), 1e6f);  // 5e6 without the clamp of conventions 9
         EXPECT_EQ(at(out, 1, 2), 0.0f);
         sharpen(image, filter, Space::encoded, {}, out);
         EXPECT_EQ(at(out, 2, 2), 1.0f);

@@ -7,7 +7,7 @@
 
 namespace aa {
 namespace {
-// PCG32, O'Neill 2014; std distributions differ between libraries, and the same input must give the same bits.
+// PCG32, [O'Neill 2014]; std distributions differ between libraries, and the same input must give the same bits.
 class Pcg32 {
   public:
     // Uniform in [0, bound): the high bits of a 32 x 32 product; its bias of bound / 2^32 is below a millionth here.
@@ -51,7 +51,7 @@ MseInterval mseInterval(double raw, double noise) { return {std::max(0.0, raw - 
 
 Comparison compareMethods(const TileErrors& first, const TileErrors& second, double noise) {
     assert(first.sum.size() == second.sum.size() && !first.sum.empty());
-    constexpr size_t kResamples = 1000;  // methods/07 s.9
+    constexpr size_t kResamples = 1000;  // conventions 13.9
     const size_t tiles = first.sum.size();
     std::vector<double> difference(tiles);
     for (size_t i = 0; i < tiles; i++) difference[i] = first.sum[i] - second.sum[i];

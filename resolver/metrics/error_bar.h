@@ -1,5 +1,5 @@
-// How far a figure can be trusted when the reference itself has finitely many samples (methods/07 s.9), and whether two
-// methods differ by more than that.
+// How far a figure can be trusted when the reference itself has finitely many samples (conventions 13.9), and whether
+// two methods differ by more than that.
 #pragma once
 #include <optional>
 #include <span>

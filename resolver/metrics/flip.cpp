@@ -42,7 +42,7 @@ double flip(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map
 Metric flipMetric() {
     return {.figures = {{"flip", "FLIP", "LDR-FLIP, mean"}},
             .nsPerPixel = 93,
-            .source = "methods/07 s.4",
+            .source = "[Andersson 2020]",
             .measure = [](const ImagePair& i, const Exec& exec) {
                 return std::vector{flip(i.testEncoded, i.referenceEncoded, exec)};
             }};

@@ -1,5 +1,5 @@
-// LDR-FLIP, Andersson et al. 2020 (methods/07 s.4): the difference that a viewer sees when flipping between two images
-// at 67 pixels per degree (0.7 m from a 0.7 m wide monitor of 3840 px).
+// LDR-FLIP [Andersson 2020]: the difference that a viewer sees when flipping between two images at 67 pixels per degree
+// (0.7 m from a 0.7 m wide monitor of 3840 px).
 //
 //   colour:  opponent space, blurred by the eye's contrast sensitivity, CIELab with Hunt's adjustment, HyAB distance
 //   feature: differences of edges and points of the unblurred luminance

@@ -1,4 +1,4 @@
-// Filters and constants of LDR-FLIP at 67.02 pixels per degree, centre tap first (methods/07 s.4; flip_test.cpp
+// Filters and constants of LDR-FLIP at 67.02 pixels per degree, centre tap first ([Andersson 2020]; flip_test.cpp
 // computes each of them again from its formula). Literals, not calls of exp: libm differs between machines.
 #pragma once
 
@@ -42,7 +42,7 @@ constexpr double kPoint[] = {-0.29890154339811237, -0.24269989461365843, -0.1078
                              0.11755038888686649,  0.13376789122035074,  0.10526869671677357,  0.06484573606181976,
                              0.032707097503376956, 0.01380616137039334};  // (x^2 / sd^2 - 1) G
 
-// Linear BT.709 -> XYZ over the white point (row sums of the matrix of methods/07 s.4a), and back.
+// Linear BT.709 -> XYZ over the white point (row sums of the reference implementation's matrix), and back.
 constexpr double kToXyz[3][3] = {{0.4338953888315031, 0.37624237262225113, 0.1898622385462458},
                                  {0.21263682167732384, 0.7151829818412507, 0.07218019648142547},
                                  {0.01775242315172993, 0.10946562866246513, 0.872781948185805}};

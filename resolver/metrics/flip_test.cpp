@@ -14,7 +14,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 const double kPpd = 0.7 * (3840 / 0.7) * kPi / 180;
 
-// The specification once more, in double: two-dimensional kernels, pow and cbrt of the library, no separation.
+// [Andersson 2020] once more, in double: two-dimensional kernels, pow and cbrt of the library, no separation.
 using V3 = std::array<double, 3>;
 struct Image {
     int w, h;
@@ -130,7 +130,7 @@ Rgb scene(int w, int h, unsigned seed, float grain) {
     return image;
 }
 
-TEST(Flip, AgreesWithTheSpecification) {
+TEST(Flip, AgreesWithTheFormulas) {
     for (const auto& [w, h] : {std::pair{1, 1}, {1, 7}, {9, 1}, {23, 12}, {100, 6}}) {
         const Rgb test = scene(w, h, 1, 0.2f), reference = scene(w, h, 2, 0.05f);
         const Image t = opponentOf(test), r = opponentOf(reference);

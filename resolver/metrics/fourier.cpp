@@ -107,7 +107,7 @@ Metric fourierMetric() {
                         {"fband2", "MSE <1/2", "MSE at 1/4 to 1/2"},
                         {"fband3", "MSE >1/2", "MSE at 1/2 and above"}},
             .nsPerPixel = 700,
-            .source = "methods/07 s.3",
+            .source = "conventions 13.3",
             .measure = [](const ImagePair& i, const Exec& exec) {
                 const FourierError e = fourierError(i.testEncoded, i.referenceEncoded, exec);
                 return std::vector{e.fmagMse, e.fband[0], e.fband[1], e.fband[2], e.fband[3]};

@@ -1,4 +1,4 @@
-// Errors by spatial frequency (methods/07 s.3): tells blur (high bands lost) from aliasing (low bands polluted).
+// Errors by spatial frequency (conventions 13.3): tells blur (high bands lost) from aliasing (low bands polluted).
 #pragma once
 #include <array>
 #include <complex>
@@ -13,7 +13,7 @@ namespace aa {
 struct FourierError {
     double fmse = 0;        // sum |F_T - F_R|^2 / (W H)^2: equals the MSE (Parseval)
     double fmagMse = 0;     // sum (|F_T| - |F_R|)^2 / (W H)^2: blind to phase
-    double fmseThesis = 0;  // Re sum (F_T - F_R)^2 / (W H)^2, as the formula of seed 001 is printed; can be negative
+    double fmseThesis = 0;  // Re sum (F_T - F_R)^2 / (W H)^2, as [Stejmar n.d., eq 4.3] is printed; can be negative
     std::array<double, 4> fband{};  // fmse by radial frequency, cycles/px: [0,1/8) [1/8,1/4) [1/4,1/2) [1/2,0.71]
 };
 FourierError fourierError(const Rgb& test, const Rgb& reference, const Exec& exec);

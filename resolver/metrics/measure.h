@@ -9,10 +9,11 @@
 
 namespace aa {
 
-// Of encoded values (primary, methods/07 s.8) but for metrics of linear light, which methods with encoded output lack.
+// Of encoded values (primary, conventions 13.8) but for metrics of linear light, which methods with encoded output
+// lack.
 struct FrameMetrics {
-    double mse = 0, reference = 0;  // mean of (T-R)^2 and of R^2
-    double psnr = 0, snr = 0;       // dB
+    double mse = 0, reference = 0;                      // mean of (T-R)^2 and of R^2
+    double psnr = 0, snr = 0;                           // dB
     std::map<std::string, double, std::less<>> others;  // figures that are not of squared error, by name
     SquaredError squares() const { return {mse, reference}; }
     std::optional<double> figure(std::string_view name) const;  // any figure; nothing where it was not measured

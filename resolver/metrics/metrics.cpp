@@ -116,17 +116,18 @@ Metric squaredErrorMetric() {
                          [](const SquaredError& e) { return snr(e); }}},
             .always = true,
             .nsPerPixel = 4,
-            .source = "methods/07 s.1"};
+            .source = "conventions 13.1"};
 }
 Metric relMseMetric() {
-    return {.figures = {{"relMse", "relMSE", "relative MSE of linear light (of EXR files, of methods with linear output)"}},
-            .space = ColourSpace::linear,
-            .always = true,
-            .nsPerPixel = 3,
-            .source = "methods/07 s.8",
-            .measure = [](const ImagePair& i, const Exec& exec) {
-                return std::vector{relMse(*i.testLinear, *i.referenceLinear, exec)};
-            }};
+    return {
+        .figures = {{"relMse", "relMSE", "relative MSE of linear light (of EXR files, of methods with linear output)"}},
+        .space = ColourSpace::linear,
+        .always = true,
+        .nsPerPixel = 3,
+        .source = "conventions 13.8",
+        .measure = [](const ImagePair& i, const Exec& exec) {
+            return std::vector{relMse(*i.testLinear, *i.referenceLinear, exec)};
+        }};
 }
 namespace {
 Metric ssimMetric(Figure figure, bool always, int nsPerPixel,
@@ -136,16 +137,14 @@ Metric ssimMetric(Figure figure, bool always, int nsPerPixel,
     return {.figures = {figure},
             .always = always,
             .nsPerPixel = nsPerPixel,
-            .source = "methods/07 s.2",
+            .source = "conventions 13.2",
             .measure = [measure](const ImagePair& i, const Exec& exec) {
                 return std::vector{measure(i.testEncoded, i.referenceEncoded, exec, nullptr)};
             }};
 }
 }  // namespace
 Metric ssimLumaMetric() { return ssimMetric({"ssimLuma", "SSIM", "SSIM of luma 601"}, true, 25, ssimLuma); }
-Metric ssimRgbMetric() {
-    return ssimMetric({"ssimRgb", "SSIM RGB", "SSIM, mean over channels"}, false, 75, ssimRgb);
-}
+Metric ssimRgbMetric() { return ssimMetric({"ssimRgb", "SSIM RGB", "SSIM, mean over channels"}, false, 75, ssimRgb); }
 Metric ssimMatlab3DMetric() {
     return ssimMetric({"ssimMatlab3D", "SSIM 3D", "SSIM as MATLAB filters an RGB array"}, false, 120, ssimMatlab3D);
 }

@@ -1,4 +1,4 @@
-// Full-reference image metrics (methods/07). Both images have the same size; borders need not be filled.
+// Full-reference image metrics (conventions 13). Both images have the same size; borders need not be filled.
 //
 // Sums are double, over fixed blocks in a fixed order, so that a figure depends neither on the number of threads nor on
 // the instruction set. NaN in an image gives a NaN figure: nothing is skipped. (The display encoding maps NaN to 0, so
@@ -20,11 +20,11 @@ SquaredError squaredError(const Rgb& test, const Rgb& reference, const Exec& exe
 double rmse(double mse);
 double psnr(double mse, double peak = 1.0);  // dB; +Inf for mse = 0
 double snr(const SquaredError& error);       // dB; +Inf for mse = 0, -Inf for an all-zero reference
-// mean((T-R)^2 / (R^2 + 0.01)), linear light (methods/07 s.8).
+// mean((T-R)^2 / (R^2 + 0.01)), linear light (conventions 13.8).
 double relMse(const Rgb& test, const Rgb& reference, const Exec& exec);
 
 // Sums of squared error over tiles of 32 x 32 px, row-major, over pixels and channels: the unit of the paired bootstrap
-// (methods/07 s.9). Frames of one sequence are added tile by tile, so that memory does not grow with their number.
+// (conventions 13.9). Frames of one sequence are added tile by tile, so that memory does not grow with their number.
 struct TileErrors {
     static constexpr int kTilePx = 32;
     std::vector<double> sum;     // of (T - R)^2
@@ -38,8 +38,8 @@ struct TileErrors {
 };
 TileErrors tileErrors(const Rgb& test, const Rgb& reference, const Exec& exec);
 
-// SSIM of encoded images: 11x11 Gaussian, sigma 1.5, replicated border, variances about the local mean (methods/07
-// s.2). Each returns the mean over all pixels and writes the per-pixel map when `map` is given.
+// SSIM of encoded images: 11x11 Gaussian, sigma 1.5, replicated border, variances about the local mean
+// (conventions 13.2). Each returns the mean over all pixels and writes the per-pixel map when `map` is given.
 double ssimLuma(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr);  // BT.601 luma
 double ssimRgb(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr);   // mean over channels
 // As MATLAB treats an M x N x 3 array: a volume, filtered across the channels too (replicated). For comparison only.
@@ -53,7 +53,7 @@ Metric ssimLumaMetric();
 Metric ssimRgbMetric();
 Metric ssimMatlab3DMetric();
 
-// floor(255 x + 0.5) / 255: what an 8-bit image file keeps (option `q8` of methods/07). Border filled.
+// floor(255 x + 0.5) / 255: what an 8-bit image file keeps. Border filled.
 void quantise8(Rgb& encoded, const Exec& exec);
 
 }  // namespace aa

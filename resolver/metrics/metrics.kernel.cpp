@@ -34,14 +34,14 @@ __attribute__((flatten)) void relativeErrorRows(const RelativeErrorArgs& a, int 
             for (int x = 0; x < a.width; x += N<R>) {
                 const long o = long(y) * a.stride + x;
                 const R r = load<R>(a.reference.c[c] + o), d = load<R>(a.test.c[c] + o) - r;
-                // 0.01: the floor that keeps black from dividing by zero, methods/07 s.8
+                // 0.01: the floor that keeps black from dividing by zero, conventions 13.8
                 error.add(d * d / (r * r + R(Elem<R>(0.01))), x, a.width - x);
             }
         a.rows[y] = error.total();
     }
 }
 
-// ---- SSIM, Wang et al. 2004 ----
+// ---- SSIM [Wang 2004] ----
 //
 // Works on the sum s = x + y and the difference d = x - y of the two images:
 //   2 mu_x mu_y = (mu_s^2 - mu_d^2) / 2      mu_x^2 + mu_y^2       = (mu_s^2 + mu_d^2) / 2
@@ -53,7 +53,7 @@ __attribute__((flatten)) void relativeErrorRows(const RelativeErrorArgs& a, int 
 constexpr int kTaps = 11, kReach = 5;
 constexpr int kStrip = 64;               // columns; twice as many are slower here
 constexpr int kPadded = kStrip + 2 * 8;  // a strip and its neighbourhood, a whole number of lanes
-// exp(-i^2 / (2 1.5^2)) / sum, i = 0..5 (methods/07 s.2; here to double precision)
+// exp(-i^2 / (2 1.5^2)) / sum, i = 0..5 (conventions 13.2; here to double precision)
 constexpr double kGauss[kReach + 1] = {0.2660117248617943,  0.21300553771125366,  0.1093606895097,
                                        0.03600077212843082, 0.007598758135239184, 0.0010283800844791099};
 constexpr double kC1 = 0.01 * 0.01, kC2 = 0.03 * 0.03;  // (K1 L)^2, (K2 L)^2, L = 1

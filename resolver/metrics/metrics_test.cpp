@@ -93,7 +93,7 @@ TEST(SquaredError, HandComputed) {
     EXPECT_NEAR(snr(e), 10 * std::log10(4.0), 1e-12);
     EXPECT_NEAR(relMse(t, r, {}), (0.25 / 0.01) / 6, 1e-5);
 }
-TEST(SquaredError, PublishedTriples) {  // methods/07 s.1: MSE in 8-bit units, RMSD and PSNR of the thesis's tables
+TEST(SquaredError, PublishedTriples) {  // MSE in 8-bit units, RMSD and PSNR of the tables of [Oliveros 2018]
     EXPECT_NEAR(psnr(8.608, 255), 38.782, 5e-4);
     EXPECT_NEAR(psnr(149.271, 255), 26.391, 5e-4);
     EXPECT_NEAR(rmse(149.271), 12.218, 5e-4);

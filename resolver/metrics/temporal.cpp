@@ -10,7 +10,7 @@ namespace aa {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kSameDepth = 0.02f;  // methods/07 s.5
+constexpr float kSameDepth = 0.02f;  // conventions 13.5
 
 void fit(PlaneF& p, int w, int h) {
     if (p.width() != w || p.height() != h) p = PlaneF(w, h);

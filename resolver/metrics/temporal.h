@@ -1,4 +1,4 @@
-// Temporal metrics (methods/07 s.5), fed frame by frame; memory does not grow with the number of frames.
+// Temporal metrics (conventions 13.5), fed frame by frame; memory does not grow with the number of frames.
 //
 // All on display-encoded values. y = BT.601 luma; R = truth, T = the method's image. `q` = p - motion, the true
 // un-jittered motion.
@@ -28,7 +28,7 @@
 namespace aa {
 
 inline constexpr int kGhostAges = 16;
-// Frames left out at the start: 32 (methods/07 s.5), or a quarter of a shorter sequence.
+// Frames left out at the start: 32 (conventions 13.5), or a quarter of a shorter sequence.
 inline int temporalWarmup(size_t frames) { return int(std::min<size_t>(32, frames / 4)); }
 // What the scene must offer for the figures along the motion.
 inline PassSet temporalMetricPasses() { return Pass::motion | Pass::depth | Pass::object; }

@@ -68,7 +68,7 @@ std::string toCsvText(const AngleStudy& s) {
 
 std::string toSvgText(const AngleStudy& s) {
     static const char* const hues[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                       "#e69f00", "#56b4e9", "#7f7f7f", "#b8a800"};  // Okabe and Ito 2008
+                                       "#e69f00", "#56b4e9", "#7f7f7f", "#b8a800"};  // [Okabe 2008]
     static const char* const dashes[] = {"", " stroke-dasharray=\"6 3\"", " stroke-dasharray=\"2 2\""};
     constexpr int kWidth = 900, kHeight = 420, kLeft = 60, kRight = 20, kTop = 40, kBottom = 50, kLine = 18;
     const int rows = (int(s.methods.size()) + 2) / 3, height = kHeight + kLine * rows;

@@ -170,7 +170,7 @@ std::string truthSentence(const RunResults& run, const std::vector<size_t>& orde
     if (smallest == 0) return {};
     const double share = *run.truthNoise / smallest;
     std::string s = "The truth's own noise is " + significant(100 * share, 2) + " % of the smallest error";
-    // methods/07 s.9 asks for less than 1 %.
+    // conventions 13.9 asks for less than 1 %.
     return s + (share < 0.01 ? "."
                              : ": more than the 1 % that a fair ranking asks for; render the truth with more samples.");
 }

@@ -1,4 +1,4 @@
-// The colours of error maps: lightness rises evenly from near black to near white in OKLab (Ottosson 2020), hue turns
+// The colours of error maps: lightness rises evenly from near black to near white in OKLab [Ottosson 2020], hue turns
 // from violet over red to yellow, chroma is what sRGB allows. So equal steps of error look equally large, also in grey.
 #pragma once
 #include <array>

@@ -11,7 +11,7 @@ namespace aa {
 enum class History {
     first,  // none: the shot starts there
     ramp,   // none, and the first frames are averaged evenly (warmup=ramp) where a method can
-    full,   // a static shot's frames ran for 10 periods of the jitter before (methods/11 nr 13)
+    full,   // a static shot's frames ran for 10 periods of the jitter before (decisions 13)
 };
 
 struct Protocol {

@@ -1,5 +1,5 @@
 // What a run found, and its two files: results.json (everything, read back by `sheet` and `report`) and results.csv
-// (one line per method and frame). Keys are those of methods/07. JSON has no infinity: it is written as the string
+// (one line per method and frame). Keys are those of conventions 13. JSON has no infinity: it is written as the string
 // "Inf".
 #pragma once
 #include <filesystem>
@@ -63,7 +63,7 @@ struct PairResult {
 };
 
 // Pixels in which the mean of the halves exceeds the display, so that it is clipped, of all truth pixels. The protocol
-// of seed 000 clamps every sample, which a mean cannot make up for.
+// of [Oliveros 2018] clamps every sample, which a mean cannot make up for.
 struct ClippedPixels {
     size_t pixels = 0, of = 0;
 };

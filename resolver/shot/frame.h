@@ -17,7 +17,7 @@ inline constexpr float kBackgroundDepth = 1e10f;
 // Motion of a pixel without a previous position: outside of any picture, as the exporter writes it.
 inline constexpr float kInvalidMotionPx = 1e6f;
 
-// Values of methods/00 s.3 at one sub-sample position of every pixel.
+// Passes (conventions 3) at one sub-sample position of every pixel.
 struct SubSample {
     PlaneF depthView;  // as Frame::depthView
     Rgb normalWorld;
@@ -52,7 +52,7 @@ struct Frame {
     std::vector<EdgeSegment> segments;  // of the un-jittered picture, whatever this frame's jitter
 };
 
-// Ground truth: two independent halves; the reference is their mean, the error bar MSE(a, b) / 4 (methods/07 s.9).
+// Ground truth: two independent halves; the reference is their mean, the error bar MSE(a, b) / 4 (conventions 13.9).
 struct Truth {
     Rgb a, b;  // linear
 };

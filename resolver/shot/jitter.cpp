@@ -10,7 +10,7 @@
 
 namespace aa {
 namespace {
-constexpr double kGaussianSigmaPx = 0.2575;  // seed 001, Listing 4.2, which multiplies by its square by mistake
+constexpr double kGaussianSigmaPx = 0.2575;  // [Stejmar n.d., listing 4.2], which multiplies by its square by mistake
 constexpr double kListedScalePx = kGaussianSigmaPx * kGaussianSigmaPx;  // that mistake: what its figures were made with
 
 double frac(double v) { return v - std::floor(v); }
@@ -42,7 +42,7 @@ class Pcg32 {
     uint64_t state_ = 0, increment_;
 };
 
-// Marsaglia's polar method (seed 001), one generator per frame.
+// The polar method [Marsaglia 1964], one generator per frame.
 glm::dvec2 gaussian(uint64_t n, double scalePx) {
     Pcg32 generator(n);
     for (;;) {
@@ -58,9 +58,9 @@ constexpr glm::dvec2 kQuadrants[] = {{-0.25, -0.25}, {-0.25, 0.25}, {0.25, -0.25
 constexpr glm::dvec2 kUniform4[] = {{-0.25, 0.25}, {0.25, -0.25}, {0.25, 0.25}, {-0.25, -0.25}};
 constexpr glm::dvec2 kRotated4[] = {{-0.125, 0.375}, {0.375, 0.125}, {0.125, -0.375}, {-0.375, -0.125}};
 constexpr glm::dvec2 kSmaaT2x[] = {{0.25, 0.25}, {-0.25, -0.25}};
-constexpr glm::dvec2 kSmaa4x[] = {{0.125, -0.125}, {-0.125, 0.125}};  // methods/03 s.3.5, published with y up
-// T2MSAA: (d, -d) and (-d, d) in turn. Seed 001 s.4.4.2 has d = 0.25 px, its tables 5.18 and 5.19 the two others, with
-// which the four samples of two frames lie in rows and columns of their own.
+constexpr glm::dvec2 kSmaa4x[] = {{0.125, -0.125}, {-0.125, 0.125}};  // [Jimenez 2012], published with y up
+// T2MSAA: (d, -d) and (-d, d) in turn. [Stejmar n.d., 4.4.2] has d = 0.25 px, its tables 5.18 and 5.19 the two others,
+// with which the four samples of two frames lie in rows and columns of their own.
 constexpr glm::dvec2 kT2msaaDirection[] = {{1, -1}, {-1, 1}};
 constexpr uint32_t kReverseRadix3[] = {0, 2, 1};  // MATLAB's RR2 in base 3; the identity in base 2
 
@@ -116,7 +116,8 @@ const std::vector<JitterInfo>& jitterSequences() {
         {"quadrant", "the four quarter points in turn", 0, 4},
         {"quadrantGaussian", "quarter points plus the normal distribution (asaa)", 0, 0},
         {"quadrantGaussianVariance",
-         "labelled variant: quarter points plus a normal distribution of 0.0663 px, the square of sigma, as seed 001 "
+         "labelled variant: quarter points plus a normal distribution of 0.0663 px, the square of sigma, as [Stejmar "
+         "n.d.] "
          "lists it",
          0, 0},
         {"insideUniform4", "four quarter points, helix order", 0, 4},

@@ -1,4 +1,4 @@
-// Jitter sequences (methods/00 s.6).
+// Jitter sequences (conventions 6).
 //
 // A jitter is the position of a frame's samples relative to their pixel centres, px, x right, y DOWN, each component in
 // [-0.5, 0.5]. Names and numbers are those of the exporter's `--jitter`.

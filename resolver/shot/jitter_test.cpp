@@ -23,7 +23,7 @@ glm::dvec2 mean(const JitterSpec& spec) {
     return sum / double(spec.period);
 }
 
-// Vectors of methods/00 s.6.
+// Vectors of conventions 6.
 TEST(Jitter, HaltonsFirstEight) {
     expectPoints("halton23", 16,
                  {{0, -1 / 6.},
@@ -69,7 +69,7 @@ TEST(Jitter, ListsKeepTheirOrderAndSign) {
     expectPoints("insideUniform4", 16, {{-.25, .25}, {.25, -.25}, {.25, .25}, {-.25, -.25}});
     expectPoints("insideRotated4", 16, {{-.125, .375}, {.375, .125}, {.125, -.375}, {-.375, -.125}});
     expectPoints("smaaT2x", 2, {{.25, .25}, {-.25, -.25}, {.25, .25}});
-    // Seed 001 moves the geometry by (-d, d) and (d, -d), y down; the samples go the other way.
+    // [Stejmar n.d.] moves the geometry by (-d, d) and (d, -d), y down; the samples go the other way.
     expectPoints("t2msaa", 2, {{.25, -.25}, {-.25, .25}, {.25, -.25}});
     expectPoints("t2msaa1875", 2, {{.1875, -.1875}, {-.1875, .1875}, {.1875, -.1875}});
     expectPoints("t2msaa125", 2, {{.125, -.125}, {-.125, .125}, {.125, -.125}});
@@ -87,7 +87,7 @@ TEST(Jitter, GaussianHasItsSpreadAndStaysInThePixel) {
     EXPECT_EQ(jitterPx({.sequence = "gaussian"}, 3), jitterPx({.sequence = "gaussian"}, 3));
     EXPECT_NE(jitterPx({.sequence = "gaussian"}, 3), jitterPx({.sequence = "gaussian"}, 4));
 }
-// Seed 001 multiplies the same normal numbers by sigma squared: quarter points with hardly any spread.
+// [Stejmar n.d.] multiplies the same normal numbers by sigma squared: quarter points with hardly any spread.
 TEST(Jitter, TheListedVarianceIsALabelledVariant) {
     double square = 0;
     int unclipped = 0;

@@ -1,4 +1,4 @@
-// shot.json, version 1 (DESIGN.md "The shot"): what was rendered, with which jitter and camera, and where it lies.
+// shot.json, version 1: what was rendered, with which jitter and camera, and where it lies.
 //
 // Optional members may be absent; unknown members are kept and ignored; a wrong type or a missing required member is an
 // InputError that names the member and the file.
@@ -34,7 +34,7 @@ struct Manifest {
     double fps = 24;
     std::string jitterSequence = "none";
     int jitterStart = 1, jitterPeriod = 1;
-    // A labelled variant, made on purpose to reproduce a published error (seed 001 s.3.7.1, eqs 3.12 and 3.14): the
+    // A labelled variant, made on purpose to reproduce a published error [Stejmar n.d., 3.7.1, eq 3.12 and 3.14]: the
     // jitter's translation was multiplied to the wrong side of the projection P, so it moved the geometry by
     // (-2 jx / W, +2 jy / H) scene units in view space. A point at depth z is then sampled at (jx P[0][0] / z,
     // jy P[1][1] / z) px, while FrameEntry::jitterPx states (jx, jy), as the methods of that thesis believed: right at
@@ -54,7 +54,7 @@ struct Manifest {
     const FrameEntry* find(int frame) const;
 };
 
-inline constexpr int kMaxResolution = 16384;  // methods/08 s.8.2
+inline constexpr int kMaxResolution = 16384;  // conventions 10
 inline constexpr int kMaxSubSamples = 256;
 
 // SHOT may be the folder or its shot.json. Throws InputError: missing, not JSON, a missing required member, a wrong

@@ -22,7 +22,7 @@ enum class Pass : uint32_t {
 };
 
 // Where in the pixel a frame is sampled. Methods that accumulate frames read jittered ones; all others judge a picture
-// that nobody would jitter, so they read the pixel centres (methods/01 s.1.1).
+// that nobody would jitter, so they read the pixel centres (conventions 2).
 enum class Sampling { jittered, centre };
 
 // A set of passes.

@@ -1,4 +1,4 @@
-// Sub-sample patterns: the one place where their positions are written (methods/00 s.2).
+// Sub-sample patterns: the one place where their positions are written (conventions 2).
 //
 // Positions are offsets from the pixel centre in px, x right, y down, in the order of the API that defines them.
 #pragma once
@@ -22,7 +22,7 @@ inline constexpr SixteenthPx kD3d8[] = {{1, -3}, {-1, 3}, {5, 1}, {-3, -5}, {-5,
 inline constexpr SixteenthPx kD3d16[] = {{1, 1},  {-1, -3}, {-3, 2},  {4, -1}, {-5, -2}, {2, 5},  {5, 3}, {3, -5},
                                          {-2, 6}, {0, -7},  {-4, -6}, {-6, 4}, {-8, 0},  {7, -4}, {6, 7}, {-7, -8}};
 
-// Pixel centre and upper left corner, which four pixels share (methods/00 s.2).
+// Pixel centre and upper left corner, which four pixels share (conventions 2).
 inline constexpr SixteenthPx kQuincunx[] = {{0, 0}, {-8, -8}};
 
 inline constexpr int kMaxGrid = 8;  // grid8: 64 sub-samples

@@ -5,7 +5,7 @@
 
 namespace aa {
 
-// Counts of what the input sanitiser replaced (methods/08 s.8.0).
+// Counts of what the input sanitiser replaced (conventions 8).
 struct SanitiseCounts {
     uint64_t colourNan = 0, colourInf = 0, colourNegative = 0, depth = 0, normal = 0, motion = 0, edges = 0,
              segments = 0;
@@ -16,7 +16,7 @@ struct SanitiseCounts {
 };
 enum class InputPolicy {
     strict,    // any NaN, Inf or depth <= 0 is an InputError naming plane, pixel and frame
-    sanitise,  // replaced by the rules of methods/08 s.8.0 and counted
+    sanitise,  // replaced by the rules of conventions 8 and counted
     raw,       // as stored (for `check`)
 };
 

@@ -1,4 +1,4 @@
-// The input sanitiser (methods/08 s.8.0): what a shot's planes may hold before any method sees them.
+// The input sanitiser (conventions 8): what a shot's planes may hold before any method sees them.
 #pragma once
 #include <string>
 
@@ -23,7 +23,7 @@ void sanitiseNormal(Rgb& normal, InputPolicy policy, const PlaneName& name, Sani
 // Not finite -> kInvalidMotionPx in both components: no place in the previous picture.
 void sanitiseMotion(PlaneF& motionXPx, PlaneF& motionYPx, InputPolicy policy, const PlaneName& name,
                     SanitiseCounts& counts);
-// Not finite -> (0.5, 0.5): no edge cuts this pixel (methods/05 s.5.1).
+// Not finite -> (0.5, 0.5): no edge cuts this pixel (conventions 3).
 void sanitiseEdges(PlaneF& edgeXPx, PlaneF& edgeYPx, InputPolicy policy, const PlaneName& name, SanitiseCounts& counts);
 
 }  // namespace aa

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is rendered and what is run on it: the shots, and the minimum study set of methods/09 on each of them."""
+"""What is rendered and what is run on it: the shots, and the methods that each of them is for."""
 
 from __future__ import annotations
 
@@ -120,7 +120,8 @@ SHOTS = _shots(
     ),
 )  # fmt: skip
 
-# The thesis's protocol (methods/10), and what each of its steps does to these methods on hard_edges.
+# The thesis's protocol (decisions 13, 49), and what each of its steps does to these methods on
+# hard_edges.
 THESIS_FLAGS = ("--display", "identity", "--history", "full", "--quantise", "8")
 STEPS = {
     "linear light, from frame 0": (),

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Published figures that the studies are compared with; facts copied from the documents, transcribed in methods/10.
+"""Published figures that the studies are compared with; facts copied from their tables.
 
-A = Oliveros, thesis (1600 x 900, 8-bit images, truth of 128 samples). C = Reshetov, RSAA talk.
+A = [Oliveros 2018] (1600 x 900, 8-bit images, truth of 128 samples). C = [Reshetov 2012], the talk.
 """
 
 from __future__ import annotations

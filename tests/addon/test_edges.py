@@ -87,7 +87,7 @@ def test_inner_edges_are_no_edges() -> None:
 
 
 def gbaa(color: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """GBAA's own part (methods/05-geometry.md 5.1, steps 1 and 3): one bilinear fetch beside the sample."""
+    """GBAA's own part [Persson 2011]: one bilinear fetch beside the sample."""
     height, width = color.shape[:2]
     shift = np.where(np.abs(edges) < 0.5, np.where(edges >= 0, 0.5, -0.5) - edges, 0.0)
     y, x = np.mgrid[0:height, 0:width]

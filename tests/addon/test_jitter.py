@@ -239,7 +239,7 @@ def test_sequences() -> None:
         assert np.allclose(
             jitter.jitter_at("thesis", index, 16), (u - 0.5, v - 0.5), atol=1e-12
         ), index
-    # methods/00-conventions.md s.6, y down: published lists with y up are turned over.
+    # conventions 6, y down: published lists with y up are turned over.
     lists = {
         "none": [(0, 0)],
         "halton23zero": [(-1 / 2, -1 / 2), (0, -1 / 6), (-1 / 4, 1 / 6)],
@@ -280,7 +280,8 @@ def test_sequences() -> None:
         place = np.array(lists["quadrant"][index % 4]) + jitter.jitter_at("gaussian", index, 64)
         both = jitter.jitter_at("quadrantGaussian", index, 64)
         assert np.allclose(both, np.clip(place, -0.5, 0.5), atol=1e-12), index
-    # Seed 001 multiplies by sigma squared where sigma is meant: the same numbers, smaller by 0.2575.
+    # [Stejmar n.d.] multiplies by sigma squared where sigma is meant: the same numbers, smaller by
+    # 0.2575.
     shrunk = [
         np.array(jitter.jitter_at("quadrantGaussianVariance", index, 4096))
         - lists["quadrant"][index % 4]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Passes hold what DESIGN.md says: depth, normals, ids, albedo, colour, truth, and only the parts that are needed."""
+"""Passes (conventions 3): depth, normals, ids, albedo, colour, truth, and only the parts that are needed."""
 
 from __future__ import annotations
 

@@ -226,7 +226,7 @@ def test_instances_modifiers_and_what_is_hidden() -> None:
 
 
 def gpaa(color: np.ndarray, depth: np.ndarray, segments: np.ndarray) -> np.ndarray:
-    """GPAA as methods/05-geometry.md 5.2 tells it, pixel by pixel."""
+    """GPAA [Persson 2011], pixel by pixel."""
     height, width = depth.shape
     out = color.copy()
     for x0, y0, z0, x1, y1, z1 in segments:

@@ -136,7 +136,7 @@ def test_override_keeps_the_geometry() -> None:
 
 
 def scalar_mask(centre, others) -> int:
-    """The clustering of methods/05-geometry.md 5.5.2, one pixel, written as the text says it."""
+    """The clustering of RSAA (decisions 32), one pixel, step by step."""
 
     def dissimilarity(a, b) -> float:
         if a["id"] != b["id"]:

@@ -1,5 +1,4 @@
-// Temporal methods at 1920x1080, one thread, in ns per pixel (the budget of DESIGN.md is 15; 30 for asaa, t2msaa,
-// fsr2n).
+// Temporal methods at 1920x1080, one thread, in ns per pixel (the budget is 15; 30 for asaa, t2msaa, fsr2n).
 //
 // The frame is synthetic and aliased on purpose: discs, thin bars and a checker floor under a pan, with discs that move
 // on their own, so that the history is read at fractional and at differing positions.

@@ -9,7 +9,7 @@
 
 namespace aa::testing {
 
-// Offsets from the pixel centre in 1/16 px, D3D11 standard patterns (methods/00 s.2).
+// Offsets from the pixel centre in 1/16 px, D3D11 standard patterns (conventions 2).
 inline constexpr int kQuincunx = 0;  // in place of a number of samples: the pattern of that name
 inline std::vector<glm::dvec2> pattern(int samples) {
     if (samples == kQuincunx) return {{0, 0}, {-0.5, -0.5}};
@@ -144,7 +144,7 @@ inline Scene noise(unsigned seed) {
     };
 }
 
-// Halton(2, 3) from index 1, minus 0.5 (methods/00 s.6).
+// Halton(2, 3) from index 1, minus 0.5 (conventions 6).
 inline glm::dvec2 halton(int n) {
     auto inverse = [](int i, int base) {
         double f = 1, r = 0;

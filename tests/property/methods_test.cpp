@@ -43,8 +43,8 @@ TEST_P(EveryMethod, ConstantStaysConstant) {
     }
 }
 
-// methods/06 B0 in every method that offers it: a picture that rises evenly is shown where it is, in every frame,
-// whatever its jitter. The other sign, or none, would miss by up to 0.006.
+// Un-jitter (conventions 7.0) in every method that offers it: a picture that rises evenly is shown where it is, in
+// every frame, whatever its jitter. The other sign, or none, would miss by up to 0.006.
 TEST(Unjitter, ARestingRampIsShownWhereItIs) {
     const int w = 40, h = 24;
     const Scene ramp = [](double x, double y) -> Surface {
@@ -159,8 +159,8 @@ TEST_P(EveryMethod, LanesAgreeWithDouble) {
     EXPECT_LE(double(far), 0.002 * double(all));
 }
 
-// methods/08 s.8.4: a blend stays within what it blends; a checkerboard, noise, lone bright and dark pixels. Filters
-// with negative lobes and sharpening may leave it.
+// conventions 12: a blend stays within what it blends; a checkerboard, noise, lone bright and dark pixels. Filters with
+// negative lobes and sharpening may leave it.
 TEST_P(EveryMethod, BlendsStayWithinTheirInput) {
     const MethodSpec spec = parseMethod(GetParam());
     if (spec.method->temporal) GTEST_SKIP() << "the torture set of the temporal methods bounds them";

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Distance from every sample to the nearest edge of the triangle it shows (pass ``edges``, for GBAA).
 
-Persson 2011; methods/05-geometry.md 5.1. A GPU gets the distances from its rasteriser. Here the triangle behind each
-pixel is found again: all evaluated triangles are set up in homogeneous coordinates (Olano & Greer 1997: no clipping),
+[Persson 2011]. A GPU gets the distances from its rasteriser. Here the triangle behind each
+pixel is found again: all evaluated triangles are set up in homogeneous coordinates ([Olano 1997]: no clipping),
 and of those that cover a sample and carry its object id, the one at the depth of the depth pass is taken. Then, for
 each of its edges with the normal (nx, ny) in the picture, the axis distance s is measured along the larger component,
 from the sample to the edge, positive to the right and down; the edge with the smallest |s| is stored as (s, 0.5) or

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Edges of all shown surfaces as segments in the picture (pass ``segments``, for GPAA).
 
-Persson 2011; methods/05-geometry.md 5.0 and 5.2. An edge of a mesh is kept where the picture may change across it:
+[Persson 2011]. An edge of a mesh is kept where the picture may change across it:
   boundary    it has one triangle (or more than two)
   silhouette  one of its two triangles faces the camera, the other does not
   crease      the two differ in material, or are not coplanar and the shading breaks between them

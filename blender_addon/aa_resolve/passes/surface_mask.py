@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Which sub-samples lie on the surface of the centre sample: the mask of pass ``subsamples``.
 
-Reshetov 2012; methods/05-geometry.md 5.5: how unlike the geometry of two samples is, and one k-means step that parts
+[Reshetov 2012]: how unlike the geometry of two samples is, and one k-means step that parts
 the sub-samples of a pixel into those like the centre and the others."""
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ def geometry_dissimilarity(
     normal_b: np.ndarray,
     depth: np.ndarray,
 ) -> np.ndarray:
-    """SADP, the sum of absolute dot products (Reshetov 2012): 0 within a plane, sqrt 2 across a right angle, 2 for
+    """SADP, the sum of absolute dot products [Reshetov 2012]: 0 within a plane, sqrt 2 across a right angle, 2 for
     parallel surfaces one behind the other. Points and normals H x W x 3 in one space, float64.
 
     Coincident points have no direction: there 1 - a.b of the normals decides. A missing normal adds 1.
@@ -33,7 +33,7 @@ def geometry_dissimilarity(
     return np.where(near, 1.0 - (normal_a * normal_b).sum(-1), result)
 
 
-_SADP_FLOOR = 0.2  # methods/05-geometry.md 5.5: below it everything counts as one surface
+_SADP_FLOOR = 0.2  # [Reshetov 2012]: below it everything counts as one surface
 _BAND_PIXELS = 8192  # what a band needs stays in the cache: whole pictures took twice as long
 
 

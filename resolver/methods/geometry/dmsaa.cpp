@@ -53,14 +53,14 @@ MethodDescriptor dmsaaDescriptor() {
         .title = "Deferred MSAA filter",
         .family = "geometry",
         .summary = "Fetches the colour beside the pixel centre, toward the sub-samples whose depth differs.",
-        .source = "Pettineo 2010 (seed 004 slide 16); methods/01 s.1.6",
+        .source = "[Pettineo 2010] as told in [Reshetov 2012, slide 16]",
         .passes = Pass::color | Pass::depth | Pass::subsamples,
         .params = {choiceParam("vecMode", "perS", {"perS", "perD", "ideal"},
                                "shift: sum of the differing offsets by S, by their number, or as long as their share",
-                               "methods/01 s.1.6, methods/11 #31"),
+                               "decisions 31"),
                    realParam("depthThreshold", "0.02", 0.0001, 10, "least depth difference, relative to the nearer",
-                             "methods/01 s.1.6"),
-                   realParam("gain", "1", 0, 4, "factor on the shift", "methods/01 s.1.6")},
+                             "ours"),
+                   realParam("gain", "1", 0, 4, "factor on the shift", "ours")},
         .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
             requireSubSamples(shot.subSamplePositionsPx, "dmsaa", 64);
             return std::make_unique<Dmsaa>(p);

@@ -1,10 +1,10 @@
 // dmsaa: deferred MSAA filter. The colour is fetched beside the pixel centre, toward the sub-samples whose depth
 // differs.
 //
-// Source: Pettineo 2010 as told in seed 004 slide 16; methods/01 s.1.6. Linear light. The talk says "averaging all
-// sub-samples" and "in the direction of the average vector" only, so there are three readings of the shift u = sum of
-// the differing offsets: perS = u / S (default), perD = u / number of differing samples, ideal = the unit vector of u
-// times the differing share, which makes the shift the covered area. Shifts are clamped to 1 px; u = 0 keeps the
+// Source: [Pettineo 2010] as told in [Reshetov 2012, slide 16]; decisions 31. Linear light. The talk says "averaging
+// all sub-samples" and "in the direction of the average vector" only, so there are three readings of the shift u = sum
+// of the differing offsets: perS = u / S (default), perD = u / number of differing samples, ideal = the unit vector of
+// u times the differing share, which makes the shift the covered area. Shifts are clamped to 1 px; u = 0 keeps the
 // colour.
 #pragma once
 #include "kernels/subsample_args.h"

@@ -9,7 +9,7 @@ namespace aa {
 namespace {
 using namespace testing;
 
-// methods/01 s.1.6, reference experiment: perS 4.2 / 3.9 / 4.0 dB, perD 5.5 / 0.4 / -0.9, ideal 6.8 / 10.9 / 12.1.
+// conventions 14: perS 4.2 / 3.9 / 4.0 dB, perD 5.5 / 0.4 / -0.9, ideal 6.8 / 10.9 / 12.1.
 TEST(Dmsaa, GainsOnHalfPlanesAreThoseOfTheThreeReadings) {
     const std::pair<const char*, std::array<double, 3>> expected[] = {{"dmsaa", {4.2, 3.9, 4.0}},
                                                                       {"dmsaa:vecMode=perD", {5.5, 0.4, -0.9}},
@@ -37,7 +37,7 @@ TEST(Dmsaa, ShiftsTowardTheDifferingSamples) {
     resolved("dmsaa:vecMode=perD,gain=4", f, {}, &layers);
     EXPECT_EQ(layer(layers, "offsetXPx").at(2, 1), 1.0f);  // clamped
 }
-// methods/08 s.8.3.
+// Edge cases of conventions 11.
 TEST(Dmsaa, EqualBackgroundsAndSymmetricSamplesKeepTheColour) {
     const TestScene empty{{}, [](double, double) { return -1; }, glm::vec3(0.3f)};
     const Frame sky = renderPlanes(empty, 9, 5, d3dPattern(8));

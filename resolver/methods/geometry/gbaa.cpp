@@ -37,10 +37,10 @@ MethodDescriptor gbaaDescriptor() {
         .title = "Geometry buffer anti-aliasing",
         .family = "geometry",
         .summary = "Blends a pixel with the neighbour beyond the nearest edge of the triangle that it shows.",
-        .source = "Persson 2011 (seed 001 s.3.3); methods/05 s.5.1",
+        .source = "[Persson 2011]; [Stejmar n.d., 3.3]",
         .passes = Pass::color | Pass::edges,
         .params = {flagParam("searchNeighbours", true, "a pixel without an edge of its own asks its four neighbours",
-                             "seed 001 Listing 3.1")},
+                             "[Stejmar n.d., listing 3.1]")},
         .create = [](const Params& p, const ShotInfo&) -> std::unique_ptr<Method> {
             return std::make_unique<EdgeBlend>(false, p.flag("searchNeighbours"));
         },
@@ -52,7 +52,7 @@ MethodDescriptor d2eDescriptor() {
             .title = "Distance-to-edge anti-aliasing",
             .family = "geometry",
             .summary = "Blends a pixel along each axis with the neighbour beyond the nearest edge.",
-            .source = "Malan 2010; methods/05 s.5.3",
+            .source = "[Malan 2010]",
             .passes = Pass::color | Pass::edges,
             .create = [](const Params&, const ShotInfo&) -> std::unique_ptr<Method> {
                 return std::make_unique<EdgeBlend>(true, true);

@@ -9,8 +9,8 @@ namespace aa {
 namespace {
 using namespace testing;
 
-// Signed distance along the major axis of the line's normal, as the edges pass of a triangle with that edge (methods/05
-// s.5.1). `both`: triangles on both sides know the edge; otherwise only those of surface 0 do.
+// Signed distance along the major axis of the line's normal, as the edges pass of a triangle with that edge
+// (conventions 3). `both`: triangles on both sides know the edge; otherwise only those of surface 0 do.
 void putEdges(Frame& f, const Line& line, bool both = true) {
     const bool alongX = std::abs(line.nx) > std::abs(line.ny);
     for (int y = 0; y < f.height; y++)
@@ -32,7 +32,7 @@ double gainDb(const std::string& method, bool both, double leastSlope = 0, doubl
         [&](const Line& line) { return slope(line) >= leastSlope && slope(line) <= mostSlope; });
 }
 
-// methods/05 s.5.1, reference experiment: 19.0 dB overall, 35 dB for slopes below 1/4, 13.6 dB above 3/4.
+// conventions 14: 19.0 dB overall, 35 dB for slopes below 1/4, 13.6 dB above 3/4.
 TEST(Gbaa, GainOnHalfPlanes) {
     EXPECT_GE(gainDb("gbaa", true), 17.0);
     EXPECT_NEAR(gainDb("gbaa", true), 19.0, 1.0);

@@ -145,8 +145,8 @@ inline const PlaneF& layer(const std::vector<DebugLayer>& layers, std::string_vi
     return std::find_if(layers.begin(), layers.end(), [&](const auto& l) { return l.name == name; })->planes[0];
 }
 
-// PSNR gain over no anti-aliasing on pictures of one line each, over the pixels that the line cuts (methods/05
-// s.5.5.5). `change` may alter the rendered frame.
+// PSNR gain over no anti-aliasing on pictures of one line each, over the pixels that the line cuts (conventions 14).
+// `change` may alter the rendered frame.
 inline double halfPlaneGainDb(const std::string& method, const std::vector<glm::dvec2>& positionsPx,
                               const std::function<void(Frame&, const Line&)>& change = {},
                               const std::function<bool(const Line&)>& wanted = {}) {

@@ -1,7 +1,7 @@
 // gpaa: geometric post-process anti-aliasing. Every edge of the geometry is drawn over the finished picture as a line
 // of one pixel, and blends each pixel that it crosses with the neighbour beyond it.
 //
-// Source: Persson 2011; methods/05 s.5.2. The segments pass lists the edges. For a pixel that a segment touches:
+// Source: [Persson 2011]. The segments pass lists the edges. For a pixel that a segment touches:
 //   axis   across the segment: y for a mostly horizontal one, x otherwise
 //   s      distance along that axis from the pixel centre to the segment, px
 //   blend  c = 0.5 - |s|; where c > 0 the colour is fetched at the centre + sign(s) c axis, from the original picture

@@ -29,7 +29,7 @@ double gainDb(const std::string& method, double leastSlope = 0, double mostSlope
 }
 
 // The blend of gbaa with an edge known on both sides, so its figures: 19.0 dB, 35 and 13.6 dB for small and large
-// slopes (methods/05 s.5.1).
+// slopes (conventions 14).
 TEST(Gpaa, GainOnHalfPlanes) {
     EXPECT_GE(gainDb("gpaa"), 17.0);
     EXPECT_NEAR(gainDb("gpaa"), 19.0, 1.0);
@@ -132,7 +132,7 @@ TEST(Gpaa, JitteredFramesMoveTheList) {
     f.segments = {horizontal(4.6f)};
     expectShift(shiftAt("gpaa", f), 0, 0.2f);
 }
-// methods/08 s.8.3: shifts stay within a pixel, broken and endless edges cut nothing.
+// conventions 11: shifts stay within a pixel, broken and endless edges cut nothing.
 TEST(Gpaa, DegenerateSegments) {
     const Frame clean = ramp({});
     for (const EdgeSegment& s : {EdgeSegment{4.5f, 4.5f, 5, 4.5f, 4.5f, 5}, EdgeSegment{NAN, 1, 5, 4, 8, 5},

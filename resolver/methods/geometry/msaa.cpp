@@ -153,14 +153,14 @@ class MsaaMethod : public Method {
 
 std::vector<ParamSpec> surfaceParams() {
     return {choiceParam("key", "surface", {"surface", "object"}, "what is shaded once: a surface, or a whole object",
-                        "methods/01 s.1.4"),
+                        "ours: no triangle ids are exported"),
             choiceParam("shadingPosition", "centre", {"centre", "centroid"},
-                        "where a partly covered surface is shaded when it covers the centre", "methods/01 s.1.4"),
-            filterParam("methods/01 s.1.4, 1.8"),
-            realParam("diameter", "0", 0, 8, "of the filter, px; 0: its own (lanczos 4, others 2)", "MSAAFilter",
+                        "where a partly covered surface is shaded when it covers the centre", "ours"),
+            filterParam("[Akeley 1993]; other filters: [Pettineo 2012]"),
+            realParam("diameter", "0", 0, 8, "of the filter, px; 0: its own (lanczos 4, others 2)", "[Pettineo 2012]",
                       "filter=tent|gaussian|smoothstep|bspline|mitchell|catmullRom|cubic|blackmanHarris|sinc|lanczos"),
             choiceParam("resolve", "linear", {"linear", "inverseLuminance"},
-                        "weights of the colours: 1, or 1 / (1 + luminance)", "methods/01 s.1.4", "filter=box"),
+                        "weights of the colours: 1, or 1 / (1 + luminance)", "conventions 4", "filter=box"),
             averagedSpaceParam()};
 }
 PassSet surfacePasses(const Params& p) { return p.choice("key") == "surface" ? Pass::depth | Pass::normal : PassSet{}; }
@@ -172,7 +172,7 @@ MethodDescriptor msaaDescriptor() {
             .title = "Multisampling",
             .family = "geometry",
             .summary = "Every surface in a pixel is shaded once and weighted by the sub-samples that it covers.",
-            .source = "Akeley 1993; methods/01 s.1.4",
+            .source = "[Akeley 1993]",
             .passes = Pass::color | Pass::object | Pass::subsamples | Pass::subsampleColor,
             .params = surfaceParams(),
             .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
@@ -192,13 +192,13 @@ MethodDescriptor csaaDescriptor() {
     d.id = "csaa";
     d.title = "Coverage sampling";
     d.summary = "Multisampling with fewer stored colours than coverage samples.";
-    d.source = "Young 2006; methods/01 s.1.5";
+    d.source = "[Young 2006]";
     const std::vector<ParamSpec> slotParams = {
         intParam("slots", "4", 1, kMsaaMaxSamples, "sub-samples that hold a colour: 8x and 16x have 4, the Q modes 8",
-                 "methods/01 s.1.5"),
+                 "[Young 2006]"),
         choiceParam("slotPositions", "first", {"first", "spread"},
                     "the first sub-samples of the pattern, or those farthest apart",
-                    "methods/01 s.1.5; spread is ours")};
+                    "ours: the real positions are undisclosed")};
     for (ParamSpec& p : d.params)
         if (p.name == "filter") std::erase(p.choices, "quincunx");  // two sub-samples: nothing to leave out
     d.params.insert(d.params.begin(), slotParams.begin(), slotParams.end());

@@ -1,8 +1,8 @@
 // msaa, csaa: multisampling and coverage sampling, emulated from sub-sample geometry.
 //
-// Source: Akeley 1993, Young 2006; methods/01 s.1.4, 1.5. Linear light, or displayed values
-// (`space=encoded`: the colours go through the display chain before they are averaged, methods/00 s.4). Every surface
-// in a pixel is shaded once: the centre sample's surface has the pixel's colour, any other the colour of its sub-sample
+// Source: [Akeley 1993], [Young 2006]. Linear light, or displayed values
+// (`space=encoded`: the colours go through the display chain before they are averaged, conventions 4). Every surface in
+// a pixel is shaded once: the centre sample's surface has the pixel's colour, any other the colour of its sub-sample
 // nearest to the pixel centre (a renderer would shade it at its centroid). out = sum of coverage x colour. A pixel of
 // one surface keeps its colour: multisampling does not touch shading aliasing.
 //
@@ -13,7 +13,7 @@
 // csaa: only the first `slots` sub-samples hold a colour; the others count for the stored surface that they lie on, or
 // for the nearest slot when there is none (real slot patterns are undisclosed). Of the D3D patterns the first four
 // positions lie near the centre and miss most edges: 7.6 / 5.8 dB on half-planes for 8 / 16 samples; spread over the
-// pixel the same four slots reach 11.0 / 14.8. A surface whose colour is not finite is left out (methods/08 s.8.3).
+// pixel the same four slots reach 11.0 / 14.8. A surface whose colour is not finite is left out (conventions 11).
 #pragma once
 #include "kernels/display_args.h"
 #include "kernels/subsample_args.h"

@@ -14,7 +14,7 @@ using namespace testing;
 
 const Line kLine{std::cos(0.4), std::sin(0.4), 22.3};
 
-// methods/05 s.5.5.5: coverage of ideal samples gains 8.6 / 12.7 / 15.0 dB on half-planes.
+// conventions 14: coverage of ideal samples gains 8.6 / 12.7 / 15.0 dB on half-planes.
 TEST(Msaa, GainOnHalfPlanesIsThatOfCoverage) {
     EXPECT_NEAR(halfPlaneGainDb("msaa", d3dPattern(4)), 8.6, 0.5);
     EXPECT_NEAR(halfPlaneGainDb("msaa", d3dPattern(8)), 12.7, 0.5);
@@ -59,7 +59,7 @@ Frame halves() {
     for (size_t k = 0; k < 8; k++) f.subSamples[k].colorLinear.c[0].at(0, 0) = float(k + 1);
     return f;
 }
-// Display-space resolve (methods/00 s.4): every colour goes through the chain before the mean is taken.
+// Display-space resolve (conventions 4): every colour goes through the chain before the mean is taken.
 TEST(Msaa, EncodedSpaceAveragesDisplayedValues) {
     Frame f = renderPlanes(parallelPlanes(kLine), 48, 31, d3dPattern(8));
     std::vector<Rgb*> colours = {&f.colorLinear};
@@ -186,7 +186,7 @@ TEST(Msaa, ExtremeColoursAndEmptyPixels) {
     const Frame sky = renderPlanes(empty, 9, 5, d3dPattern(8));
     EXPECT_TRUE(resolved("msaa", sky).samePixels(sky.colorLinear));
 }
-// methods/08 s.8.3: the weights sum to 1 however many surfaces share the pixel, and nothing is clamped.
+// conventions 11: the weights sum to 1 however many surfaces share the pixel, and nothing is clamped.
 TEST(Msaa, WeightsSumToOneAndFirefliesCountInFull) {
     const TestScene crowd{{{{0, 0, 1}, -4, glm::vec3(0.1f), 1},
                            {{0, 0, 1}, -5, glm::vec3(0.1f), 2},

@@ -11,7 +11,7 @@
 namespace aa {
 namespace {
 
-constexpr double kMaskPassFloor = 0.2;  // methods/05 s.5.5.2; blender_addon/aa_resolve/subsamples.py
+constexpr double kMaskPassFloor = 0.2;  // decisions 32; blender_addon/aa_resolve/subsamples.py
 
 struct Options {
     Dissimilarity measure;
@@ -120,34 +120,34 @@ MethodDescriptor rsaaDescriptor() {
         .summary =
             "Fetches the colour beside the pixel centre, at an offset learned for its mask of sub-samples on other "
             "surfaces.",
-        .source = "Reshetov 2012 (seed 004); methods/05 s.5.5",
+        .source = "[Reshetov 2012]",
         .passes = Pass::color | Pass::subsamples,
         .params = {choiceParam("measure", "sadp", {"sadp", "depth", "normal"}, "dissimilarity of two geometry samples",
-                               "seed 004 slides 24-27"),
-                   realParam("sadpFloor", "0.2", 0.001, 2, "below this SADP everything is one surface",
-                             "methods/05 s.5.5", "measure=sadp"),
+                               "[Reshetov 2012, slides 24-27]"),
+                   realParam("sadpFloor", "0.2", 0.001, 2, "below this SADP everything is one surface", "decisions 32",
+                             "measure=sadp"),
                    realParam("depthFloor", "0.02", 0.0001, 2, "below this relative depth everything is one surface",
-                             "methods/05 s.5.5", "measure=depth"),
+                             "decisions 32", "measure=depth"),
                    realParam("normalFloor", "0.1", 0.001, 2, "below this 1 - cosine everything is one surface",
-                             "methods/05 s.5.5", "measure=normal"),
+                             "decisions 32", "measure=normal"),
                    choiceParam("clustering", "adaptive", {"adaptive", "threshold"},
                                "similar or different by one k-means iteration, or by the floor alone",
-                               "seed 004 slides 20-22", "mask=auto|geometry"),
+                               "[Reshetov 2012, slides 20-22]; decisions 32", "mask=auto|geometry"),
                    choiceParam(
                        "tuning", "on", {"on", "off", "adaptive"},
                        "drop different sub-samples that no neighbour shows; adaptive: nearer than half of the own "
                        "dissimilarity counts as shown",
-                       "seed 004 slides 32-33"),
+                       "[Reshetov 2012, slides 32-33]; decisions 34"),
                    choiceParam("neighbours", "quadrant", {"quadrant", "nearest"},
                                "who may show it: the three pixels on the sub-sample's side, or the one nearest to it",
                                "ours: nearest costs 1.8 dB on isolated edges", "tuning=on|adaptive"),
                    choiceParam("mask", "auto", {"auto", "geometry", "pass"},
                                "computed here, or the shot's mask pass; auto: the pass where both are the same",
-                               "methods/05 s.5.5"),
+                               "ours"),
                    flagParam("ids", true, "sub-samples on another object are different whatever their geometry",
                              "ours: the shot's mask pass does so"),
                    choiceParam("training", "all", {"all", "halfPlanes"}, "what the offsets were learned from",
-                               "methods/11 #33")},
+                               "decisions 33")},
         .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
             requireSubSamples(shot.subSamplePositionsPx, "rsaa", size_t(kRsaaMaxSamples));
             return std::make_unique<RsaaMethod>(Options(p), shot.subSamplePositionsPx);

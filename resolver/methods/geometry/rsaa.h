@@ -1,7 +1,7 @@
 // rsaa: resampling anti-aliasing. One shade per pixel, several geometry samples; the pixel's colour is fetched beside
 // its centre, at an offset learned for the pattern of sub-samples that lie on another surface.
 //
-// Source: Reshetov 2012 (seed 004); methods/05 s.5.5. Linear light.
+// Source: [Reshetov 2012]. Linear light.
 //   measure   dissimilarity of every sub-sample to the centre sample: SADP, relative depth or normal (kernels/sadp.h)
 //   cluster   similar or different, by one k-means iteration from the centroids 0 and the largest dissimilarity; all
 //             similar below an absolute floor: such a pixel keeps its colour
@@ -11,11 +11,11 @@
 // pass was made by the defaults of measure, floor, clustering and ids, so with these it is read (mask=auto): 4 bytes
 // per pixel in place of 20 for every sub-sample.
 //
-// Choices of ours: the k-means start and the floors (methods/11 #32), the training set (#33, rsaa_learn.h), the
-// neighbours that a sub-sample is compared with (#34: the talk says "closest outside samples"; taking only the nearest
-// one drops surfaces that continue across the pixel's other side, 0.8 / 1.8 / 2.9 dB on half-planes for 4 / 8 / 16).
-// Objects are told apart by their ids too (ids=off: geometry alone, as in the talk). The depth measure is capped at 2,
-// so that no surface seems farther than the background.
+// Choices of ours: the k-means start and the floors (decisions 32), the training set (decisions 33, rsaa_learn.h), the
+// neighbours that a sub-sample is compared with (decisions 34: the talk says "closest outside samples"; taking only the
+// nearest one drops surfaces that continue across the pixel's other side, 0.8 / 1.8 / 2.9 dB on half-planes for
+// 4 / 8 / 16). Objects are told apart by their ids too (ids=off: geometry alone, as in the talk). The depth measure is
+// capped at 2, so that no surface seems farther than the background.
 #pragma once
 #include "kernels/dissimilarity.h"
 #include "kernels/subsample_args.h"

@@ -14,7 +14,7 @@ namespace {
 
 using glm::dvec2;
 
-constexpr int kAngles = 720, kDistances = 301;     // methods/05 s.5.5.3
+constexpr int kAngles = 720, kDistances = 301;     // decisions 33
 constexpr int kWedges = 200000, kStrips = 100000;  // ditto
 constexpr double kReachPx = 0.75;                  // ditto; a line farther than 0.71 px misses the pixel
 constexpr double kMinorClassMass = 0.25;           // ditto: wedges and strips against half-planes
@@ -44,7 +44,7 @@ dvec2 unitVector(double turns) {
     }
 }
 
-class Random {  // SplitMix64, Steele et al. 2014
+class Random {  // SplitMix64, [Steele 2014]
   public:
     explicit Random(uint64_t seed) : state_(seed) {}
     double uniform(double lo, double hi) {
@@ -224,7 +224,7 @@ std::vector<float> rsaaTable(size_t samples, std::span<const RsaaEntry> trained)
 }
 
 RsaaErrors halfPlaneErrors(const std::vector<dvec2>& positionsPx, const std::vector<float>& table) {
-    constexpr int kCases = 100000;  // methods/05 s.5.5.5
+    constexpr int kCases = 100000;  // conventions 14
     RsaaErrors sum;
     Random random(kSeed + 1);  // not the seed of the training
     for (int i = 0; i < kCases; i++) {

@@ -1,8 +1,8 @@
-// Learns RSAA's look-up table: one resampling offset per mask of similar sub-samples (methods/05 s.5.5.3).
+// Learns RSAA's look-up table: one resampling offset per mask of similar sub-samples (decisions 33).
 //
-// The talk (seed 004, slides 28-30) learns the table from "a simple set that can be anti-aliased analytically" and does
-// not say which. Ours: black-and-white pictures around one pixel, with exact coverage by polygon clipping, of three
-// classes with total weights 1 : 1/4 : 1/4:
+// The talk [Reshetov 2012, slides 28-30] learns the table from "a simple set that can be anti-aliased analytically" and
+// does not say which. Ours: black-and-white pictures around one pixel, with exact coverage by polygon clipping, of
+// three classes with total weights 1 : 1/4 : 1/4:
 //   half-planes  720 angles x 301 distances in [-0.75, 0.75] px on a regular grid;
 //   wedges       2e5, two random half-planes whose lines cross at an apex in [-1, 1]^2;
 //   strips       1e5, 0.2 to 1.5 px wide, every position that can touch the pixel.
@@ -27,7 +27,7 @@ struct RsaaEntry {
 inline constexpr double kRsaaOffsetUnitPx = 1.0 / 256;  // 1/32 grid, three halvings of the step
 inline constexpr int kRsaaMaxSamples = 16;
 
-// The training classes: all three, or half-planes alone (the alternative of methods/11 #33).
+// The training classes: all three, or half-planes alone (the alternative of decisions 33).
 enum class RsaaTraining { all, halfPlanes };
 
 // The D3D11 standard pattern of 1, 2, 4, 8 or 16 sub-samples (shot/patterns.h).
@@ -41,8 +41,8 @@ std::vector<RsaaEntry> learnRsaa(const std::vector<glm::dvec2>& positionsPx, Rsa
 // the mean over the trained masks at the smallest Hamming distance.
 std::vector<float> rsaaTable(size_t samples, std::span<const RsaaEntry> trained);
 
-// Mean squared errors of a black-and-white pixel against its exact coverage, over random half-planes (methods/05
-// s.5.5.5): one sample at the centre, the mean of the sub-samples, and the resampled centre.
+// Mean squared errors of a black-and-white pixel against its exact coverage, over random half-planes (conventions 14):
+// one sample at the centre, the mean of the sub-samples, and the resampled centre.
 struct RsaaErrors {
     double noaa = 0, msaa = 0, rsaa = 0;
 };

@@ -19,8 +19,8 @@ TEST(RsaaLearn, ShippedOffsetsAreTheLearnedOnesToTheBit) {
     }
 }
 
-// methods/05 s.5.5.5 lists offsets learned from half-planes alone, +-0.06 of training noise.
-TEST(RsaaLearn, HalfPlaneOffsetsAreThoseOfTheSpecification) {
+// Offsets learned from half-planes alone, +-0.06 of training noise (conventions 14).
+TEST(RsaaLearn, HalfPlaneOffsets) {
     const auto table = rsaaTable(8, learnRsaa(d3dPattern(8), RsaaTraining::halfPlanes));
     struct Entry {
         size_t mask;
@@ -49,7 +49,7 @@ TEST(RsaaLearn, VerticalEdgesMoveByTheCoveredFraction) {
     }
 }
 
-// methods/05 s.5.5.5 reports 10.4 / 13.9 / 18.1 dB for half-planes alone; 8.6 / 12.7 / 15.0 for the sub-sample mean.
+// conventions 14: 10.4 / 13.9 / 18.1 dB for half-planes alone; 8.6 / 12.7 / 15.0 for the sub-sample mean.
 TEST(RsaaLearn, GainsOnHalfPlanes) {
     struct Expected {
         size_t samples;
@@ -78,7 +78,7 @@ TEST(RsaaLearn, MasksWithoutTrainingTakeTheMeanOfTheNearestOnes) {
     EXPECT_EQ(table[2 * 0b1111], 0.0f);  // all ones never move
     for (const float v : rsaaTable(4, {})) EXPECT_EQ(v, 0.0f);
 }
-// methods/05 s.5.5.5: half-planes realise 9 / 35 / 130 masks; s.5.5.3: tables of 16, 256 and 65536 entries.
+// conventions 14: half-planes realise 9 / 35 / 130 masks; tables have 16, 256 and 65536 entries.
 TEST(RsaaLearn, MasksThatHalfPlanesRealise) {
     for (const auto& [samples, masks] : {std::pair{4u, 9u}, {8u, 35u}, {16u, 130u}}) {
         const auto positionsPx = d3dPattern(samples);

@@ -251,7 +251,7 @@ TEST(Rsaa, TuningCostsNothingOnIsolatedEdges) {
     EXPECT_LT(halfPlaneGainDb(geometryOnly("neighbours=nearest"), positionsPx), untuned - 1);
 }
 
-// --- Degenerate cases (methods/08 s.8.3) ----------------------------------------------------------------------------
+// --- Degenerate cases (conventions 11) ------------------------------------------------------------------------------
 
 TEST(Rsaa, DegenerateGeometryKeepsTheColour) {
     const TestScene empty{{}, [](double, double) { return -1; }, glm::vec3(0.3f, 0.2f, 0.1f)};
@@ -266,7 +266,7 @@ TEST(Rsaa, DegenerateGeometryKeepsTheColour) {
         EXPECT_TRUE(resolved(method, f).samePixels(f.colorLinear)) << measure;
     }
 }
-// Their masks are all ones, and no offset of any table leaves the neighbouring pixels (methods/08 s.8.3).
+// Their masks are all ones, and no offset of any table leaves the neighbouring pixels (conventions 11).
 TEST(Rsaa, DegenerateMasksAreAllOnesAndOffsetsStayWithinAPixel) {
     const TestScene empty{{}, [](double, double) { return -1; }, glm::vec3(0.3f)};
     const TestScene wall{{{{0, 0, 1}, -4, glm::vec3(0.3f), 1}}, [](double, double) { return 0; }};
@@ -334,7 +334,7 @@ TEST(Rsaa, AsksForWhatItReads) {
     EXPECT_EQ(passes("rsaa:mask=geometry,tuning=off"), base | Pass::depth | Pass::normal | Pass::object);
     EXPECT_EQ(passes("rsaa:mask=pass"), base | Pass::depth | Pass::normal | Pass::object);
 }
-// methods/05 s.5.5.5, acceptance: the full picture of a scene of two planes, masks by SADP, 8 samples: 8 dB or more.
+// conventions 14: the full picture of a scene of two planes, masks by SADP, 8 samples: 8 dB or more.
 TEST(Rsaa, GainOnTheTwoPlanesScene) {
     SynthOptions o;
     o.scene = "two_planes", o.subsamples = "d3d8", o.jitter = "none";

@@ -1,6 +1,6 @@
 // sbaa: surface based anti-aliasing. The sub-samples are merged into at most K surfaces, each shaded once.
 //
-// Source: Salvi, Vidimce 2012; methods/05 s.5.6. Linear light.
+// Source: [Salvi 2012]. Linear light.
 //   cluster  one per object and tangent plane (kernels/surfaces.h)
 //   merge    clusters whose normals agree and that lie in one plane; of one object only (ids=off: whatever their
 //   object) reduce   while more than K: merge the two of smallest SADP; the one that covers more represents both shade

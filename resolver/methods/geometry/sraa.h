@@ -1,13 +1,13 @@
 // sraa: subpixel reconstruction anti-aliasing. The colour of every sub-sample is a cross-bilateral mean of the shaded
 // pixels around it, weighted by how near they are in place and geometry; the pixel is the mean of its sub-samples.
 //
-// Source: Chajdas, McGuire, Luebke 2011; methods/05 s.5.4. Linear light. Weight of pixel q for sub-sample i:
+// Source: [Chajdas 2011]. Linear light. Weight of pixel q for sub-sample i:
 //   product  exp(-|xq - xi|^2 / 2 sx^2) exp(-dz^2 / 2 sz^2) exp(-dn^2 / 2 sn^2), dz = distance of q's point from i's
 //   tangent
 //            plane relative to i's depth (distance=depth: relative depth difference), dn = 1 - cosine of the normals
 //   max      exp(-T max(1 - cosine, dz)), as in the authors' published kernel
 // Surface and background share nothing; nor do objects, with ids (always: the sigmas do not see a shallow relief from
-// afar). Choices of ours: the three sigmas (methods/11 #43); pixels outside the picture
+// afar). Choices of ours: the three sigmas (decisions 43); pixels outside the picture
 // are left out; a sub-sample without any usable pixel takes the pixel's own colour.
 #pragma once
 #include "kernels/subsample_args.h"

@@ -11,7 +11,7 @@ using namespace testing;
 
 const Line kLine{std::cos(0.4), std::sin(0.4), 22.3};
 
-// With telling geometry and constant colours it is coverage MSAA (methods/05 s.5.4): 8.6 / 12.7 / 15.0 dB.
+// With telling geometry and constant colours it is coverage MSAA (conventions 14): 8.6 / 12.7 / 15.0 dB.
 TEST(Sraa, GainOnHalfPlanesIsThatOfCoverage) {
     for (const char* method :
          {"sraa", "sraa:metric=max", "sraa:radius=2", "sraa:distance=depth", "sraa:ids=depth", "sraa:ids=always"}) {
@@ -65,7 +65,7 @@ TEST(Sraa, ObjectsOfOnePlaneAreToldApartByTheirIds) {
     EXPECT_LT(halfPlaneGainDb("sraa:ids=depth", d3dPattern(8), flat), 9.0);
     EXPECT_LT(halfPlaneGainDb("sraa", d3dPattern(8), flat), 9.0);
 }
-// methods/08 s.8.3: all weights may underflow; the nearest match is then taken, never 0/0.
+// conventions 11: all weights may underflow; the nearest match is then taken, never 0/0.
 TEST(Sraa, UnlikeNeighboursAndLoneSamplesStayFinite) {
     Frame f = renderPlanes(parallelPlanes(kLine), 33, 21, d3dPattern(4));
     for (const char* method : {"sraa:sigmaZ=0.0001,sigmaN=0.001", "sraa:metric=max,sharpness=10000", "sraa"}) {

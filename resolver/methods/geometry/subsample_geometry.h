@@ -1,4 +1,4 @@
-// What the geometry-aware methods know of a frame's sub-samples, as plain views for kernels (methods/05 s.5.0).
+// What the geometry-aware methods know of a frame's sub-samples, as plain views for kernels (conventions 3).
 //
 // Positions. The frame's colour, depth, normal and object were sampled at the pixel centre plus the jitter ("centre
 // sample"); sub-sample k lies at its position from there, as a GPU jitters all samples of a pixel together. So every

@@ -45,12 +45,12 @@ MethodDescriptor accumDescriptor() {
             .title = "Accumulation buffer",
             .family = "reference",
             .summary = "Mean of the jittered frames of a static scene.",
-            .source = "Haeberli & Akeley 1990; methods/01 s.1.3",
+            .source = "[Haeberli 1990]",
             .passes = Pass::color,
             .temporal = true,
             .fixedSet = true,
             .params = {intParam("samples", "128", 1, 100000, "frames averaged; later frames leave the mean as it is",
-                                "seed 000 s.4.1.3"),
+                                "[Oliveros 2018, 4.1.3]"),
                        averagedSpaceParam()},
             .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
                 if (!shot.isStatic)

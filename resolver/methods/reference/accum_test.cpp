@@ -10,7 +10,7 @@ namespace aa {
 namespace {
 using namespace testing;
 
-// methods/01 s.1.3: the mean of the first `samples` frames in linear light, exact in double, and nothing after them.
+// The mean of the first `samples` frames in linear light, exact in double, and nothing after them.
 TEST(Accum, MeanOfTheFirstFrames) {
     for (const int samples : {1, 5, 16}) {
         RunningMethod m = running("accum:samples=" + std::to_string(samples), 9, 7, true);

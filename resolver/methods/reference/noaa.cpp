@@ -17,7 +17,7 @@ MethodDescriptor noaaDescriptor() {
             .title = "No anti-aliasing",
             .family = "reference",
             .summary = "The colour samples as they are: the lower baseline.",
-            .source = "methods/01 s.1.1",
+            .source = "the shot's own samples",
             .passes = Pass::color,
             .create = [](const Params&, const ShotInfo&) { return std::make_unique<NoAa>(); }};
 }

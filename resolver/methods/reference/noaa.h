@@ -1,4 +1,4 @@
-// noaa: no anti-aliasing, the lower baseline. Source: seed 000 s.5; methods/01 s.1.1. Output = input, bit exact.
+// noaa: no anti-aliasing, the lower baseline. Output = input, bit exact.
 #pragma once
 #include "methods/method.h"
 

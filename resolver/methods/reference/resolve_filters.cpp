@@ -11,7 +11,7 @@ namespace aa {
 namespace {
 constexpr double kPi = std::numbers::pi;
 
-double cubicWeight(double b, double c, double t) {  // Mitchell and Netravali 1988
+double cubicWeight(double b, double c, double t) {  // [Mitchell 1988]
     if (t < 1) return ((12 - 9 * b - 6 * c) * t * t * t + (-18 + 12 * b + 6 * c) * t * t + 6 - 2 * b) / 6;
     if (t < 2)
         return ((-b - 6 * c) * t * t * t + (6 * b + 30 * c) * t * t - (12 * b + 48 * c) * t + 8 * b + 24 * c) / 6;
@@ -146,34 +146,35 @@ class Resolve : public Method {
 }  // namespace
 
 MethodDescriptor resolveDescriptor() {
-    return {.id = "resolve",
-            .title = "Resolve filters",
-            .family = "reference",
-            .summary = "A reconstruction filter over the shaded sub-samples of the pixel and its neighbours.",
-            .source = "MSAAFilter; methods/01 s.1.8",
-            .passes = Pass::subsamples | Pass::subsampleColor,
-            .params = {filterParam("methods/01 s.1.8"),
-                       realParam("diameter", "0", 0, 8, "px; 0: the filter's own (box 1, lanczos 2 * lobes, others 2)",
-                                 "MSAAFilter",
-                                 "filter=box|tent|gaussian|smoothstep|bspline|mitchell|catmullRom|cubic|blackmanHarris|"
-                                 "sinc|lanczos"),
-                       realParam("sigma", "0.5", 0.05, 4, "width in radii", "MSAAFilter", "filter=gaussian"),
-                       realParam("b", "0.3333", 0, 1, "B of the cubic", "Mitchell and Netravali 1988", "filter=cubic"),
-                       realParam("c", "0.3333", 0, 1, "C of the cubic", "Mitchell and Netravali 1988", "filter=cubic"),
-                       choiceParam("sincZeros", "halfPixel", {"halfPixel", "pixel"},
-                                   "where the sinc crosses zero first", "MSAAFilter; pixel: textbook", "filter=sinc"),
-                       intParam("lobes", "2", 1, 4, "lobes of the window", "textbook", "filter=lanczos"),
-                       flagParam("inverseLuminance", false, "weigh samples by 1 / (1 + luminance)", "MSAAFilter"),
-                       realParam("exposure", "0", -10, 10, "EV applied to that luminance", "MSAAFilter",
-                                 "inverseLuminance=on")},
-            .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
-                if (shot.subSamplePositionsPx.empty())
-                    throw InputError(
-                        "resolve: filters sub-samples, and the shot's manifest lists no sub-sample positions; export "
-                        "the shot "
-                        "for resolve");
-                return std::make_unique<Resolve>(p, shot);
-            }};
+    return {
+        .id = "resolve",
+        .title = "Resolve filters",
+        .family = "reference",
+        .summary = "A reconstruction filter over the shaded sub-samples of the pixel and its neighbours.",
+        .source = "[Pettineo 2012]",
+        .passes = Pass::subsamples | Pass::subsampleColor,
+        .params = {filterParam("[Pettineo 2012]"),
+                   realParam("diameter", "0", 0, 8, "px; 0: the filter's own (box 1, lanczos 2 * lobes, others 2)",
+                             "[Pettineo 2012]",
+                             "filter=box|tent|gaussian|smoothstep|bspline|mitchell|catmullRom|cubic|blackmanHarris|"
+                             "sinc|lanczos"),
+                   realParam("sigma", "0.5", 0.05, 4, "width in radii", "[Pettineo 2012]", "filter=gaussian"),
+                   realParam("b", "0.3333", 0, 1, "B of the cubic", "[Mitchell 1988]", "filter=cubic"),
+                   realParam("c", "0.3333", 0, 1, "C of the cubic", "[Mitchell 1988]", "filter=cubic"),
+                   choiceParam("sincZeros", "halfPixel", {"halfPixel", "pixel"}, "where the sinc crosses zero first",
+                               "[Pettineo 2012]; pixel: textbook", "filter=sinc"),
+                   intParam("lobes", "2", 1, 4, "lobes of the window", "textbook", "filter=lanczos"),
+                   flagParam("inverseLuminance", false, "weigh samples by 1 / (1 + luminance)", "[Pettineo 2012]"),
+                   realParam("exposure", "0", -10, 10, "EV applied to that luminance", "[Pettineo 2012]",
+                             "inverseLuminance=on")},
+        .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
+            if (shot.subSamplePositionsPx.empty())
+                throw InputError(
+                    "resolve: filters sub-samples, and the shot's manifest lists no sub-sample positions; export "
+                    "the shot "
+                    "for resolve");
+            return std::make_unique<Resolve>(p, shot);
+        }};
 }
 
 }  // namespace aa

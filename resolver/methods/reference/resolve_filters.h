@@ -1,9 +1,9 @@
-// resolve: reconstruction filters over the sub-samples of a neighbourhood (MSAAFilter; methods/01 s.1.8).
+// resolve: reconstruction filters over the sub-samples of a neighbourhood [Pettineo 2012].
 //
 // out = sum w c / sum w over all sub-samples within the filter's radius r = diameter / 2, w = f(|dx| / r) f(|dy| / r),
 // colours clamped to >= 0 before, the result after. Linear light, offsets in px from the output pixel's centre.
 // quincunx: half of the centre sample and an eighth of each of the four corner samples, which the pixel shares with its
-// neighbours (NVIDIA 2001); the pattern quincunx only.
+// neighbours [NVIDIA 2001]; the pattern quincunx only.
 #pragma once
 #include "methods/method.h"
 #include "methods/reference/resolve_filters_kernels.h"

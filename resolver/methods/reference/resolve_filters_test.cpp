@@ -82,7 +82,7 @@ TEST(ResolveFilters, FootprintReachesIntoNeighbours) {
     for (const auto& t : resolveTaps({F::box, 3}, {{0, 0}})) EXPECT_LE(std::max(std::abs(t.dx), std::abs(t.dy)), 1);
     EXPECT_EQ(resolveTaps({F::box, 3}, {{0, 0}}).size(), 9u);
 }
-// methods/08 s.8.3: lobes that cancel leave the box, for all pixels or for the one where luminance weights cancel.
+// conventions 11: lobes that cancel leave the box, for all pixels or for the one where luminance weights cancel.
 TEST(ResolveFilters, CancellingWeightsLeaveTheBox) {
     const auto taps = resolveTaps({F::sinc, 1}, {{0.5, 0}, {-0.5, 0}});  // both where the sinc is zero
     ASSERT_EQ(taps.size(), 2u);

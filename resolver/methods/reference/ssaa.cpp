@@ -28,7 +28,7 @@ MethodDescriptor ssaaDescriptor() {
             .title = "Supersampling",
             .family = "reference",
             .summary = "Mean of the shaded sub-samples: a box filter one pixel wide.",
-            .source = "Leler 1980; methods/01 s.1.2",
+            .source = "[Leler 1980]",
             .passes = Pass::subsamples | Pass::subsampleColor,
             .params = {averagedSpaceParam()},
             .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {

@@ -1,4 +1,4 @@
-// Areas under a revectorised edge, shared by the morphological methods (methods/03 s.3.1 and 3.2.3).
+// Areas under a revectorised edge, shared by the morphological methods ([Reshetov 2009], [Jimenez 2012]).
 #pragma once
 #include "kernels/lanes.h"
 

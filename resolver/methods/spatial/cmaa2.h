@@ -1,4 +1,4 @@
-// CMAA2: conservative morphological anti-aliasing, version 2.3 (Intel 2018; methods/03 s.3.7).
+// CMAA2: conservative morphological anti-aliasing, version 2.3 [Strugar 2018].
 //
 // 1. Edges of sqrt-encoded luma between neighbours, less a share of the edges that meet them. 2. Pixels with two
 // adjacent edges are candidates: each is blurred a little toward its edges. 3. Candidates that are the step of a

@@ -36,7 +36,7 @@ TEST(Cmaa2, SharpModeByHand) {
     EXPECT_NEAR(out.c[0].at(20, 4), .140625, 1e-6);
 }
 
-// CMAA2 written a second time from the specification: per pixel and in double, clamped reads, results in lists.
+// CMAA2 [Strugar 2018] written a second time: per pixel and in double, clamped reads, results in lists.
 struct Edges4 {
     double r = 0, g = 0, b = 0, a = 0;
 };
@@ -172,7 +172,7 @@ class ReferenceCmaa2 {
     std::vector<std::vector<std::pair<double, std::array<double, 3>>>> results_;
 };
 
-TEST(Cmaa2, ConformsToTheSpecification) {
+TEST(Cmaa2, ConformsToASecondForm) {
     struct Case {
         std::string spec;
         double threshold;

@@ -1,5 +1,5 @@
-// FXAA and SMAA against references written independently from the specification, on seeded images of several kinds that
-// nothing was tuned on: at most 1 code of 255 apart, encoded, outside the ties that the specification names.
+// FXAA and SMAA against references written without the kernels, on seeded images of several kinds that nothing was
+// tuned on: at most 1 code of 255 apart, encoded, outside the ties of decisions 37.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -123,7 +123,7 @@ void compare(const std::string& spec, const Picture& p, Reference&& reference) {
     EXPECT_LT(double(n.ties), 0.05 * double(n.pixels)) << spec << " on " << p.kind;
 }
 
-// Cumulative distances as the specification's third column gives them.
+// Cumulative distances of the search patterns [Lottes 2011].
 const std::pair<const char*, std::vector<double>> kDistances311[] = {
     {"10", {1.5, 4.5, 16.5}},
     {"11", {1, 2.5, 5.5, 17.5}},

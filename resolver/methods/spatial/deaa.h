@@ -1,4 +1,4 @@
-// DEAA: directionally adaptive edge anti-aliasing (Iourcha, Yang, Pomianowski 2009; methods/04 s.4.4, reconstructed).
+// DEAA: directionally adaptive edge anti-aliasing ([Iourcha 2009], reconstructed).
 //
 // 1. Pixels whose sub-samples differ in colour are edge pixels; isolated ones and those in the midst of nothing but
 // edges keep the box resolve. 2. A plane is fitted to the luma of all sub-samples of the 3x3 window; where it does not

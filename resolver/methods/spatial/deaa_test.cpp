@@ -85,7 +85,7 @@ TEST(Deaa, KeepsTheBoxWhereNoPlaneFits) {
     EXPECT_TRUE(resolved("deaa", flat).samePixels(resolved("ssaa", flat)));
 }
 TEST(Deaa, NeedsSubSamples) { EXPECT_THROW(parseMethod("deaa").create({.width = 8, .height = 8}), InputError); }
-// methods/04 s.4.4 step 2 and the degenerate cases: the box stays where it says so.
+// Isolated and complex pixels, and the degenerate cases: the box stays.
 TEST(Deaa, KeepsTheBoxOfIsolatedAndComplexPixels) {
     const auto keepsBox = [](const Frame& f) {
         return resolved("deaa:fitTolerance=1", f).samePixels(resolved("ssaa", f));

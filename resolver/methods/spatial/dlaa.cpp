@@ -81,7 +81,7 @@ MethodDescriptor dlaaDescriptor() {
         .title = "DLAA",
         .family = "spatial",
         .summary = "Blurs along short edges and matches long ones to the blur along them.",
-        .source = "Andreev 2011 (public ports); methods/04 s.4.1",
+        .source = "[Andreev 2011], public ports",
         .passes = Pass::color,
         .input = Space::encoded,
         .output = Space::encoded,

@@ -1,4 +1,4 @@
-// DLAA: directionally localised anti-aliasing (Andreev 2011; methods/04 s.4.1).
+// DLAA: directionally localised anti-aliasing [Andreev 2011].
 //
 // 1. A high-pass gives the strength of edges. 2. Short edges: blur along the direction in which the other direction's
 // high-pass is strong. 3. Long edges, where the strength over 16 px in one direction dominates: shift across the edge

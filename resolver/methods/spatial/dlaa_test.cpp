@@ -11,7 +11,7 @@ namespace aa {
 namespace {
 using namespace aa::testing;
 
-// methods/04 s.4.1 written a second time with a general bilinear fetch, per pixel and in double. `literal`: with the
+// [Andreev 2011] written a second time with a general bilinear fetch, per pixel and in double. `literal`: with the
 // jumps of the publication where ours fade (dlaa_kernels.h).
 class ReferenceDlaa {
   public:

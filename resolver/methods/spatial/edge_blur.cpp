@@ -45,13 +45,13 @@ MethodDescriptor nfaaDescriptor() {
             .title = "NFAA",
             .family = "spatial",
             .summary = "Averages five taps along the edge, as far apart as the luma gradient is steep.",
-            .source = "normal-filter AA (public port); methods/04 s.4.2",
+            .source = "[Styves n.d.], public port",
             .passes = Pass::color,
             .input = Space::encoded,
             .output = Space::encoded,
             .params = {intParam("scale", "1", 1, 3, "distance of the eight lumas, px", "public port"),
                        realParam("strength", "1", 0, 4, "length of the blur per gradient, px", "public port"),
-                       realParam("longest", "3", 0.5, 5, "largest length of the blur, px", "methods/08 s.8.3")},
+                       realParam("longest", "3", 0.5, 5, "largest length of the blur, px", "conventions 11")},
             .create =
                 [](const Params& p, const ShotInfo&) {
                     EdgeBlurArgs args{};
@@ -68,7 +68,7 @@ MethodDescriptor ssssaaDescriptor() {
             .title = "Screen-space SSAA",
             .family = "spatial",
             .summary = "Averages five taps within a pixel along the edge where the luma gradient is strong.",
-            .source = "reconstructed from the shader of that name; methods/04 s.4.3",
+            .source = "reconstructed from the shader of that name",
             .passes = Pass::color,
             .input = Space::encoded,
             .output = Space::encoded,

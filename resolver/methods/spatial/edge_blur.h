@@ -1,4 +1,4 @@
-// Blurs along the edge that the luma gradient shows (methods/04 s.4.2 and 4.3): NFAA and "screen-space SSAA".
+// Blurs along the edge that the luma gradient shows: NFAA [Styves n.d.] and "screen-space SSAA".
 //
 // Both turn the gradient by 90 degrees and average a few bilinear taps along it. NFAA steps as far as the gradient is
 // steep and has no threshold; ssssaa steps half a pixel and one pixel where the gradient reaches a threshold.

@@ -6,7 +6,7 @@
 namespace aa {
 namespace {
 
-// FXAA 3.11, methods/02 s.2.1: 10-15 medium dither, 20-29 less dither, 39 no dither.
+// [Lottes 2011]: 10-15 medium dither, 20-29 less dither, 39 no dither.
 const std::vector<FxaaPreset>& presets311() {
     static const std::vector<FxaaPreset> presets = {
         {"10", {1.5, 3, 12}},
@@ -61,23 +61,24 @@ MethodDescriptor fxaa311Descriptor() {
         .title = "FXAA 3.11 Quality",
         .family = "spatial",
         .summary = "Finds the ends of each luma edge along its row or column and shifts the sample across it.",
-        .source = "Lottes, FXAA 3.11; methods/02 s.2.1",
+        .source = "[Lottes 2011]",
         .passes = Pass::color,
         .input = Space::encoded,
         .output = Space::encoded,
         .params = {choiceParam("preset", "12", presetNames(presets311()),
-                               "search pattern: 10-15 medium dither, 20-29 less dither, 39 no dither", "FXAA 3.11"),
-                   realParam("subpix", "0.75", 0, 1, "removal of sub-pixel aliasing, 0 off", "FXAA 3.11"),
+                               "search pattern: 10-15 medium dither, 20-29 less dither, 39 no dither", "[Lottes 2011]"),
+                   realParam("subpix", "0.75", 0, 1, "removal of sub-pixel aliasing, 0 off", "[Lottes 2011]"),
                    realParam("edgeThreshold", "0.166", 0, 1,
-                             "contrast that makes an edge, relative to the local maximum", "FXAA 3.11"),
-                   realParam("edgeThresholdMin", "0.0833", 0, 1, "least luma contrast that makes an edge", "FXAA 3.11"),
+                             "contrast that makes an edge, relative to the local maximum", "[Lottes 2011]"),
+                   realParam("edgeThresholdMin", "0.0833", 0, 1, "least luma contrast that makes an edge",
+                             "[Lottes 2011]"),
                    choiceParam("luma", "rec601", {"rec601", "sqrtLin", "green"}, "luma that decides where edges are",
-                               "FXAA 3.11"),
+                               "[Lottes 2011]"),
                    choiceParam("blendSpace", "encoded", {"encoded", "linear"}, "space in which pixels are blended",
-                               "FXAA 3.11, author's advice")},
+                               "[Lottes 2011], author's advice")},
         .create = [](const Params& p, const ShotInfo&) { return std::make_unique<Fxaa311>(p); },
         .outputSpace =
             [](const Params& p) { return p.choice("blendSpace") == "linear" ? Space::linear : Space::encoded; },
-        .reachPx = 30};  // methods/08 s.8.4
+        .reachPx = 30};  // conventions 12
 }
 }  // namespace aa

@@ -1,5 +1,5 @@
-// The FXAA family (T. Lottes; methods/02): blends every pixel with the neighbour across the edge that it lies on, by
-// the share that an edge through the two ends of the visible step would cover.
+// The FXAA family ([Lottes 2009], [Lottes 2011], [Stanard n.d.]): blends every pixel with the neighbour across the edge
+// that it lies on, by the share that an edge through the two ends of the visible step would cover.
 //
 // fxaa311: where the local luma contrast is high enough, take the direction of the edge, the side with the steeper
 // gradient, walk along the boundary both ways until the luma of the pair changes, and shift the sampling point across
@@ -22,7 +22,8 @@ inline constexpr int kFxaaMaxSteps = 12;
 inline constexpr int kFxaaWindows = 3;
 inline constexpr int kFxaaBorder = 32;  // repeated pixels around the lumas: more than a search overshoots the image
 
-// Common to the family: a luma plane with filled border, the colour to filter, thresholds (methods/02).
+// Common to the family: a luma plane with filled border, the colour to filter, thresholds ([Lottes 2009],
+// [Lottes 2011]).
 struct FxaaArgs {
     const float* luma;
     const float* transposedLuma;  // for searches along columns; null in the variants that search step by step

@@ -65,7 +65,7 @@ class FxaaMethod : public Method {
     size_t stateBytes() const override { return luma_.bytes() + transposed_.bytes(); }
     std::vector<DebugLayer> debugLayers() const override {
         if (!keepDebugLayers) return {};
-        // Gold: horizontal; blue: vertical (methods/02 s.2.2).
+        // Gold: horizontal; blue: vertical [Lottes 2009].
         std::vector<PlaneF> colour(3, PlaneF(orientation_.width(), orientation_.height()));
         for (int y = 0; y < orientation_.height(); y++)
             for (int x = 0; x < orientation_.width(); x++) {

@@ -1,11 +1,11 @@
-// Steps that the FXAA variants share (methods/02).
+// Steps that the FXAA variants share.
 #pragma once
 #include "kernels/sparse.h"
 #include "methods/spatial/fxaa.h"
 
 // Edge pixels are decided in double in every precision: three of the tests compare sums that are algebraically equal
-// for many neighbourhoods (methods/02 s.2.1 step 2), and the specified tolerance of 1e-6 is far above double's rounding
-// but not above float's.
+// for many neighbourhoods (decisions 37), and the tolerance of 1e-6 is far above double's rounding but not above
+// float's.
 namespace AA_ARCH {
 using namespace aa;
 
@@ -68,9 +68,9 @@ struct Classes {
 AA_INLINE void classify(const float* l, long s, Classes& to, int at) {
     for (int i = 0; i < 8; i += kWide) {
         const float* const p = l + i;
-        const Wide m = loadWide(p), n = loadWide(p - s), so = loadWide(p + s), w = loadWide(p - 1),
-                   e = loadWide(p + 1), nw = loadWide(p - s - 1), ne = loadWide(p - s + 1),
-                   sw = loadWide(p + s - 1), se = loadWide(p + s + 1);
+        const Wide m = loadWide(p), n = loadWide(p - s), so = loadWide(p + s), w = loadWide(p - 1), e = loadWide(p + 1),
+                   nw = loadWide(p - s - 1), ne = loadWide(p - s + 1), sw = loadWide(p + s - 1),
+                   se = loadWide(p + s + 1);
         const auto horizontal = runsHorizontally(m, n, so, w, e, nw, ne, sw, se);
         to.horizontal |= uint64_t(maskOf(horizontal)) << (at + i);
         store(abs(select(horizontal, n, w) - m), to.negativeStep + at + i);

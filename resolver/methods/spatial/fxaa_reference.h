@@ -1,5 +1,4 @@
-// Test support: the FXAA family written a second time from methods/02, per pixel and in double. Shares no code with the
-// kernels.
+// Test support: the FXAA family written a second time, per pixel and in double. Shares no code with the kernels.
 #pragma once
 #include <algorithm>
 #include <array>

@@ -25,7 +25,7 @@ struct Conformance {
     double subpix = 0.75, thr = 0.166, thrMin = 0.0833;
 };
 
-TEST(Fxaa311, StepVectorOfTheSpecification) {
+TEST(Fxaa311, StepVector) {
     const Rgb p12 = resolveOnce("fxaa311:preset=12", stepImage()), p39 = resolveOnce("fxaa311:preset=39", stepImage());
     const int x12[] = {20, 24, 28, 30, 31, 32, 33, 35, 39, 44};
     const double row4[] = {.0504, .2069, .3200, .3913, .4535, .5465, .6087, .6800, .7931, .9496};
@@ -105,7 +105,7 @@ TEST(Fxaa311, RejectsParametersOutOfRange) {
     EXPECT_THROW(parseMethod("fxaa311:subpix=1.5"), UsageError);
     EXPECT_THROW(parseMethod("fxaa311:edgeThreshold=-0.1"), UsageError);
 }
-// methods/02 s.2.1 step 2: where both sums are the same by construction the span is horizontal, in every precision.
+// decisions 37: where both sums are the same by construction the span is horizontal, in every precision.
 TEST(Fxaa311, StructuralTiesAreHorizontal) {
     Rgb image(24, 17, 0.13f);
     for (auto& p : image.c) {
@@ -130,7 +130,7 @@ TEST(Fxaa311, StructuralTiesAreHorizontal) {
         EXPECT_TRUE(vertical(19, 9));
     }
 }
-// methods/02 s.2.1, degenerate: with both thresholds 0 a flat pixel still exits, before it divides by its range.
+// conventions 11: with both thresholds 0 a flat pixel still exits, before it divides by its range.
 TEST(Fxaa311, ThresholdsOfZeroLeaveFlatPixelsAlone) {
     Rgb image(40, 12, 0.4f);
     for (auto& p : image.c) p.at(20, 6) = 0.400001f;

@@ -13,7 +13,7 @@ class Fxaa1 : public FxaaMethod {
             double cap;
             bool cross;
         };
-        // FXAA white paper (2011), methods/02 s.2.2. Presets above 3 only lengthen the search.
+        // [Lottes 2009]. Presets above 3 only lengthen the search.
         static const Preset presets[] = {
             {1.f / 4, 1.f / 12, 2, 4, 2.0 / 3, true},   {1.f / 8, 1.f / 16, 4, 3, 3.0 / 4, false},
             {1.f / 8, 1.f / 24, 8, 2, 3.0 / 4, false},  {1.f / 8, 1.f / 24, 16, 1, 3.0 / 4, false},
@@ -92,58 +92,59 @@ MethodDescriptor fxaa1Descriptor() {
         .title = "FXAA 1",
         .family = "spatial",
         .summary = "White-paper FXAA: exhaustive search of both edge ends, 3x3 low-pass against sub-pixel aliasing.",
-        .source = "Lottes, FXAA white paper; methods/02 s.2.2",
+        .source = "[Lottes 2009]",
         .passes = Pass::color,
         .input = Space::encoded,
         .output = Space::encoded,
         .params = {choiceParam("preset", "3", {"0", "1", "2", "3", "4", "5"},
-                               "thresholds and search length; above 3 only longer", "FXAA white paper")},
+                               "thresholds and search length; above 3 only longer", "[Lottes 2009]")},
         .create = [](const Params& p, const ShotInfo&) { return std::make_unique<Fxaa1>(p); },
         .reachPx = 36};  // preset 5 reads 32 px along the edge and its neighbours
 }
 
 MethodDescriptor fxaaCsDescriptor() {
-    return {.id = "fxaacs",
-            .title = "FXAA for compute shaders",
-            .family = "spatial",
-            .summary = "FXAA with log-luma decisions and a blend with one neighbour in linear light.",
-            .source = "Stanard, MiniEngine; methods/02 s.2.3",
-            .passes = Pass::color,
-            .input = Space::encoded,
-            .output = Space::linear,
-            .params = {choiceParam("preset", "25", {"25", "39"}, "search pattern", "MiniEngine"),
-                       choiceParam("longest", "26.5", {"26.5", "36.5"}, "distance of the last, unsampled step, px",
-                                   "methods/11 #38", "preset=39"),
-                       realParam("contrastThreshold", "0.175", 0.01, 1, "least range of log luma that makes an edge",
-                                 "MiniEngine"),
-                       realParam("subpixelRemoval", "0.5", 0, 1, "removal of sub-pixel aliasing, 0 off", "MiniEngine"),
-                       choiceParam("blendSpace", "linear", {"linear", "encoded"}, "space in which pixels are blended",
-                                   "MiniEngine")},
-            .create = [](const Params& p, const ShotInfo&) { return std::make_unique<FxaaCs>(p); },
-            .outputSpace =
-                [](const Params& p) { return p.choice("blendSpace") == "linear" ? Space::linear : Space::encoded; },
-            .reachPx = 30};  // as fxaa311
+    return {
+        .id = "fxaacs",
+        .title = "FXAA for compute shaders",
+        .family = "spatial",
+        .summary = "FXAA with log-luma decisions and a blend with one neighbour in linear light.",
+        .source = "[Stanard n.d.]",
+        .passes = Pass::color,
+        .input = Space::encoded,
+        .output = Space::linear,
+        .params = {choiceParam("preset", "25", {"25", "39"}, "search pattern", "[Stanard n.d.]"),
+                   choiceParam("longest", "26.5", {"26.5", "36.5"}, "distance of the last, unsampled step, px",
+                               "decisions 38", "preset=39"),
+                   realParam("contrastThreshold", "0.175", 0.01, 1, "least range of log luma that makes an edge",
+                             "[Stanard n.d.]"),
+                   realParam("subpixelRemoval", "0.5", 0, 1, "removal of sub-pixel aliasing, 0 off", "[Stanard n.d.]"),
+                   choiceParam("blendSpace", "linear", {"linear", "encoded"}, "space in which pixels are blended",
+                               "[Stanard n.d.]")},
+        .create = [](const Params& p, const ShotInfo&) { return std::make_unique<FxaaCs>(p); },
+        .outputSpace =
+            [](const Params& p) { return p.choice("blendSpace") == "linear" ? Space::linear : Space::encoded; },
+        .reachPx = 30};  // as fxaa311
 }
 
 MethodDescriptor fxaaConsoleDescriptor() {
-    return {
-        .id = "fxaaconsole",
-        .title = "FXAA 3.11 Console",
-        .family = "spatial",
-        .summary = "Four taps along the local edge direction, found from the luma of the pixel's corners.",
-        .source = "Lottes, FXAA 3.11 console path; methods/02 s.2.4",
-        .passes = Pass::color,
-        .input = Space::encoded,
-        .output = Space::encoded,
-        .params = {realParam("reach", "0.5", 0.1, 1, "distance of the inner taps, px; 0.33 is sharper", "FXAA 3.11"),
-                   realParam("sharpness", "8", 1, 16, "how soon the outer taps reach 4 px; 4 softer, 2 very soft",
-                             "FXAA 3.11"),
-                   realParam("edgeThreshold", "0.125", 0, 1, "contrast that makes an edge, relative to the maximum",
-                             "FXAA 3.11"),
-                   realParam("edgeThresholdMin", "0.05", 0.01, 1, "least luma contrast that makes an edge",
-                             "FXAA 3.11")},
-        .create = [](const Params& p, const ShotInfo&) { return std::make_unique<FxaaConsole>(p); },
-        .reachPx = 6};  // outer taps at 4 px, bilinear
+    return {.id = "fxaaconsole",
+            .title = "FXAA 3.11 Console",
+            .family = "spatial",
+            .summary = "Four taps along the local edge direction, found from the luma of the pixel's corners.",
+            .source = "[Lottes 2011], console path",
+            .passes = Pass::color,
+            .input = Space::encoded,
+            .output = Space::encoded,
+            .params = {realParam("reach", "0.5", 0.1, 1, "distance of the inner taps, px; 0.33 is sharper",
+                                 "[Lottes 2011]"),
+                       realParam("sharpness", "8", 1, 16, "how soon the outer taps reach 4 px; 4 softer, 2 very soft",
+                                 "[Lottes 2011]"),
+                       realParam("edgeThreshold", "0.125", 0, 1, "contrast that makes an edge, relative to the maximum",
+                                 "[Lottes 2011]"),
+                       realParam("edgeThresholdMin", "0.05", 0.01, 1, "least luma contrast that makes an edge",
+                                 "[Lottes 2011]")},
+            .create = [](const Params& p, const ShotInfo&) { return std::make_unique<FxaaConsole>(p); },
+            .reachPx = 6};  // outer taps at 4 px, bilinear
 }
 
 }  // namespace aa

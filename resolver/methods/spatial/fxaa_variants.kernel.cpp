@@ -2,7 +2,7 @@
 
 namespace AA_ARCH {
 
-// ---- FXAA 1 (white paper): methods/02 s.2.2
+// ---- FXAA 1 [Lottes 2009]
 
 // The line between a pixel and the neighbour across it, walked step by step.
 struct SteppedLine {
@@ -81,7 +81,7 @@ __attribute__((flatten)) void fxaa1Rows(const Fxaa1Args& a, int y0, int y1) {
         a, y0, y1, [&](int x, int y) __attribute__((always_inline)) { fxaa1Pixel(a, x, y); });
 }
 
-// ---- FXAA for compute shaders: methods/02 s.2.3
+// ---- FXAA for compute shaders [Stanard n.d.]
 
 AA_INLINE void fxaaCsPixel(const FxaaCsArgs& a, int x, int y, int i, const Classes& classes) {
     const double contrast = smooth(classes.contrast[i]);
@@ -105,7 +105,7 @@ __attribute__((flatten)) void fxaaCsRows(const FxaaCsArgs& a, int y0, int y1) {
         });
 }
 
-// ---- FXAA console: methods/02 s.2.4
+// ---- FXAA console [Lottes 2011]
 
 AA_INLINE double bilinear(const float* plane, const FxaaArgs& a, double px, double py) {  // centres at whole numbers
     const double ax = floor(px), ay = floor(py), fx = px - ax, fy = py - ay;

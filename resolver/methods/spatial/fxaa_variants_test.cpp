@@ -18,7 +18,7 @@ void expectRow4(const std::string& spec, const std::array<double, 12>& row) {
     for (size_t i = 0; i < 12; i++) EXPECT_NEAR(out.c[1].at(kX[i], 4), row[i], 6e-5) << spec << " x " << kX[i];
 }
 
-TEST(Fxaa1, StepVectorsOfTheSpecification) {
+TEST(Fxaa1, StepVectors) {
     expectRow4("fxaa1:preset=3", {0, .0152, .0862, .1800, .3095, .3947, .4444, .5556, .6053, .6905, .8200, .9333});
     expectRow4("fxaa1:preset=5", {.1226, .1735, .2333, .3049, .3919, .4429, .4619, .5381, .5571, .6081, .6951, .7826});
     for (const char* spec : {"fxaa1:preset=3", "fxaa1:preset=5"})
@@ -45,7 +45,7 @@ TEST(Fxaa1, LowPassRemovesSinglePixels) {
     EXPECT_NEAR(fast.c[0].at(4, 4), 2.0 / 3 / 5 + 1.0 / 3, 1e-6);
 }
 
-TEST(FxaaCs, StepVectorOfTheSpecification) {
+TEST(FxaaCs, StepVector) {
     expectRow4("fxaacs", {.0315, .0315, .1081, .2258, .3333, .4000, .4574, .5426, .6000, .6667, .7742, .8919});
     const Rgb out = resolveOnce("fxaacs", stepImage());
     EXPECT_NEAR(out.c[2].at(24, 3), .9685, 6e-5);
@@ -86,8 +86,7 @@ TEST(FxaaConsole, BlursAlongTheEdgeOnly) {
     EXPECT_NEAR(diagonal.c[0].at(9, 10) + diagonal.c[0].at(10, 10), 1.0f, 0.02f);
 }
 // A line one pixel thin, dark alike above and below, that ends at x = 20 where one side turns bright: that side's pair
-// shows no end, the other's does. Ties of the two gradients go up in 3.11 and 1 (methods/02 s.2.1, 2.2), down in CS
-// (s.2.3).
+// shows no end, the other's does. Ties of the two gradients go up in 3.11 and 1, down in CS.
 TEST(FxaaFamily, TiesOfTheTwoSidesGoWhereTheVariantSays) {
     for (const bool brightBelow : {false, true}) {
         Rgb image(48, 15, 0.0f);
@@ -102,8 +101,8 @@ TEST(FxaaCs, RefusesAThresholdOfZero) {
     EXPECT_THROW(parseMethod("fxaacs:contrastThreshold=0"), UsageError);
     EXPECT_NO_THROW(parseMethod("fxaacs:contrastThreshold=0.01"));
 }
-// methods/02 s.2.4 written a second time: per pixel, in double, with clamped bilinear reads.
-TEST(FxaaConsole, ConformsToTheSpecification) {
+// [Lottes 2011], console path, written a second time: per pixel, in double, with clamped bilinear reads.
+TEST(FxaaConsole, ConformsToASecondForm) {
     using C = std::array<double, 4>;  // RGB and luma
     for (const auto& [spec, reach, sharpness] :
          {std::tuple{"fxaaconsole", 0.5, 8.0}, {"fxaaconsole:reach=0.33,sharpness=4", 0.33, 4.0}})

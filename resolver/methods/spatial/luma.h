@@ -1,7 +1,7 @@
 // One scalar per pixel for edge decisions: the lumas of the spatial methods, written to a bordered plane.
 //
-// methods/00 s.4 (601 and 709 weights), 02 s.2.1 (luma options), 02 s.2.2 (FXAA 1), 02 s.2.3 (log-luma of the compute
-// variant), 03 s.3.7 (CMAA2: sqrt-encoded).
+// BT.601 and BT.709 weights (conventions 4), the luma options of [Lottes 2011], FXAA 1's [Lottes 2009], the log-luma of
+// the compute variant [Stanard n.d.], CMAA2's of square roots [Strugar 2018].
 #pragma once
 #include "image/colour.h"
 #include "kernels/dispatch.h"

@@ -106,21 +106,21 @@ MethodDescriptor mlaaDescriptor() {
         .title = "MLAA",
         .family = "spatial",
         .summary = "Finds L, Z and U shapes of edges and blends by the area under their silhouette.",
-        .source = "Reshetov 2009; methods/03 s.3.1",
+        .source = "[Reshetov 2009]",
         .passes = Pass::color,
         .input = Space::encoded,
         .output = Space::encoded,
         .params = {choiceParam("edges", "maxdiff", {"maxdiff", "msb4", "luma"},
                                "difference that separates pixels: a channel by 1/16, the 4 highest bits of a channel, "
                                "or luma by 0.1",
-                               "methods/11 #42; msb4: Reshetov 2009"),
+                               "decisions 42; msb4: [Reshetov 2009]"),
                    choiceParam("heights", "half", {"half", "colour"},
                                "where the silhouette meets an edge that crosses a line's end: its middle, or where the "
                                "blended colours of both sides agree",
-                               "Reshetov 2009; methods/03 s.3.1"),
+                               "colour: [Reshetov 2009]; half is ours"),
                    flagParam("simultaneous", false,
                              "vertical lines blend the original colours too, not what horizontal lines left",
-                             "methods/03 s.3.1")},
+                             "[Reshetov 2009]; on is ours")},
         .create = [](const Params& p, const ShotInfo&) { return std::make_unique<Mlaa>(p); }};
 }
 

@@ -1,4 +1,4 @@
-// MLAA: morphological anti-aliasing (Reshetov 2009; methods/03 s.3.1).
+// MLAA: morphological anti-aliasing [Reshetov 2009].
 //
 // 1. Edges between neighbours whose colours differ. 2. Maximal runs of collinear edges are separation lines; edges that
 // cross their ends make L, Z and U shapes. 3. The silhouette runs from half the height of the crossing edge at one end

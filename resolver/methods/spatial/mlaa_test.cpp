@@ -11,7 +11,7 @@ namespace aa {
 namespace {
 using namespace aa::testing;
 
-TEST(Mlaa, StepVectorOfTheSpecification) {
+TEST(Mlaa, StepVector) {
     const Rgb out = resolveOnce("mlaa", stepImage());
     const std::pair<int, double> row[] = {{12, 0},       {20, .140625}, {24, .265625}, {31, .488281},
                                           {32, .511719}, {39, .734375}, {44, .890625}};

@@ -12,7 +12,7 @@ struct Preset {
     int searchSteps, diagonalSteps;
     float cornerRounding;  // percent; negative: off
 };
-const Preset kPresets[] = {{"LOW", 0.15f, 4, 0, -1},  // SMAA v2.8, methods/03 s.3.2
+const Preset kPresets[] = {{"LOW", 0.15f, 4, 0, -1},  // [Jimenez 2012, v2.8]
                            {"MEDIUM", 0.10f, 8, 0, -1},
                            {"HIGH", 0.10f, 16, 8, 25},
                            {"ULTRA", 0.05f, 32, 16, 25}};
@@ -182,35 +182,37 @@ std::vector<DebugLayer> Smaa::debugLayers() const {
 std::vector<ParamSpec> smaaParams() {
     return {
         choiceParam("preset", "HIGH", {"LOW", "MEDIUM", "HIGH", "ULTRA", "custom"},
-                    "threshold, search lengths, diagonals and corners", "SMAA v2.8"),
-        realParam("threshold", "0.1", 0.0009765625, 0.5, "luma or colour difference that makes an edge", "SMAA v2.8",
-                  "preset=custom"),
-        intParam("searchSteps", "16", 1, 112, "search length to either side, in steps of 2 px", "SMAA v2.8",
+                    "threshold, search lengths, diagonals and corners", "[Jimenez 2012, v2.8]"),
+        realParam("threshold", "0.1", 0.0009765625, 0.5, "luma or colour difference that makes an edge",
+                  "[Jimenez 2012, v2.8]", "preset=custom"),
+        intParam("searchSteps", "16", 1, 112, "search length to either side, in steps of 2 px", "[Jimenez 2012, v2.8]",
                  "preset=custom"),
-        intParam("diagonalSteps", "8", 0, kMaxDiagonal, "diagonal search length in px, 0 off", "SMAA v2.8",
+        intParam("diagonalSteps", "8", 0, kMaxDiagonal, "diagonal search length in px, 0 off", "[Jimenez 2012, v2.8]",
                  "preset=custom"),
-        realParam("cornerRounding", "25", -1, 100, "how much sharp corners are rounded, percent; -1 off", "SMAA v2.8",
-                  "preset=custom"),
-        choiceParam("edges", "luma", {"luma", "colour", "depth"}, "what makes an edge", "SMAA v2.8"),
+        realParam("cornerRounding", "25", -1, 100, "how much sharp corners are rounded, percent; -1 off",
+                  "[Jimenez 2012, v2.8]", "preset=custom"),
+        choiceParam("edges", "luma", {"luma", "colour", "depth"}, "what makes an edge", "[Jimenez 2012, v2.8]"),
         realParam("depthThreshold", "0.01", 0.0009765625, 1, "relative depth difference that makes an edge",
-                  "methods/03 s.3.2.1", "edges=depth"),
+                  "ours: the shader compares device depth", "edges=depth"),
         realParam("localContrast", "2", 1, 1000, "an edge goes where a neighbouring edge is this many times as strong",
-                  "SMAA v2.8", "edges=luma|colour"),
+                  "[Jimenez 2012, v2.8]", "edges=luma|colour"),
         choiceParam("colourContrast", "reference", {"reference", "consistent"},
                     "second neighbour of colour edges: against the centre as in the shader, or against the first",
-                    "methods/11 #39", "edges=colour"),
+                    "decisions 39", "edges=colour"),
         choiceParam("predication", "off", {"off", "depth", "object"}, "raise the threshold where this pass has no edge",
-                    "SMAA v2.8", "edges=luma|colour"),
+                    "[Jimenez 2012, v2.8]", "edges=luma|colour"),
         realParam("predicationThreshold", "0.01", 0, 1, "relative depth difference that is an edge of that pass",
-                  "SMAA v2.8", "predication=depth"),
-        realParam("predicationScale", "2", 1, 5, "factor on the threshold", "SMAA v2.8", "predication=depth|object"),
-        realParam("predicationStrength", "0.4", 0, 1, "share taken off again at edges of that pass", "SMAA v2.8",
+                  "[Jimenez 2012, v2.8]", "predication=depth"),
+        realParam("predicationScale", "2", 1, 5, "factor on the threshold", "[Jimenez 2012, v2.8]",
                   "predication=depth|object"),
+        realParam("predicationStrength", "0.4", 0, 1, "share taken off again at edges of that pass",
+                  "[Jimenez 2012, v2.8]", "predication=depth|object"),
         choiceParam("blendSpace", "linear", {"linear", "encoded"}, "space in which pixels are blended",
-                    "SMAA v2.8 (sRGB reads)"),
+                    "[Jimenez 2012, v2.8], sRGB reads"),
         choiceParam("areas", "analytic", {"analytic", "table"},
-                    "weights exact, or looked up in the 8-bit area table as the shader does", "methods/03 s.3.2.3"),
-        choiceParam("weights", "float", {"float", "unorm8"}, "storage of the blending weights", "methods/03"),
+                    "weights exact, or looked up in the 8-bit area table as the shader does", "[Jimenez 2012]"),
+        choiceParam("weights", "float", {"float", "unorm8"}, "storage of the blending weights",
+                    "ours; unorm8: [Jimenez 2012, v2.8]"),
     };
 }
 
@@ -244,7 +246,7 @@ MethodDescriptor smaa1xDescriptor() {
             .title = "SMAA 1x",
             .family = "spatial",
             .summary = "Revectorises edges from their length and crossing edges, with diagonals and corners.",
-            .source = "Jimenez et al. 2012, SMAA v2.8; methods/03 s.3.2",
+            .source = "[Jimenez 2012, v2.8]",
             .passes = Pass::color,
             .input = Space::encoded,
             .output = Space::linear,
@@ -253,7 +255,7 @@ MethodDescriptor smaa1xDescriptor() {
             .morePasses = smaaPasses,
             .outputSpace =
                 [](const Params& p) { return p.choice("blendSpace") == "linear" ? Space::linear : Space::encoded; },
-            .reachPx = 66};  // methods/08 s.8.4; preset=custom reaches 2 * searchSteps + 2
+            .reachPx = 66};  // conventions 12; preset=custom reaches 2 * searchSteps + 2
 }
 
 }  // namespace aa

@@ -1,4 +1,4 @@
-// SMAA: enhanced subpixel morphological anti-aliasing (Jimenez et al. 2012, reference shader v2.8; methods/03 s.3.2).
+// SMAA: enhanced subpixel morphological anti-aliasing ([Jimenez 2012], reference shader v2.8).
 //
 // 1. Edge bits per pixel (left, top) where luma, colour or depth differ, kept only where no neighbouring edge is twice
 // as
@@ -21,7 +21,7 @@ class Smaa {
   public:
     explicit Smaa(const Params& params);
     // Finds edges in `colorEncoded` (or frame.depthView). The image was sampled at `samplePx` from the pixel centres (y
-    // down); its revectorised edges are moved back by that much (methods/03 s.3.3-3.5).
+    // down); its revectorised edges are moved back by that much (decisions 40).
     void findEdges(const Frame& frame, const Rgb& colorEncoded, glm::dvec2 samplePx, const Exec& exec);
     // Blends planes of one stride by the weights of the edges found last: the colour and, when given, the motion.
     // Borders of the input are filled.
@@ -57,8 +57,8 @@ std::vector<ParamSpec> smaaParams();
 PassSet smaaPasses(const Params& params);
 
 MethodDescriptor smaa1xDescriptor();
-MethodDescriptor smaaS2xDescriptor();  // two sub-samples, each through SMAA 1x, averaged (methods/03 s.3.4)
-MethodDescriptor smaaT2xDescriptor();  // two jittered frames, weighted by velocity (s.3.3)
-MethodDescriptor smaa4xDescriptor();   // both (s.3.5)
+MethodDescriptor smaaS2xDescriptor();  // two sub-samples, each through SMAA 1x, averaged
+MethodDescriptor smaaT2xDescriptor();  // two jittered frames, weighted by velocity
+MethodDescriptor smaa4xDescriptor();   // both
 
 }  // namespace aa

@@ -98,7 +98,7 @@ class TableCache {
     std::deque<std::pair<Key, std::vector<float>>> entries_;
 };
 
-// Start and end corners (relative to the end pixels) of the lines to average; methods/03 s.3.2.4.
+// Start and end corners (relative to the end pixels) of the lines to average.
 struct Ends {
     Point start, end;
 };

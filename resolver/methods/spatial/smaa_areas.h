@@ -1,4 +1,4 @@
-// SMAA's area tables, generated from the analytic definition (methods/03 s.3.2.3 and 3.2.4).
+// SMAA's area tables, generated from the analytic definition [Jimenez 2012].
 #pragma once
 #include <array>
 #include <vector>
@@ -15,7 +15,7 @@ struct SmaaAreas {
 SmaaAreas orthogonalArea(int leftCode, int rightCode, int leftPx, int rightPx, double offset = 0);
 
 enum class DiagonalIntegral { exact, sampled30 };  // sampled30: the published rule, 30 x 30 points at k / 29
-// Codes 2 * horizontal + vertical crossing (methods/03 s.3.2.4), distances in px, sub-sample offset in px with y up.
+// Codes 2 * horizontal + vertical crossing, distances in px, sub-sample offset in px with y up.
 SmaaAreas diagonalArea(int code1, int code2, int d1, int d2, std::array<double, 2> offset, DiagonalIntegral integral);
 
 // The tables below may be asked for from any thread; the costly ones are kept, the last 32 of each kind.

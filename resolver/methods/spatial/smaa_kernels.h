@@ -24,7 +24,7 @@ struct SmaaTransposeArgs {
     int fromStride, toStride, height;
 };
 
-inline constexpr int kMaxDiagonal = 20;  // methods/03 s.3.2.4: published tables hold 20 distances
+inline constexpr int kMaxDiagonal = 20;  // the published tables hold 20 distances
 inline constexpr int kDiagonals = kMaxDiagonal + 1;
 inline constexpr int kSmaaBlockRows = 32;  // rows that are weighted and blended together
 inline constexpr int kSmaaChannels = 5;    // colour, and motion with the same weights

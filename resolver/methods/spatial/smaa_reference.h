@@ -1,4 +1,4 @@
-// Test support: SMAA 1x written a second time from methods/03 s.3.2. Shares no code with the kernels.
+// Test support: SMAA 1x [Jimenez 2012] written a second time. Shares no code with the kernels.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -168,7 +168,7 @@ class ReferenceSmaa {
         }
         return sum;
     }
-    // methods/03 s.3.2.3 without a sub-sample offset.
+    // Lines along rows or columns, without a sub-sample offset.
     static std::array<double, 2> lineArea(int e1, int e2, int l, int r) {
         const bool one1 = e1 == 1 || e1 == 3, one2 = e2 == 1 || e2 == 3;
         if (!one1 && !one2) return {};
@@ -206,7 +206,7 @@ class ReferenceSmaa {
             sum += height((cuts[i] + cuts[i + 1]) / 2) * (cuts[i + 1] - cuts[i]);
         return sum;
     }
-    // methods/03 s.3.2.4: S;E of the lines to average, by the codes of the two ends.
+    // S;E of the lines to average, by the codes of the two ends.
     static std::array<double, 2> staircaseArea(int c1, int c2, int d1, int d2) {
         static const char* const lines[4][4] = {{"11111010", "00111011", "00101010", "00111010"},
                                                 {"10001010", "1011", "1010", "10111010"},

@@ -15,7 +15,7 @@ namespace aa {
 namespace {
 using namespace aa::testing;
 
-TEST(SmaaAreas, ValuesOfTheSpecification) {
+TEST(SmaaAreas, CheckValues) {
     struct Case {
         int left, right, leftPx, rightPx;
         double own, opposite;
@@ -32,7 +32,7 @@ TEST(SmaaAreas, ValuesOfTheSpecification) {
         EXPECT_NEAR(a.opposite, c.opposite, 1e-6) << c.left << c.right;
     }
 }
-// Revectorised height of the line at t, by the rules of methods/03 s.3.2.3 for shapes without smoothing.
+// Revectorised height of the line at t, by the rules of [Jimenez 2012] for shapes without smoothing.
 double height(int e1, int e2, double l, double r, double offset, double t) {
     const double d = l + r + 1, above = 0.5 + offset, below = -0.5 + offset;
     const double h1 = e1 == 1 ? above : e1 == 3 ? below : e2 == 1 ? below : above;
@@ -134,7 +134,7 @@ TEST(SmaaAreas, MirroredLinesGiveMirroredAreas) {
                 }
 }
 
-TEST(Smaa1x, StepVectorOfTheSpecification) {
+TEST(Smaa1x, StepVector) {
     const int x[] = {12, 20, 24, 28, 30, 31, 32, 33, 35, 39, 44};
     const std::pair<std::string, std::array<double, 11>> rows[] = {
         {"LOW", {0, 0, .00833, .18182, .33333, .43750, .55556, .65000, .79167, .96875, 1}},
@@ -271,7 +271,7 @@ TEST(Smaa1x, DebugLayersShowEdgesWeightsAndSearches) {
     EXPECT_FLOAT_EQ(layers[2].planes[1].at(32, 4), .078125f);
     EXPECT_EQ(layers[3].planes[1].at(24, 4), 7.0f);  // px to the step
 }
-// methods/03 s.3.2.2: along an endless edge the left search stops at 2 steps - 1 px, the right one at 2 steps.
+// Along an endless edge the left search stops at 2 steps - 1 px, the right one at 2 steps.
 TEST(Smaa1x, SearchesEndAtTheirCaps) {
     Rgb image(200, 10, 0.0f);
     for (auto& p : image.c)

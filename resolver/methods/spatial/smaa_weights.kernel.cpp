@@ -54,7 +54,7 @@ AA_INLINE Pair<T> tableArea(const float* table, int left, int right, int leftPx,
     return {at(0), at(1)};
 }
 
-// ---- diagonals (s.3.2.4): `top` and `left` are the edge bits of a pixel's upper and left border
+// ---- diagonals: `top` and `left` are the edge bits of a pixel's upper and left border
 
 struct EdgesAt {
     const SmaaBlendArgs& a;
@@ -80,7 +80,7 @@ AA_INLINE DiagonalEnd diagonalArm(const EdgesAt& e, int x, int y, int dx, int dy
 }
 template <class T>
 AA_INLINE Pair<T> diagonalLookup(const float* table, bool h1, bool v1, bool found1, bool h2, bool v2, bool found2,
-                                  int d1, int d2) {
+                                 int d1, int d2) {
     const int c1 = found1 ? 2 * h1 + v1 : 0, c2 = found2 ? 2 * h2 + v2 : 0;
     const float* const p = table + 2 * (((c1 * 4 + c2) * kDiagonals + d1) * kDiagonals + d2);
     return {T(p[0]), T(p[1])};
@@ -110,7 +110,7 @@ AA_INLINE Pair<T> diagonalWeights(const SmaaBlendArgs& a, int x, int y) {
         const int n = d1.distance, m = d2.distance;
         if (n + m > 2)
             sum = diagonalLookup<T>(a.diagonalTable[0], e.top(x - n - 1, y + n), e.left(x - n, y + n), d1.found,
-                                     e.top(x + m + 1, y - m), e.left(x + m + 1, y - m - 1), d2.found, n, m);
+                                    e.top(x + m + 1, y - m), e.left(x + m + 1, y - m - 1), d2.found, n, m);
     }
     if (candidates.falling & 1) {  // the same shape mirrored, so that own and opposite change places
         const DiagonalEnd d1 = diagonalArm(e, x, y, -1, -1, 1, false);
@@ -119,14 +119,14 @@ AA_INLINE Pair<T> diagonalWeights(const SmaaBlendArgs& a, int x, int y) {
         if (n + m > 2) {
             const Pair<T> w =
                 diagonalLookup<T>(a.diagonalTable[1], e.top(x - n - 1, y - n), e.left(x - n, y - n - 1), d1.found,
-                                   e.top(x + m + 1, y + m), e.left(x + m + 1, y + m), d2.found, n, m);
+                                  e.top(x + m + 1, y + m), e.left(x + m + 1, y + m), d2.found, n, m);
             sum = sum + Pair<T>{w.opposite, w.own};
         }
     }
     return sum;
 }
 
-// ---- lines along rows or columns (s.3.2.2, 3.2.3, 3.2.5)
+// ---- lines along rows or columns
 
 // Edges that cross the end of a line, from its row -2 to +1: bits 1 and 2 touch it, 0 and 3 lie beyond.
 AA_INLINE unsigned crossingBits(const SmaaAxis& axis, int p, int q) {
@@ -165,7 +165,7 @@ AA_INLINE Pair<T> stored(const SmaaBlendArgs& a, Pair<T> w) {
 // The edge at position p of line q; `pixel` is its index in the debug planes, negative where another block keeps it.
 template <class T>
 AA_INLINE Pair<T> lineWeights(const SmaaBlendArgs& a, const SmaaAxis& axis, const Corners<T>& corners, int p, int q,
-                               long pixel) {
+                              long pixel) {
     const int reach = 2 * a.searchSteps;
     const uint8_t *along = axis.along + long(q) * axis.stride, *cross = axis.cross + long(q) * axis.stride;
     const int leftPx = runDown(along, cross, cross - axis.stride, p, reach - 1);
@@ -215,7 +215,7 @@ struct RowWeights {
 // not the one after it.
 template <class T>
 AA_INLINE void topWeights(const SmaaBlendArgs& a, const Corners<T>& corners, int y, bool own, RowWeights weights,
-                           uint8_t* diagonals) {
+                          uint8_t* diagonals) {
     const uint8_t* const top = a.top.along + long(y) * a.top.stride;
     const auto pixel = [&](int x) { return own ? long(y) * a.width + x : -1; };
     __builtin_memset(diagonals, 0, size_t(a.width / 8 + 9));
@@ -242,7 +242,7 @@ AA_INLINE void topWeights(const SmaaBlendArgs& a, const Corners<T>& corners, int
 }
 template <class T>
 AA_INLINE void leftWeights(const SmaaBlendArgs& a, const Corners<T>& corners, int y, RowWeights weights,
-                            const uint8_t* diagonals) {
+                           const uint8_t* diagonals) {
     const uint8_t* const left = a.top.cross + long(y) * a.top.stride;
     weights.clear(a.width);
     forEachBit(
@@ -281,7 +281,7 @@ AA_INLINE void blendRow(const SmaaBlendArgs& a, int y, RowWeights top, RowWeight
         for (int i = 0; i < 8; i += N<R>)
             if (edges)
                 blendPixels<R>(a, o + i, load<R>(left.opposite + x + i + 1), load<R>(left.own + x + i),
-                                load<R>(below.opposite + x + i), load<R>(top.own + x + i));
+                               load<R>(below.opposite + x + i), load<R>(top.own + x + i));
             else
                 for (int c = 0; c < a.channels; c++) store(load<R>(a.in[c] + o + i), a.out[c] + o + i);
     }

@@ -7,7 +7,7 @@
 
 namespace aa::testing {
 
-// STEP of methods/02 s.2.1: 64 x 9, 1 for y < 4 and, where x >= 32, also for y = 4; else 0.
+// STEP (conventions 15): 64 x 9, 1 for y < 4 and, where x >= 32, also for y = 4; else 0.
 inline Rgb stepImage() {
     Rgb image(64, 9);
     for (auto& p : image.c)

@@ -54,7 +54,7 @@ StageDescriptor fillStage() {
     return {
         .value = choiceParam("fill", "", {},
                              "a spatial or geometry-aware method that fills the pixels whose history was rejected",
-                             "seeds 000 and 001, future work; methods/06 s.6.8"),
+                             "[Stejmar n.d., 6.3.1]"),
         .valueIsMethod = true,
         .create = [](const std::string& value, const MethodSpec& spec, const ShotInfo& shot) -> std::unique_ptr<Stage> {
             const MethodSpec filler = parseMethod(value);

@@ -1,4 +1,4 @@
-// +fill=METHOD: the hybrid that both theses ask for (seed 001 future work; methods/06 s.6.8 step 8).
+// +fill=METHOD: the hybrid that [Stejmar n.d., 6.3.1] proposes.
 //
 // Where a temporal method did not use its history it shows the bare current sample. This stage replaces exactly those
 // pixels by the result of a spatial or geometry-aware method on the same frame; all other pixels keep their bits. The

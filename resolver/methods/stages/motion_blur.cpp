@@ -5,7 +5,7 @@
 namespace aa {
 namespace {
 
-constexpr int kMaxSamples = 32;  // Chapman 2012
+constexpr int kMaxSamples = 32;  // [Chapman 2012]
 
 class MotionBlurStage : public Stage {
   public:
@@ -54,12 +54,11 @@ class MotionBlurStage : public Stage {
 }  // namespace
 
 StageDescriptor motionBlurStage() {
-    return {
-        .value = realParam("motionBlur", "0.5", 0, 16, "length of the blur in frame intervals; 0.5 = half-open shutter",
-                           "Chapman 2012; methods/06 s.6.11"),
-        .passes = Pass::motion,
-        .create = [](const std::string& value, const MethodSpec&, const ShotInfo&) -> std::unique_ptr<Stage> {
-            return std::make_unique<MotionBlurStage>(std::stof(value));
-        }};
+    return {.value = realParam("motionBlur", "0.5", 0, 16,
+                               "length of the blur in frame intervals; 0.5 = half-open shutter", "[Chapman 2012]"),
+            .passes = Pass::motion,
+            .create = [](const std::string& value, const MethodSpec&, const ShotInfo&) -> std::unique_ptr<Stage> {
+                return std::make_unique<MotionBlurStage>(std::stof(value));
+            }};
 }
 }  // namespace aa

@@ -110,28 +110,30 @@ class Asaa : public Method {
 }  // namespace
 
 MethodDescriptor asaaDescriptor() {
-    return {.id = "asaa",
-            .title = "Amortized supersampling",
-            .family = "temporal",
-            .summary = "Four sub-pixel buffers followed through camera and object motion, summed with tent weights.",
-            .source = "Yang et al. 2009; seed 001 s.3.8, 4.4.1; methods/06 s.6.8",
-            .passes = Pass::color | Pass::depth | Pass::motion,
-            .input = Space::encoded,
-            .output = Space::encoded,
-            .temporal = true,
-            .params = {temporal::unjitterParam(false, "methods/06 B0: by the normally distributed part of the jitter"),
-                       choiceParam("blurMode", "thesis", {"thesis", "eq331"},
-                                   "limit of blur in motion: 4 samples, or eq 3.31 with the threshold 0.12 above the "
-                                   "filter's variance and the sample count of eq 3.29",
-                                   "methods/11 nr 23"),
-                       choiceParam("motionCount", "atMost", {"atMost", "four"},
-                                   "sample count of a moving pixel: at most 4 as the text says, or 4 as its listing "
-                                   "4.11 sets it",
-                                   "seed 001 s.4.4.1", "blurMode=thesis"),
-                       temporal::countAtParam("seed 001 s.4.4.1; eq331 reads it where the surface was, as eq 3.29 does",
-                                              "blurMode=thesis"),
-                       temporal::depthToleranceParam(), temporal::bothSidesParam(),
-                       temporal::magnificationParam("1", "seed 001 s.4.4.1: figures 4.10 and 4.11; methods/11 nr 18")},
-            .create = [](const Params& p, const ShotInfo&) { return std::make_unique<Asaa>(p); }};
+    return {
+        .id = "asaa",
+        .title = "Amortized supersampling",
+        .family = "temporal",
+        .summary = "Four sub-pixel buffers followed through camera and object motion, summed with tent weights.",
+        .source = "[Yang 2009]; [Stejmar n.d., 3.8 and 4.4.1]",
+        .passes = Pass::color | Pass::depth | Pass::motion,
+        .input = Space::encoded,
+        .output = Space::encoded,
+        .temporal = true,
+        .params = {temporal::unjitterParam(false, "conventions 7.0: by the normally distributed part of the jitter"),
+                   choiceParam("blurMode", "thesis", {"thesis", "eq331"},
+                               "limit of blur in motion: 4 samples, or eq 3.31 with the threshold 0.12 above the "
+                               "filter's variance and the sample count of eq 3.29",
+                               "decisions 23"),
+                   choiceParam("motionCount", "atMost", {"atMost", "four"},
+                               "sample count of a moving pixel: at most 4 as the text says, or 4 as its listing "
+                               "4.11 sets it",
+                               "[Stejmar n.d., 4.4.1]", "blurMode=thesis"),
+                   temporal::countAtParam(
+                       "[Stejmar n.d., 4.4.1]; eq331 reads it where the surface was, as eq 3.29 does",
+                       "blurMode=thesis"),
+                   temporal::depthToleranceParam(), temporal::bothSidesParam(),
+                   temporal::magnificationParam("1", "[Stejmar n.d., figures 4.10 and 4.11]; decisions 18")},
+        .create = [](const Params& p, const ShotInfo&) { return std::make_unique<Asaa>(p); }};
 }
 }  // namespace aa

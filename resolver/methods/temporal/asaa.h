@@ -1,4 +1,4 @@
-// asaa: amortized supersampling (Yang et al. 2009) as in seed 001 s.3.8 and 4.4.1; methods/06 s.6.8.
+// asaa: amortized supersampling [Yang 2009] as in [Stejmar n.d., 3.8 and 4.4.1].
 //
 // Four sub-pixel buffers hold the image at the quadrant offsets (-+.25, -+.25); each frame updates the buffer of its
 // jitter's quadrant.
@@ -14,7 +14,7 @@
 // It reads N at the pixel itself (countAt=reprojected: where the surface was, as eq 3.29 does).
 // Works with any jitter (the quadrant is taken from its sign, the buffers' ages are tracked); made for the sequence
 // "quadrants" with Gaussian sigma 0.2575. The output filter is a tent of radius 1 px: blurrier than a box truth.
-// Display-encoded, as the thesis's 8-bit buffers (methods/00 s.4). Depth of each buffer rides in its alpha.
+// Display-encoded, as the thesis's 8-bit buffers (conventions 4). Depth of each buffer rides in its alpha.
 #pragma once
 #include "methods/temporal/temporal_kernels.h"
 

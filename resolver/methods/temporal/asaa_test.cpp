@@ -46,7 +46,7 @@ TEST(Asaa, BuffersFollowTheMotion) {
     for (int n = 0; n < 24; n++) flipped.resolve(rampFrame(n, v * double(n), -v), {}, {});
     EXPECT_GT(std::fabs(flipped.out.c[0].at(15, 10) - m.out.c[0].at(15, 10)), 5e-3f);
 }
-// Static, one quadrant per frame: the weights of methods/06 s.6.8, (.75, .25) squared, of every buffer alike.
+// Static, one quadrant per frame: weights (.75, .25) squared, of every buffer alike.
 TEST(Asaa, OutputIsATentOfOnePixelRadius) {
     RunningMethod m = running("asaa", 30, 20, true);
     Frame f;
@@ -84,7 +84,7 @@ Frame flatFrame(int n, float depthView, glm::dvec2 motionPx = {0, 0}) {
     f.subSamples.assign(2, {f.depthView, Rgb(30, 20), f.objectId, f.colorLinear});
     return f;
 }
-// Seed 001 s.4.4.1: 0 where all is rejected, so that the next frame, too, has alpha = 1; else one more.
+// [Stejmar n.d., 4.4.1]: 0 where all is rejected, so that the next frame, too, has alpha = 1; else one more.
 TEST(Asaa, SampleCountIsZeroAfterARejection) {
     std::vector<Frame> frames;
     for (int n = 0; n < 9; n++) frames.push_back(flatFrame(n, n < 5 ? 5.0f : 50.0f));
@@ -158,7 +158,7 @@ TEST(Rejection, ThresholdsAreParameters) {
     }
 }
 
-// methods/06 s.6.15: N = 1, c = 1, h = 0. At rest a = 1/2 -> 1/3. With a motion of (0.01, 0) in UV the limit is
+// N = 1, c = 1, h = 0 (conventions 15). At rest a = 1/2 -> 1/3. With a motion of (0.01, 0) in UV the limit is
 // 0.25 + 0.0099 / 2 = 0.25495, below a = 1/2. At N = 3 the mean's weight 1/4 is under the limit: it holds instead.
 TEST(T2msaa, WeightVectors) {
     const auto frame = [](int n, float value, double motionPx) {

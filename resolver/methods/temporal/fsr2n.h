@@ -1,5 +1,5 @@
 // A temporal upscaler's accumulation at native resolution, after AMD's FSR 2 (public description and source).
-// methods/06 s.6.14; results are "FSR2-like", not FSR 2.
+// [AMD 2022]; results are "FSR2-like", not FSR 2.
 //
 // 1. Every surface is splatted to where it was a frame ago; a pixel that finds something nearer there was hidden
 //    (depth clip), by how much is graded by the separation that the depth's resolution can tell.

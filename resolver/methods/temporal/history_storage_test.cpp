@@ -1,4 +1,4 @@
-// historyBits and dither (methods/08 s.8.0): what narrow storage does to a history, and INSIDE's blur of the screen.
+// historyBits and dither (conventions 8): what narrow storage does to a history, and INSIDE's blur of the screen.
 #include <gtest/gtest.h>
 
 #include "methods/temporal/temporal_test_frames.h"

@@ -1,4 +1,4 @@
-// inside: temporal reprojection of INSIDE (Pedersen 2016), methods/06 s.6.3.
+// inside: temporal reprojection of INSIDE [Pedersen 2016].
 //
 //  1. current colour fetched at the pixel centre, jitter taken back (bilinear)   2. motion of the nearest pixel in 3x3
 //  3. colour box: mean of 3x3 and plus bounds; or the game's first form, four bilinear taps on the diagonals whose

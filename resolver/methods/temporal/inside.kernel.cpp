@@ -49,7 +49,7 @@ AA_INLINE vec3<R> blurredByMotion(const InsideArgs& a, Motion<R> motion, vec3<R>
         sum = sum + (colorAt(a.in, ownX + motion.x * at, ownY + motion.y * at, x, y) - result);
     }
     const vec3<R> blurred = result + sum * (share * R(T(1) / T(7)));
-    // A motion of more than two pictures is no motion (methods/08 s.8.1).
+    // A motion of more than two pictures is no motion (conventions 9).
     const auto known = both(abs(motion.x) <= R(T(2 * a.in.width)), abs(motion.y) <= R(T(2 * a.in.height)));
     return select(both(known, both(share > zero, finite(blurred))), blurred, result);
 }
@@ -83,7 +83,7 @@ AA_INLINE void insidePixel(const InsideArgs& a, bool ycocg, bool unjitterWindow,
     if (a.neighbourhood == InsideNeighbourhood::fourTapVarying) {
         const R speed = sqrt(motion.x * motion.x + motion.y * motion.y);
         const R depth = dilatedDepth<R>(in, o);
-        // 0 * 1e10 is 0, and a far surface at any speed counts as moving (methods/08 s.8.3).
+        // 0 * 1e10 is 0, and a far surface at any speed counts as moving (conventions 11).
         const R still = saturate(R(T(0.5)) / max(speed * depth, R(T(1e-6))));
         box = fourTapBox<R>(at, R(T(0.5)) + still * R(T(0.1666)), mean);
     } else {

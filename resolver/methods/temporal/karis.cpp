@@ -40,7 +40,7 @@ class Karis : public Method {
         for (int j = -1; j <= 1; j++)
             for (int i = -1; i <= 1; i++) {
                 const double dx = i + double(args.in.jitterXPx), dy = j + double(args.in.jitterYPx);
-                args.filter[(j + 1) * 3 + i + 1] = float(std::exp(-2.29 * (dx * dx + dy * dy)));  // Karis 2014
+                args.filter[(j + 1) * 3 + i + 1] = float(std::exp(-2.29 * (dx * dx + dy * dy)));  // [Karis 2014]
             }
         args.in.debug = debug_.begin(*this, frame.width, frame.height);
         temporal::runTemporal(karisKernelsFor(exec).resolve, exec, args, kRowsPerCall, kKarisScratchRows);
@@ -77,7 +77,7 @@ MethodDescriptor descriptor(const Preset& d) {
     const auto flag = [](std::string_view name, std::string_view def, std::string_view help, std::string_view source) {
         return flagParam(name, def == "on", help, source);
     };
-    ParamSpec neighbourhood = temporal::neighbourhoodParam("rounded", "Karis 2014");
+    ParamSpec neighbourhood = temporal::neighbourhoodParam("rounded", "[Karis 2014]");
     neighbourhood.onlyWhen = "box=minmax|intersection";
     return {.id = d.id,
             .title = d.title,
@@ -90,21 +90,21 @@ MethodDescriptor descriptor(const Preset& d) {
                        choiceParam("filter", d.filter, {"none", "blackmanHarris"},
                                    "filter of the current colour over 3x3, by distance to the pixel centre", d.source),
                        choiceParam("toneWeight", d.toneWeight, {"none", "inverse", "hdr4"},
-                                   "weights within that filter: equal, 1/(1+Y), 4/(4+Y)", "methods/11 nr 45",
+                                   "weights within that filter: equal, 1/(1+Y), 4/(4+Y)", "decisions 45",
                                    "filter=blackmanHarris"),
                        flag("ycocg", d.ycocg, "colour box in YCoCg instead of RGB", d.source),
                        choiceParam("box", d.box, {"minmax", "variance", "intersection"},
                                    "colour box: bounds, mean -+ gamma sigma, both", d.source),
                        realParam("gamma", "1", 0, 8, "half width of the variance box in standard deviations",
-                                 "Salvi 2016: 0.75 to 1.25", "box=variance|intersection"),
+                                 "[Salvi 2016]: 0.75 to 1.25", "box=variance|intersection"),
                        neighbourhood,
                        choiceParam("constraint", d.constraint, {"clipFiltered", "clipMean", "clamp"},
                                    "history to the box: clipped toward the current colour or the mean, or clamped",
                                    d.source),
                        choiceParam("antiFlicker", d.antiFlicker, {"none", "karis", "falcor"}, "rule that adapts alpha",
-                                   "public UE4.x; Falcor"),
+                                   "Unreal Engine 4's public shader; [Falcor 2022]"),
                        flag("inverseLuminance", d.inverseLuminance, "blend with weights 1/(1+Y)", d.source),
-                       temporal::unjitterParam(false, "methods/06 B0; not in the source"),
+                       temporal::unjitterParam(false, "conventions 7.0; not in the source"),
                        temporal::dilationParam(d.dilation, d.source), temporal::historyFilterParam(d.history, d.source),
                        temporal::historyClampParam(), temporal::warmupParam(),
                        temporal::historyBitsParam(Space::linear), temporal::ditherParam()},
@@ -116,24 +116,24 @@ MethodDescriptor descriptor(const Preset& d) {
 
 MethodDescriptor karisDescriptor() {
     return descriptor({"karis", "UE4 TAA (Karis)",
-                       "Tone-weighted filter of the current frame, YCoCg clip, anti-flicker.",
-                       "Karis 2014; methods/06 s.6.6", "0.04", "Karis 2014: N_eff 49", "blackmanHarris", "inverse",
-                       "on", "minmax", "clipFiltered", "karis", "on", "closestX", "bilinear"});
+                       "Tone-weighted filter of the current frame, YCoCg clip, anti-flicker.", "[Karis 2014]", "0.04",
+                       "[Karis 2014]: N_eff 49", "blackmanHarris", "inverse", "on", "minmax", "clipFiltered", "karis",
+                       "on", "closestX", "bilinear"});
 }
 MethodDescriptor salviDescriptor() {
     return descriptor({"salvi", "Variance clipping (Salvi)",
-                       "Karis's skeleton with a box of mean and standard deviation.", "Salvi 2016; methods/06 s.6.7",
-                       "0.1", "methods/06 s.6.7: N_eff 19", "blackmanHarris", "inverse", "off", "variance", "clipMean",
-                       "none", "on", "closest3x3", "bilinear"});
+                       "Karis's skeleton with a box of mean and standard deviation.", "[Salvi 2016]", "0.1",
+                       "ours: N_eff 19", "blackmanHarris", "inverse", "off", "variance", "clipMean", "none", "on",
+                       "closest3x3", "bilinear"});
 }
 MethodDescriptor falcorDescriptor() {
     return descriptor({"falcor", "Falcor TAA", "Variance clamp in YCoCg, longest motion, Catmull-Rom history.",
-                       "Falcor TAA pass; methods/06 s.6.7", "0.1", "Falcor default", "none", "none", "on", "variance",
-                       "clamp", "falcor", "off", "longest3x3", "catmullRom5"});
+                       "[Falcor 2022]", "0.1", "[Falcor 2022]", "none", "none", "on", "variance", "clamp", "falcor",
+                       "off", "longest3x3", "catmullRom5"});
 }
 MethodDescriptor donutDescriptor() {
     return descriptor({"donut", "Donut TAA", "PQ-encoded values clamped to mean and standard deviation.",
-                       "Donut temporal AA pass; methods/06 s.6.7", "0.1", "Donut default at native resolution", "none",
-                       "none", "off", "variance", "clamp", "none", "off", "longest3x3", "catmullRom5"});
+                       "[Donut 2021]", "0.1", "[Donut 2021], at native resolution", "none", "none", "off", "variance",
+                       "clamp", "none", "off", "longest3x3", "catmullRom5"});
 }
 }  // namespace aa

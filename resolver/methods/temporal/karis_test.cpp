@@ -85,7 +85,7 @@ TEST(Karis, FilterWeightsAreTheStatedOnes) {
     const double w1 = std::exp(-2.29), w2 = std::exp(-4.58);
     EXPECT_NEAR(m.out.c[0].at(4, 4), w1 / (1 + 4 * w1 + 4 * w2), 1e-6);
     EXPECT_NEAR(m.out.c[0].at(4, 3), w2 / (1 + 4 * w1 + 4 * w2), 1e-6);
-    // methods/06 s.6.15: at distances of 1/2, 1 and 1.414 px.
+    // conventions 15: at distances of 1/2, 1 and 1.414 px.
     EXPECT_NEAR(std::exp(-2.29 * 0.25), 0.5641, 1e-4);
     EXPECT_NEAR(w1, 0.10127, 1e-5);
     EXPECT_NEAR(w2, 0.010255, 1e-5);

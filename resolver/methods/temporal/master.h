@@ -1,11 +1,11 @@
-// master: the Sobel-improved TAA of seed 000 s.4.3 (Oliveros 2018), methods/06 s.6.5.
+// master: the Sobel-improved TAA of [Oliveros 2018, 4.3].
 //
 // Idea: history is constrained hard where nothing is aliased and loosely where something is. Per pixel
 //   aliasedValue A = clamp01(sobelAvg + depthPseudoVariance + depthTemporalPseudoVariance + modelAverage)  (eq 4.14)
 // mixes the plus-shaped and the 3x3 colour bounds and shrinks the box toward the current colour (eqs 4.15, 4.16).
 //  S. Sobel magnitudes of albedo luminance, lit luminance and depth -> one value (eqs 4.9, 4.10), at the texels of the
-//     jittered frame; read at p - jitter from then on, as colours are (B0, temporal.h); depth, ids and motion come from
-//     the nearest texel
+//     jittered frame; read at p - jitter from then on, as colours are (conventions 7.0); depth, ids and motion come
+//     from the nearest texel
 //  T. that value goes through a small TAA of its own: reprojected, clamped, luminance feedback
 //  main: modelAverage from object ids (eq 4.1), pseudo-variances from depth now and before (eqs 4.4-4.6), A, box,
 //     clip, feedback 0.925..0.979, blend -> history; output sharpened with eq 4.17
@@ -13,8 +13,8 @@
 // gives no unit for depth; the author's public program has one normalised depth 2z/(z + far) for Sobel,
 // pseudo-variances and their threshold, and compares with the past depth of the same pixel: the defaults of depthUnit
 // and pastDepth. Every term can be switched off for ablation. Deviations: eq 3.4 prints a factor 4, matrices 3.5/3.6
-// hold (methods/11 nr 1); the ratio of eq 4.6 is capped at 1e3 against overflow (methods/08). Depth deviations are
-// taken from the centre pixel, never as differences of large sums.
+// hold (decisions 1); the ratio of eq 4.6 is capped at 1e3 against overflow (conventions 9). Depth deviations are taken
+// from the centre pixel, never as differences of large sums.
 #pragma once
 #include "methods/temporal/temporal_kernels.h"
 

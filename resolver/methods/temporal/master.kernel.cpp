@@ -36,7 +36,7 @@ AA_INLINE void withBothEnds(int width, const Lanes& lanes, const One& one) {
     for (int x = 0; x < width; x += N<R>) lanes(x);
     one(-1), one(width);
 }
-// B0 of the colours, row y of -1 .. height.
+// The un-jittered colours (conventions 7.0), row y of -1 .. height.
 template <class R>
 AA_INLINE void currentRow(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
     using T = Elem<R>;
@@ -89,7 +89,7 @@ AA_INLINE void sobelRow(const MasterArgs& a, const MasterRings<Elem<R>>& rings, 
         }
         const auto magnitude = [&](const T* const(&rows)[3]) __attribute__((always_inline)) {
             return sobelMagnitude<R>([&](int i, int j)
-                                          __attribute__((always_inline)) { return loadOwn<R>(rows[j + 1] + x + i); });
+                                         __attribute__((always_inline)) { return loadOwn<R>(rows[j + 1] + x + i); });
         };
         const R sum = magnitude(albedo) * R(T(a.weightAlbedo)) + magnitude(lit) * R(T(a.weightLit)) + magnitude(depth);
         store(sobelCurve(sum), sobel + x);
@@ -203,9 +203,8 @@ AA_INLINE void masterPixel(const MasterArgs& a, const MasterWindow<Elem<R>>& row
     const Box<R> box{mix(current, low, aliased), mix(current, high, aliased)};
     const vec3<R> clipped = constrain(box, a.clipTarget, mean, current, history);
 
-    const R k =
-        min(luminanceFeedback(luminance(current, a.luminance), luminance(clipped, a.luminance), a.kMin, a.kMax),
-            R(T(in.feedbackCeiling)));
+    const R k = min(luminanceFeedback(luminance(current, a.luminance), luminance(clipped, a.luminance), a.kMin, a.kMax),
+                    R(T(in.feedbackCeiling)));
     const vec3<R> mixed = select(inside, blend(current, clipped, k), current);
 
     storeBlend(in, x, y, sanitised(mixed, current, history), loadOwn<R>(rows.filtered[1] + x));

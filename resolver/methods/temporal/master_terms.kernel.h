@@ -1,4 +1,4 @@
-// The terms of aliasedValue as pure functions (seed 000 s.4.3); include from *.kernel.cpp only.
+// The terms of aliasedValue as pure functions [Oliveros 2018, 4.3]; include from *.kernel.cpp only.
 #pragma once
 #include "methods/temporal/temporal_blocks.kernel.h"
 

@@ -1,4 +1,4 @@
-// Terms of aliasedValue against the matrices and vectors of seed 000 s.4.3 as given in methods/06 s.6.5 and 6.15.
+// Terms of aliasedValue against the matrices of [Oliveros 2018, 4.3] and the values of conventions 15.
 #include "methods/temporal/master.h"
 
 #include <gtest/gtest.h>
@@ -79,7 +79,7 @@ TEST(Master, SlopesAndFlatsAreNotAliased) {
     EXPECT_LE(variancesOf({7, 7, 7, 7, 7, 7, 7, 7.1, 7}, 1e10).depthTemporal, 1.0001e12);  // the ratio is capped
 }
 
-// Without any term the box is the current colour alone, and nothing accumulates (methods/06 s.6.5).
+// Without any term the box is the current colour alone, and nothing accumulates.
 TEST(Master, NotAliasedMeansNoHistory) {
     RunningMethod m = running("master:sobel=off,sharpen=none", 24, 16),
                   open = running("master:minAlias=1,sharpen=none", 24, 16);

@@ -1,4 +1,4 @@
-// raptor: the full TAA of seed 002 (Vulkan book ch. 11, "Raptor"), every option of the text; methods/06 s.6.2.
+// raptor: the full TAA of [Castorina 2023] (the Vulkan book, whose engine is called Raptor), every option of the text.
 //
 //  1. motion of the nearest pixel in 3x3   2. history by Catmull-Rom   3. 3x3 bounds, moments, filtered current colour
 //  4. outside: the filtered current colour   5. YCoCg: chroma range from the luma range
@@ -9,7 +9,7 @@
 //  afterwards sharpening by luminance: L' = L + s (L - mean L of 3x3), c L' / L
 // `lumaDiff=printed` exchanges the weights as the book's code does (similar colours then ignore history);
 // `filterDomain=printed` evaluates the filters at twice the pixel distance (Mitchell and Catmull-Rom then return the
-// centre pixel). Both default to the corrected form (methods/11 nr 25, 26); 27-30 list the other corrections.
+// centre pixel). Both default to the corrected form (decisions 25, 26); decisions 27 to 30 are the other corrections.
 // In the book step 11 acts when either of its two filters (inverse luminance, luminance difference) is on, and step 10
 // replaces what step 8 has found. So `temporalFiltering` and `inverseLuminance` have an effect only without lumaDiff
 // and are refused beside it; `lumaDiffWeights=off` (ours) takes the weights of step 11 away from the luminance

@@ -1,4 +1,4 @@
-// The book's listings (seed 002), evaluated directly in double, against what `raptor` does with the same options.
+// The book's listings [Castorina 2023], evaluated directly in double, against what `raptor` does with the same options.
 #include "methods/temporal/raptor.h"
 
 #include <gtest/gtest.h>
@@ -105,7 +105,8 @@ Colour printedPixel(const Frame& f, const Image& now, const Image& past, const P
             }
         }
     const Colour current = each([&](size_t c) { return total[c] / weightTotal; });
-    // Radiance is never negative (methods/00): the one place where the book's YCoCg, which prints no way back, is ours.
+    // Radiance is never negative (conventions 8): the one place where the book's YCoCg, which prints no way back, is
+    // ours.
     const auto result = [&](const Colour& c) {
         const Colour rgb = ycocg ? toRgb(c) : c;
         return each([&](size_t k) { return std::max(rgb[k], 0.0); });

@@ -1,11 +1,11 @@
-// Rejection tests of methods/06 B3 shared by the methods that reject by geometry; include from *.kernel.cpp only.
+// Rejection tests (conventions 7.3), shared by the methods that reject by geometry; include from *.kernel.cpp only.
 #pragma once
 #include "methods/temporal/temporal_blocks.kernel.h"
 
 namespace AA_ARCH {
 
 // Bilinear depth from the history's alpha. Bilinear over a silhouette invents depths: when the taps differ more than
-// tenfold (background), the nearest counts (methods/08 s.8.1).
+// tenfold (background), the nearest counts (conventions 9).
 template <class R>
 AA_INLINE R fetchDepth(const float* p, int stride, const Reprojection<R>& q) {
     using T = Elem<R>;
@@ -28,13 +28,12 @@ AA_INLINE Mask<R> disoccluded(R expected, R found, float tolerance, bool bothSid
     return negate(bothSides ? abs(difference) <= limit : difference <= limit);
 }
 // True where a pixel covers less than a previous pixel and q is far from that pixel's centre: reading would enlarge one
-// sample (seed 001 s.3.6.2, distances to centres and absolute derivatives: methods/11 nr 18).
+// sample ([Stejmar n.d., 3.6.2]; distances to centres and absolute derivatives: decisions 18).
 template <class R>
 AA_INLINE Mask<R> magnified(const TemporalIn& in, long o, const Reprojection<R>& q, float scale) {
     using T = Elem<R>;
     const R one(T(1));
-    const Motion<R> m = loadMotion<R>(in, o), right = loadMotion<R>(in, o + 1),
-                    down = loadMotion<R>(in, o + in.stride);
+    const Motion<R> m = loadMotion<R>(in, o), right = loadMotion<R>(in, o + 1), down = loadMotion<R>(in, o + in.stride);
     const R footprintX = max(abs(one - (right.x - m.x)), abs(down.x - m.x)),
             footprintY = max(abs(right.y - m.y), abs(one - (down.y - m.y)));
     const R distanceX = min(q.fracX, one - q.fracX), distanceY = min(q.fracY, one - q.fracY);

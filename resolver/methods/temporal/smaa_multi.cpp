@@ -224,13 +224,14 @@ Space outputSpaceOf(const Params& p) { return p.choice("blendSpace") == "linear"
 
 std::vector<ParamSpec> temporalParams() {
     auto params = smaaParams();
-    params.push_back(temporal::unjitterParam(false, "methods/06 B0; the pair of places is the filter"));
-    params.push_back(flagParam("reproject", true, "fetch the previous frame where the pixel was", "SMAA v2.8"));
+    params.push_back(temporal::unjitterParam(false, "conventions 7.0; the pair of places is the filter"));
+    params.push_back(
+        flagParam("reproject", true, "fetch the previous frame where the pixel was", "[Jimenez 2012, v2.8]"));
     params.push_back(realParam("rejection", "30", 0, 80, "K: how soon a difference in speed rejects the previous frame",
-                               "SMAA v2.8", "reproject=on"));
+                               "[Jimenez 2012, v2.8]", "reproject=on"));
     params.push_back(choiceParam("velocityUnit", "uv", {"uv", "px1080"},
                                  "unit of that speed: the image's size, or 1080 px at any resolution",
-                                 "seed 001 eq. 3.1", "reproject=on"));
+                                 "[Stejmar n.d., eq 3.1]", "reproject=on"));
     return params;
 }
 
@@ -241,7 +242,7 @@ MethodDescriptor smaaS2xDescriptor() {
             .title = "SMAA S2x",
             .family = "spatial",
             .summary = "SMAA 1x on each of two sub-samples, with the edges of each moved back, averaged.",
-            .source = "Jimenez et al. 2012; methods/03 s.3.4",
+            .source = "[Jimenez 2012]",
             .passes = Pass::subsamples | Pass::subsampleColor,
             .params = smaaParams(),
             .create = [](const Params& p, const ShotInfo& shot) { return std::make_unique<SmaaS2x>(p, shot); },
@@ -256,7 +257,7 @@ MethodDescriptor smaaT2xDescriptor() {
             .title = "SMAA T2x",
             .family = "temporal",
             .summary = "SMAA 1x on jittered frames, mixed with the frame before where the speed agrees.",
-            .source = "Jimenez et al. 2012; methods/03 s.3.3",
+            .source = "[Jimenez 2012]",
             .passes = Pass::color | Pass::motion,
             .input = Space::encoded,
             .temporal = true,
@@ -272,7 +273,7 @@ MethodDescriptor smaa4xDescriptor() {
         .title = "SMAA 4x",
         .family = "temporal",
         .summary = "SMAA S2x on two of four sub-samples per frame, mixed with the frame before where the speed agrees.",
-        .source = "Jimenez et al. 2012; methods/03 s.3.5",
+        .source = "[Jimenez 2012]",
         .passes = Pass::subsamples | Pass::subsampleColor | Pass::motion,
         .temporal = true,
         .params = temporalParams(),

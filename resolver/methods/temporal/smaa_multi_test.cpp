@@ -72,7 +72,7 @@ TEST(SmaaT2x, MovesJitteredEdgesBack) {
             unmoved[vertical] += error({0, 0});
             wrong[vertical] += error({-0.25, -0.25});
         }
-    for (size_t v = 0; v < 2; v++) {  // the specification found 1.8 / 14.8 / 43.3 on such edges
+    for (size_t v = 0; v < 2; v++) {  // decisions 40: 1.8 / 14.8 / 43.3 on such edges
         EXPECT_LT(back[v], 0.25 * unmoved[v]) << v;
         EXPECT_LT(unmoved[v], 0.6 * wrong[v]) << v;
     }
@@ -99,7 +99,7 @@ TEST(SmaaT2x, StaticSceneAveragesBothFrames) {
             EXPECT_NEAR(third.c[0].at(x, y), second.c[0].at(x, y), 1e-6f);  // the mean is symmetric: stable
         }
 }
-TEST(SmaaT2x, VelocityWeightOfTheSpecification) {
+TEST(SmaaT2x, VelocityWeight) {
     // K = 30 on |v| in UV: equal speed 1/2, a difference of 1/3600 gives 1/4, 1/900 and more gives 0.
     for (const auto& [uv, weight] : {std::pair{0.0, 0.5}, {1.0 / 3600, 0.25}, {1.0 / 900, 0.0}, {1.0 / 100, 0.0}}) {
         Rgb white(kW, kH, 1.0f), black(kW, kH, 0.0f);
@@ -215,8 +215,8 @@ TEST(SmaaMulti, OtherPatternsAreInputErrors) {
         parseMethod("smaa4x").create({.width = 8, .height = 8, .subSamplePositionsPx = {{.25, .25}, {-.25, .25}}}),
         InputError);
 }
-// methods/03 s.3.5: the tiles of the published table for the four net positions, orthogonal ones as their offsets
-// across vertical and horizontal edges. y is down here, up there.
+// [Jimenez 2012]: the tiles of the published table for the four net positions, orthogonal ones as their offsets across
+// vertical and horizontal edges. y is down here, up there.
 TEST(SmaaMulti, TilesAreThoseOfThePublishedIndices) {
     const double tiles[] = {0, -.25, .25, -.125, .125, -.375, .375};
     struct Sample {

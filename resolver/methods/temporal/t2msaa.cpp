@@ -93,25 +93,25 @@ MethodDescriptor t2msaa() {
     d.title = "Temporal 2x MSAA";
     d.family = "temporal";
     d.summary = "Two sub-samples a frame at alternating places, accumulated along the motion with rejection by depth.";
-    d.source = "seed 001 s.4.4.2; methods/06 s.6.9";
+    d.source = "[Stejmar n.d., 4.4.2]";
     d.passes = Pass::color | Pass::motion | Pass::subsamples | Pass::subsampleColor;
     d.output = Space::encoded;
     d.outputSpace = [](const Params& p) { return p.choice("space") == "encoded" ? Space::encoded : Space::linear; };
     d.temporal = true;
     d.params = {
-        temporal::unjitterParam(false, "methods/06 B0; the shift between frames is the filter"),
+        temporal::unjitterParam(false, "conventions 7.0; the shift between frames is the filter"),
         realParam("offset", "0.25", 0.0625, 0.375,
                   "shift of the two samples between frames, px; the thesis has 0.25, 0.1875, 0.125; chooses among more "
                   "than two recorded sub-samples, where there are two the shot's jitter has shifted them",
-                  "seed 001 tables 5.17-5.20"),
+                  "[Stejmar n.d., tables 5.17-5.20]"),
         choiceParam("velocity", "uv", {"uv", "fractional"},
-                    "velocity in the blur limit: in UV as listed, or the fraction of a pixel", "methods/11 nr 20"),
-        temporal::countAtParam("seed 001 s.4.4.2"),
+                    "velocity in the blur limit: in UV as listed, or the fraction of a pixel", "decisions 20"),
+        temporal::countAtParam("[Stejmar n.d., 4.4.2]"),
         temporal::depthToleranceParam(),
         temporal::bothSidesParam(),
-        temporal::magnificationParam("1", "seed 001 s.4.4.1: figures 4.10 and 4.11; methods/11 nr 18"),
+        temporal::magnificationParam("1", "[Stejmar n.d., figures 4.10 and 4.11]; decisions 18"),
         choiceParam("space", "encoded", {"encoded", "linear"}, "space of the blend",
-                    "seed 001: 8-bit buffers; methods/00 s.4")};
+                    "[Stejmar n.d.]: 8-bit buffers; conventions 4")};
     d.create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
         if (shot.subSamplePositionsPx.size() < 2)
             throw InputError("t2msaa: expected at least 2 sub-samples a pixel, found " +

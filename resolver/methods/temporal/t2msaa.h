@@ -1,4 +1,4 @@
-// t2msaa: temporal 2x multisampling of seed 001 s.4.4.2; methods/06 s.6.9.
+// t2msaa: temporal 2x multisampling of [Stejmar n.d., 4.4.2].
 //
 //  1. c = mean of the two sub-sample colours   2. q = p - motion of the pixel itself, history bilinear
 //  3. rejection: border, mean depth (0.08, one-sided), magnification (1.0)   4. rejected: c, N = 1

@@ -5,7 +5,7 @@
 
 namespace AA_ARCH {
 
-// v (1 - v) of one component; v > 1 counts as 1 (methods/08 s.8.3).
+// v (1 - v) of one component; v > 1 counts as 1 (conventions 11).
 template <class R>
 AA_INLINE R parabola(R v) {
     const R s = saturate(v);

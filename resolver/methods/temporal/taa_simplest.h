@@ -1,5 +1,5 @@
 // taaSimplest: exponential blend of the current frame with its reprojected history, nothing else.
-// Source: seed 002, "The simplest TAA implementation"; methods/06 s.6.1.
+// Source: [Castorina 2023, "The simplest TAA implementation"].
 //
 // Input and output: linear light; motion in px, current - previous. No dilation, no rejection but the border test (the
 // printed code has none: `outside=clamp`), so moving surfaces leave trails and bilinear reads blur in motion: the lower

@@ -59,7 +59,7 @@ ParamSpec historyFilterParam(std::string_view def, std::string_view source) {
 ParamSpec historyClampParam() {
     return flagParam("historyClamp", true,
                      "hold what Catmull-Rom reads in the range of the four central texels, and >= 0; off: as published",
-                     "methods/08 s.8.1", "history=catmullRom|catmullRom5");
+                     "conventions 9", "history=catmullRom|catmullRom5");
 }
 ParamSpec neighbourhoodParam(std::string_view def, std::string_view source) {
     return choiceParam("neighbourhood", def, {"rounded", "3x3", "plus"},
@@ -72,23 +72,22 @@ ParamSpec clipTargetParam(std::string_view def, std::string_view source) {
 ParamSpec warmupParam() {
     return choiceParam("warmup", "none", {"none", "ramp"},
                        "frames after a reset: none keeps the feedback, ramp averages the first frames evenly",
-                       "methods/06 s.6.0; none is the protocol of seed 000");
+                       "conventions 7; none is the protocol of [Oliveros 2018, 4.2.1]");
 }
 ParamSpec historyBitsParam(Space space) {
     const std::string_view help =
         "how colours are kept between frames: float, or rounded to binary16 or to 8 bits as on a graphics processor";
-    if (space == Space::encoded)
-        return choiceParam("historyBits", "32f", {"32f", "16f", "8"}, help, "methods/08 s.8.0");
-    return choiceParam("historyBits", "32f", {"32f", "16f"}, help, "methods/08 s.8.0");
+    if (space == Space::encoded) return choiceParam("historyBits", "32f", {"32f", "16f", "8"}, help, "conventions 8");
+    return choiceParam("historyBits", "32f", {"32f", "16f"}, help, "conventions 8");
 }
 ParamSpec ditherParam() {
     return flagParam("dither", false, "round up or down by chance, so that a slow history does not stall",
-                     "Pedersen 2016; methods/08 s.8.0", "historyBits=16f|8");
+                     "[Pedersen 2016]; conventions 8", "historyBits=16f|8");
 }
 ParamSpec outsideParam() {
     return choiceParam("outside", "reject", {"reject", "clamp"},
                        "history position outside the image: take the current colour, or the history's edge",
-                       "methods/06 s.6.3");
+                       "ours; [Pedersen 2016] has clamp");
 }
 ParamSpec sharpenParam(std::string_view def, std::string_view source) {
     return choiceParam("sharpen", def, {"none", "xu", "norm"},
@@ -105,11 +104,10 @@ ParamSpec depthToleranceParam(std::string_view onlyWhen) {
     return realParam("depthTolerance", "0.08", 0, 10,
                      "a surface is new where the last frame shows one nearer by more than this share of its depth; 1 "
                      "and more: nowhere",
-                     "seed 001 s.4.4.1", onlyWhen);
+                     "[Stejmar n.d., 4.4.1]", onlyWhen);
 }
 ParamSpec bothSidesParam(std::string_view onlyWhen) {
-    return flagParam("bothSides", false, "reject nearer surfaces too, not only hidden ones", "methods/11 nr 19",
-                     onlyWhen);
+    return flagParam("bothSides", false, "reject nearer surfaces too, not only hidden ones", "decisions 19", onlyWhen);
 }
 ParamSpec magnificationParam(std::string_view def, std::string_view source) {
     return choiceParam("magnification", def, {"off", "0.5", "1"},

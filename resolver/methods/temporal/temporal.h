@@ -1,8 +1,9 @@
 // Host side shared by the temporal methods: the colour history, their common parameters, the display-space sharpening
-// and the debug layers. The steps themselves are kernel text in temporal_blocks.kernel.h. Source: methods/06 s.6.0.
+// and the debug layers. The steps themselves are kernel text in temporal_blocks.kernel.h; what each does:
+// conventions 7.
 //
-// The history holds the blend before sharpening (methods/06), RGBA float, two planes that swap roles. A frame with
-// `reset` set, and the first frame, drop it; a change of size without reset is an InputError (methods/08 s.8.3).
+// The history holds the blend before sharpening (conventions 5), RGBA float, two planes that swap roles. A frame with
+// `reset` set, and the first frame, drop it; a change of size without reset is an InputError (conventions 5).
 #pragma once
 #include <algorithm>
 #include <glm/vec3.hpp>
@@ -54,10 +55,10 @@ ParamSpec historyBitsParam(Space space);  // eight bits hold display-encoded col
 ParamSpec ditherParam();
 ParamSpec outsideParam();
 ParamSpec sharpenParam(std::string_view def, std::string_view source);
-// The two ends of the luminance feedback B8.
+// The two ends of the luminance feedback (conventions 7.8).
 ParamSpec kMinParam(std::string_view def, std::string_view source);
 ParamSpec kMaxParam(std::string_view def, std::string_view source);
-// Thresholds of the rejection by geometry B3: read together by rejectionTest().
+// Thresholds of the rejection by geometry (conventions 7.3): read together by rejectionTest().
 ParamSpec depthToleranceParam(std::string_view onlyWhen = {});
 ParamSpec bothSidesParam(std::string_view onlyWhen = {});
 ParamSpec magnificationParam(std::string_view def, std::string_view source);
@@ -80,7 +81,7 @@ PassSet dilationPasses(const Params& p);
 // The members of TemporalIn that come from the frame alone; `color` in the method's working space.
 TemporalIn frameView(const Frame& frame, const Rgb& color);
 
-// ---- methods/06 B0: the current frame read at p - jitter ----
+// ---- conventions 7.0: the current frame read at p - jitter ----
 // A jittered frame holds at texel m the scene at centre(m) + jitter, so what lies at p is read at p - jitter: colours
 // bilinear, depth, id and motion at the nearest texel, beyond the picture its edge. Without jitter nothing changes.
 // The nearest texel as offset from the pixel: 0 but for a jitter of half a pixel.
@@ -147,7 +148,7 @@ struct ViewRays {
 };
 std::optional<ViewRays> viewRays(const Frame& frame);  // nothing without a perspective or orthographic camera
 
-// Sharpened copy of a display-encoded blend (methods/06 s.6.10); never fed back. `kernel` is not none.
+// Sharpened copy of a display-encoded blend [Oliveros 2018, eq 3.1 and 4.17]; never fed back. `kernel` is not none.
 void sharpenEncoded(const RgbaPlane& blend, SharpenKernel kernel, const Exec& exec, Rgb& out);
 void sharpenEncodedRow(const RgbaPlane& blend, SharpenKernel kernel, const Exec& exec, int y, Rgb& out);
 float sharpenGain(SharpenKernel kernel);  // as of SharpenHistoryArgs

@@ -1,18 +1,18 @@
-// The shared steps of every temporal method (methods/06 s.6.0, B2-B9), as small pure functions over R; B1 lies in
-// temporal_reprojection.kernel.h. Include from *.kernel.cpp only.
+// The shared steps of every temporal method (conventions 7.2 to 7.9), as small pure functions over R; reprojection lies
+// in temporal_reprojection.kernel.h. Include from *.kernel.cpp only.
 #pragma once
 #include "methods/temporal/temporal_options.kernel.h"
 #include "methods/temporal/temporal_reprojection.kernel.h"
 
 namespace AA_ARCH {
 
-// ---- B2 dilation ----------------------------------------------------------------------------------------------------
+// ---- dilation (conventions 7.2) -------------------------------------------------------------------------------------
 template <class R>
 AA_INLINE Motion<R> loadMotion(const TemporalIn& in, long o) {
     return {load<R>(in.motionXPx + o), load<R>(in.motionYPx + o)};
 }
 // The surface nearest to the camera in 3x3, or of the centre and the diagonals alone. The centre wins ties, otherwise
-// the first in row-major order (methods/00 s.3).
+// the first in row-major order (conventions 3).
 template <class R>
 struct Surface {
     R depthView;
@@ -74,7 +74,7 @@ struct Window {
     AA_INLINE vec3<R> operator()(int i, int j) const { return color[(j + 1) * 3 + i + 1]; }
 };
 
-// ---- B4 neighbourhoods ----------------------------------------------------------------------------------------------
+// ---- neighbourhoods (conventions 7.4) -------------------------------------------------------------------------------
 template <class R>
 struct Box {
     vec3<R> lo, hi;
@@ -99,7 +99,7 @@ AA_INLINE Neighbours<R> neighbours(const At& at) {
     b.meanSquare = c + (around + ((nw - c) + (ne - c) + ((sw - c) + (se - c)))) * R(T(1) / T(9));
     return b;
 }
-// "Rounded": the mean of both windows' bounds (Pedersen 2016).
+// "Rounded": the mean of both windows' bounds [Pedersen 2016].
 template <class R>
 AA_INLINE Box<R> boxOf(const Neighbours<R>& b, Neighbourhood kind) {
     const R half(Elem<R>(0.5));
@@ -114,7 +114,7 @@ AA_INLINE vec3<R> meanOf(const Neighbours<R>& b, Neighbourhood kind) {
     return (b.meanSquare + b.meanPlus) * R(Elem<R>(0.5));
 }
 
-// ---- B5, B6 constraints ---------------------------------------------------------------------------------------------
+// ---- constraints (conventions 7.5, 7.6) -----------------------------------------------------------------------------
 // The smallest of three ratios n_k / d_k >= 0 by cross multiplication: one division, where the processor has few. n > 0
 // over 0 is infinite, as it should be; 0 over 0 is the caller's to avoid. Exact up to rounding while the products stay
 // finite (colours below 1e18).
@@ -125,12 +125,13 @@ AA_INLINE R leastRatio(vec3<R> n, vec3<R> d) {
     const auto xyz = nxy * d.z <= n.z * dxy;
     return select(xyz, nxy, n.z) / select(xyz, dxy, d.z);
 }
-// Clip toward the box centre (Pedersen 2016): h moves on the line to the centre until it meets the box's surface.
+// Clip toward the box centre [Pedersen 2016]: h moves on the line to the centre until it meets the box's surface.
 template <class R>
 AA_INLINE vec3<R> clipToCentre(Box<R> box, vec3<R> h) {
     using T = Elem<R>;
     const R half(T(0.5));
-    // Scaled floor: with an absolute 1e-8 a flat bright box would divide rounding noise by almost nothing (methods/08).
+    // Scaled floor: with an absolute 1e-8 a flat bright box would divide rounding noise by almost nothing
+    // (conventions 9).
     const R floorExtent = max(R(T(1e-8)), maxComponent(abs(box.hi)) * R(T(1e-6)));
     const vec3<R> centre = (box.lo + box.hi) * half, extent = (box.hi - box.lo) * half + vec3<R>(floorExtent);
     const vec3<R> offset = h - centre;
@@ -156,13 +157,13 @@ AA_INLINE vec3<R> constrain(Box<R> box, ClipTarget target, vec3<R> mean, vec3<R>
     return clipToCentre(box, h);
 }
 
-// ---- B7 variance box ------------------------------------------------------------------------------------------------
+// ---- variance box (conventions 7.7) ---------------------------------------------------------------------------------
 template <class R>
 struct Moments {
     vec3<R> mean, sigma;
 };
-// Moments of the 3x3 window about its centre colour: E[x^2] - mean^2 loses all digits of bright windows (methods/08).
-// `also(i, j, d)` sees every neighbour's deviation d from the centre on the way.
+// Moments of the 3x3 window about its centre colour: E[x^2] - mean^2 loses all digits of bright windows
+// (conventions 9). `also(i, j, d)` sees every neighbour's deviation d from the centre on the way.
 template <class R, class At, class Also>
 AA_INLINE Moments<R> moments(const At& at, const Also& also) {
     using T = Elem<R>;
@@ -190,8 +191,8 @@ AA_INLINE Box<R> varianceBox(const Moments<R>& m, float gamma) {
     return {m.mean - e, m.mean + e};
 }
 
-// ---- B8, B9 feedback and blends -------------------------------------------------------------------------------------
-// Weight of history from the relative luminance difference (Lottes 2012; Pedersen 2016).
+// ---- feedback and blends (conventions 7.8, 7.9) ---------------------------------------------------------------------
+// Weight of history from the relative luminance difference ([Pedersen 2016], after T. Lottes).
 template <class R>
 AA_INLINE R luminanceFeedback(R current, R history, float kMin, float kMax) {
     using T = Elem<R>;
@@ -199,17 +200,16 @@ AA_INLINE R luminanceFeedback(R current, R history, float kMin, float kMax) {
     const R u = R(T(1)) - d;
     return R(T(kMin)) + R(T(kMax) - T(kMin)) * (u * u);
 }
-// history + (current - history) * (1 - k): k = 0 and k = 1 are exact (methods/08 s.8.3).
+// history + (current - history) * (1 - k): k = 0 and k = 1 are exact (conventions 11).
 template <class R>
 AA_INLINE vec3<R> blend(vec3<R> current, vec3<R> history, R k) {
     const R zero(Elem<R>(0)), one(Elem<R>(1));
     const vec3<R> mixed = history + (current - history) * (one - k);
     return select(k == zero, current, select(k == one, history, mixed));
 }
-// Each colour weighted by 1 / (1 + luminance), against fireflies (Karis 2014).
+// Each colour weighted by 1 / (1 + luminance), against fireflies [Karis 2014].
 template <class R>
-AA_INLINE vec3<R> inverseLuminanceBlend(vec3<R> current, R luminanceCurrent, vec3<R> history, R luminanceHistory,
-                                          R k) {
+AA_INLINE vec3<R> inverseLuminanceBlend(vec3<R> current, R luminanceCurrent, vec3<R> history, R luminanceHistory, R k) {
     using T = Elem<R>;
     const R zero(T(0)), one(T(1));
     // (1 - k) / (1 + Lc) against k / (1 + Lh), both times (1 + Lc) (1 + Lh): one division, and k = 0, 1 stay exact.
@@ -219,7 +219,7 @@ AA_INLINE vec3<R> inverseLuminanceBlend(vec3<R> current, R luminanceCurrent, vec
 
 // ---- history --------------------------------------------------------------------------------------------------------
 // A non-finite blend becomes the current colour, that of a broken current pixel its history (finite by induction): one
-// bad value must not live in the history for ever (methods/08 s.8.3, taaSimplest).
+// bad value must not live in the history for ever (conventions 11).
 template <class R>
 AA_INLINE vec3<R> sanitised(vec3<R> blended, vec3<R> current, vec3<R> history) {
     const Mask<R> good = finite(blended);
@@ -257,7 +257,7 @@ AA_INLINE void storeFirst(const TemporalIn& in, int x, int y) {
 }
 template <class R>
 AA_INLINE void storeDebug(const TemporalDebug& d, long o, Motion<R> motion, Mask<R> inside, const Box<R>& box,
-                           vec3<R> moved, R k) {
+                          vec3<R> moved, R k) {
     if (!d.rejection) return;
     using T = Elem<R>;
     store(select(inside, R(T(0)), R(T(int(Rejection::outside)))), d.rejection + o);

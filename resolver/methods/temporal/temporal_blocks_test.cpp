@@ -1,4 +1,4 @@
-// The building blocks of methods/06 s.6.0 against the vectors of s.6.15 and the rules of methods/08.
+// The building blocks of conventions 7 against the values of conventions 15 and the rules of conventions 9.
 #include <gtest/gtest.h>
 
 #define AA_ARCH block_test
@@ -89,7 +89,7 @@ TEST(TemporalBlocks, VarianceOfABrightWindowKeepsItsDigits) {
 TEST(TemporalBlocks, RoundedBoxVectors) {
     const auto roundedHigh = [](int oi, int oj) {
         return boxOf(neighbours<double>([&](int i, int j) { return oneInWindow(i, j, oi, oj); }),
-                      Neighbourhood::rounded)
+                     Neighbourhood::rounded)
             .hi.x;
     };
     EXPECT_EQ(roundedHigh(-1, 1), 0.5);
@@ -114,7 +114,7 @@ TEST(TemporalBlocks, BlendIsExactAtBothEnds) {
     expectNear(blend(c, h, 0.25), 0.75 * 0.123 + 0.25 * 0.9, 0.75 * 4.56 + 0.25e6, 0.75e-3 + 0.75e-7, 1e-9);
 }
 TEST(TemporalBlocks, InverseLuminanceBlendVector) {
-    // methods/06 s.6.15, T2MSAA: N = 1, c = 1, h = 0, a = 1/2 -> 1/3.
+    // T2MSAA (conventions 15): N = 1, c = 1, h = 0, a = 1/2 -> 1/3.
     expectNear(inverseLuminanceBlend(V(1.0), 1.0, V(0.0), 0.0, 0.5), 1.0 / 3, 1.0 / 3, 1.0 / 3, 1e-12);
 }
 

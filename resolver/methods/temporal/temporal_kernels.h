@@ -4,12 +4,12 @@
 
 namespace aa {
 
-enum class Dilation { closest3x3, closestX, longest3x3, none };  // methods/06 B2
-// methods/06 B1; the last two are Catmull-Rom as published, without the clamp of methods/08 s.8.1.
+enum class Dilation { closest3x3, closestX, longest3x3, none };  // conventions 7.2
+// conventions 7.1; the last two are Catmull-Rom as published, without the clamp of conventions 9.
 enum class HistoryFilter { bilinear, catmullRom, catmullRom5, catmullRomFree, catmullRom5Free };
-enum class Neighbourhood { rounded, box3x3, plus };          // methods/06 B4
-enum class ClipTarget { aabbCentre, mean, current, clamp };  // methods/06 B6; clamp: B5 instead of a clip
-enum class SharpenKernel { none, xu, norm };                 // methods/06 s.6.10
+enum class Neighbourhood { rounded, box3x3, plus };          // conventions 7.4
+enum class ClipTarget { aabbCentre, mean, current, clamp };  // conventions 7.6; clamp: 7.5 instead of a clip
+enum class SharpenKernel { none, xu, norm };                 // [Oliveros 2018, eq 3.1 and 4.17]
 // Weights under the luminance feedback: 1/4 1/2 1/4 (the thesis's program), BT.709, BT.601, as INSIDE's source prints.
 enum class Luminance { quarter, bt709, bt601, inside };
 
@@ -23,7 +23,7 @@ struct ExpectedDepth {
     float perDepth[3] = {0, 0, 1}, constant[3] = {0, 0, 0};
 };
 
-// Thresholds of the tests that reject history by geometry (methods/06 B3).
+// Thresholds of the tests that reject history by geometry (conventions 7.3).
 struct RejectionTest {
     float depthTolerance;  // share of the expected depth
     float magnification;   // of the footprint within which the previous pixel's centre must lie; 0: not tested
@@ -50,7 +50,8 @@ struct TemporalIn {
     RgbOut out = {};                 // this frame's blend again, planar; null: not wanted
     int stride = 0, width = 0, height = 0;
     float jitterXPx = 0, jitterYPx = 0;  // of the colours as the kernel sees them: 0 once they are un-jittered
-    // Where a pixel's colours are to be read, from its centre: -jitter where the frame is un-jittered (B0), else 0.
+    // Where a pixel's colours are to be read, from its centre: -jitter where the frame is un-jittered
+    // (conventions 7.0), else 0.
     float readXPx = 0, readYPx = 0;
     float feedbackCeiling = 1;  // largest history weight of this frame (warmup=ramp: 1 - 1/(t+1))
     bool clampOutside = false;  // a history position outside the image is moved to its border, not rejected
@@ -65,7 +66,7 @@ struct SharpenHistoryArgs {
     int stride, width;
     float gain;  // weight of each of the four neighbours: 1 (Xu), 1/4 (normalised)
 };
-// The colours of a history as a narrower format would hold them (methods/08 s.8.0); its alpha stays float.
+// The colours of a history as a narrower format would hold them (conventions 8); its alpha stays float.
 enum class HistoryFormat { float32, half, byte };
 struct NarrowHistoryArgs {
     float* rgba;
@@ -74,7 +75,7 @@ struct NarrowHistoryArgs {
     bool dither;  // rounds up or down by chance, so that the mean is kept
     uint32_t frame;
 };
-// methods/06 B0: colours at p + (xPx, yPx), bilinear, over whole rows of planes. Row y0 of the call goes to `out`,
+// conventions 7.0: colours at p + (xPx, yPx), bilinear, over whole rows of planes. Row y0 of the call goes to `out`,
 // y0 + 1 after it, ...; each starts at x = -border and is `stride` long.
 struct UnjitterArgs {
     RgbIn in;

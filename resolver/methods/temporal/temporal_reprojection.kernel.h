@@ -1,10 +1,10 @@
-// B1 of the temporal methods (methods/06 s.6.0): where a pixel was a frame ago, and what the history holds there.
-// Include from *.kernel.cpp only.
+// Reprojection in the temporal methods (conventions 7.1): where a pixel was a frame ago, and what the history holds
+// there. Include from *.kernel.cpp only.
 //
 // Reprojection is done in displacements, never in absolute positions: the fraction of q = p - motion is then exact at
 // any x, integer motion is an exact shift, and float and double choose the same texels. History is interleaved RGBA
 // (one 16-byte load per texel) with a filled border, so a position inside the image needs no clamped taps.
-// Comparisons are written so that NaN rejects history (methods/08 s.8.0).
+// Comparisons are written so that NaN rejects history (conventions 8).
 #pragma once
 #include "kernels/ring.h"
 #include "methods/temporal/temporal_texels.kernel.h"
@@ -15,7 +15,7 @@ namespace AA_ARCH {
 template <class R>
 struct Reprojection {
     R wholeX, wholeY, fracX, fracY;
-    Mask<R> inside;  // 0 <= q.x <= width and 0 <= q.y <= height (closed, methods/00 s.1), false for NaN
+    Mask<R> inside;  // 0 <= q.x <= width and 0 <= q.y <= height (closed, conventions 1), false for NaN
 };
 template <class R>
 struct Motion {
@@ -80,7 +80,7 @@ AA_INLINE Texel<R> fetchBilinear(const float* p, int stride, const Reprojection<
     return {lerpExact(top.rgb, bottom.rgb, q.fracY, wholeY),
             select(wholeY, top.a, top.a + (bottom.a - top.a) * q.fracY)};
 }
-// Catmull-Rom weights of taps -1, 0, 1, 2 (methods/00 s.1).
+// Catmull-Rom weights of taps -1, 0, 1, 2 (conventions 1).
 template <class R>
 AA_INLINE void catmullRomWeights(R f, R* w) {
     using T = Elem<R>;
@@ -105,11 +105,11 @@ AA_INLINE void lanczosWeights(R f, R* w) {
 }
 // 4x4 taps of weight wx[i] wy[j]; `corners` false drops the four corner taps (the "5-tap" form of GPUs, 12 texels).
 // `normalise` divides by the sum of the weights; Catmull-Rom's sixteen sum to 1. `clamped` holds the sum in the range
-// of the four central texels against overshoot at fireflies, and >= 0 (methods/08 s.8.1). Whole motion takes the texel
+// of the four central texels against overshoot at fireflies, and >= 0 (conventions 9). Whole motion takes the texel
 // itself; beside it, taps of weight 0 are exact because a history is finite (sanitised()).
 template <bool corners, bool normalise, class R>
 AA_INLINE vec3<R> fetch4x4(const float* p, int stride, const Reprojection<R>& q, const R (&wx)[4], const R (&wy)[4],
-                            bool clamped) {
+                           bool clamped) {
     using T = Elem<R>;
     const Offsets<R> k = texelOffsets(q, stride);
     if (allWhole(q)) return fetchRgba<R>(p, k).rgb;
@@ -122,8 +122,7 @@ AA_INLINE vec3<R> fetch4x4(const float* p, int stride, const Reprojection<R>& q,
         const float* r = p + 4l * (j - 1) * stride;
         const vec3<R> t1 = fetchRgba<R>(r, k).rgb, t2 = fetchRgba<R>(r + 4, k).rgb;
         vec3<R> line = t1 * wx[1] + t2 * wx[2];
-        if (corners || !outerRow)
-            line = line + fetchRgba<R>(r - 4, k).rgb * wx[0] + fetchRgba<R>(r + 8, k).rgb * wx[3];
+        if (corners || !outerRow) line = line + fetchRgba<R>(r - 4, k).rgb * wx[0] + fetchRgba<R>(r + 8, k).rgb * wx[3];
         if (j == 1) lo = min(t1, t2), hi = max(t1, t2), own = t1;
         if (j == 2) lo = min(lo, min(t1, t2)), hi = max(hi, max(t1, t2));
         sum = sum + line * wy[j];
@@ -157,8 +156,8 @@ AA_INLINE vec3<R> fetchHistory(const TemporalIn& in, int x, int y, const Reproje
         return fetchCatmullRom<false>(p, in.stride, q, clamped);
     return fetchBilinear(p, in.stride, q).rgb;
 }
-// B0: B(plane, p + offset) with one offset for the whole frame (un-jittering: offset = -jitter). A plane of float, or
-// of Elem<R>. Offset 0 gives the texel itself.
+// B(plane, p + offset) with one offset for the whole frame (un-jitter, conventions 7.0: offset = -jitter). A plane of
+// float, or of Elem<R>. Offset 0 gives the texel itself.
 template <class R>
 struct UniformFetch {
     int dx, dy;

@@ -1,5 +1,5 @@
-// The sharpening of seed 000 eq 4.17 and its normalised form, on a history's own layout. Include from *.kernel.cpp
-// only.
+// The sharpening of [Oliveros 2018, eq 3.1] and its normalised form, eq 4.17, on a history's own layout. Include from
+// *.kernel.cpp only.
 #pragma once
 #include "methods/temporal/temporal_texels.kernel.h"
 
@@ -17,7 +17,7 @@ AA_INLINE V sharpened(const float* above, const float* p, const float* below, fl
 // kept. Texels -1 and `width` of the row are its border.
 template <class R>
 AA_INLINE void sharpenRow(const float* above, const float* row, const float* below, float gain, const RgbOut& out,
-                           long o, int width) {
+                          long o, int width) {
     for (int x = 0; x < width; x += N<R>) {
         if constexpr (N<R> == 1) {
             for (int c = 0; c < 3; c++) {

@@ -33,7 +33,7 @@ AA_INLINE vec3<R> clamp3(vec3<R> c, vec3<R> lo, vec3<R> hi) {
     return min(max(c, lo), hi);
 }
 
-// Y, Co, Cg (methods/00 s.4). The inverse does not clamp.
+// Y, Co, Cg (conventions 4). The inverse does not clamp.
 template <class R>
 AA_INLINE vec3<R> toYcocg(vec3<R> c) {
     using T = Elem<R>;

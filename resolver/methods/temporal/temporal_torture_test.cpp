@@ -1,4 +1,4 @@
-// The torture set of methods/08 s.8.4 for every temporal method: extremes that no scene has and every method must bear.
+// The torture set of conventions 12 for every temporal method: extremes that no scene has and every method must bear.
 #include <gtest/gtest.h>
 
 #include "methods/temporal/temporal_test_frames.h"

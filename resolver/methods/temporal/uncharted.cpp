@@ -46,20 +46,20 @@ MethodDescriptor descriptor(std::string_view id, std::string_view title, std::st
             .title = title,
             .family = "temporal",
             .summary = summary,
-            .source = "seed 000 s.3.6 (Xu 2016, Pedersen 2016); methods/06 s.6.4",
+            .source = "[Oliveros 2018, 3.6], after [Xu 2016] and [Pedersen 2016]",
             .passes = Pass::color | Pass::motion,
             .input = Space::encoded,
             .output = Space::encoded,
             .temporal = true,
-            .params = {temporal::unjitterParam(true, "seed 000 App. B; methods/06 B0"),
-                       temporal::kMinParam("0.925", "the author's public program; methods/11 nr 5"),
-                       temporal::kMaxParam("0.979", "the author's public program; methods/11 nr 5"),
-                       temporal::luminanceParam("quarter", "the author's public program; methods/06 s.6.4"),
+            .params = {temporal::unjitterParam(true, "[Oliveros 2018, appendix B]; decisions 15"),
+                       temporal::kMinParam("0.925", "[Oliveros 2018, program]; decisions 5"),
+                       temporal::kMaxParam("0.979", "[Oliveros 2018, program]; decisions 5"),
+                       temporal::luminanceParam("quarter", "[Oliveros 2018, program]; decisions 9"),
                        temporal::sharpenParam(sharpen, sharpenSource),
-                       temporal::dilationParam("closest3x3", "seed 000 s.3.6.2"),
-                       temporal::historyFilterParam("bilinear", "methods/06 B1"), temporal::historyClampParam(),
-                       temporal::neighbourhoodParam("rounded", "seed 000 s.3.6.3"),
-                       temporal::clipTargetParam("aabbCentre", "methods/11 nr 6"), temporal::warmupParam(),
+                       temporal::dilationParam("closest3x3", "[Oliveros 2018, 3.6.3]"),
+                       temporal::historyFilterParam("bilinear", "conventions 7.1"), temporal::historyClampParam(),
+                       temporal::neighbourhoodParam("rounded", "[Oliveros 2018, 3.6.3]"),
+                       temporal::clipTargetParam("aabbCentre", "decisions 6"), temporal::warmupParam(),
                        temporal::historyBitsParam(Space::encoded), temporal::ditherParam()},
             .create =
                 [id](const Params& p, const ShotInfo&) {
@@ -73,16 +73,16 @@ MethodDescriptor descriptor(std::string_view id, std::string_view title, std::st
 MethodDescriptor unchartedDescriptor() {
     return descriptor("uncharted", "Uncharted TAA",
                       "Clipped and luminance-weighted history, sharpened with Xu's kernel as in the thesis.", "xu",
-                      "seed 000 eq 3.1");
+                      "[Oliveros 2018, eq 3.1]");
 }
 MethodDescriptor unchartedNormDescriptor() {
     return descriptor("unchartedNorm", "Uncharted TAA, normalised sharpening",
                       "As uncharted, sharpened with a quarter of the gain: the fair baseline.", "norm",
-                      "seed 000 eq 4.17, table 5.1");
+                      "[Oliveros 2018, eq 4.17, table 5.1]");
 }
 MethodDescriptor unchartedNoSharpenDescriptor() {
     return descriptor("unchartedNoSharpen", "Uncharted TAA, not sharpened",
                       "As uncharted without its sharpening: what the temporal part alone does.", "none",
-                      "methods/06 s.6.4");
+                      "ours: what the temporal part alone does");
 }
 }  // namespace aa

@@ -1,5 +1,5 @@
-// methods/06 B0, un-jitter of the current frame: what it means (a scene, sampled at p + jitter, is shown at p), its
-// signs, its edges, and the two methods of seed 000 that need it, against a direct evaluation in double.
+// Un-jitter of the current frame (conventions 7.0): what it means (a scene, sampled at p + jitter, is shown at p), its
+// signs, its edges, and the two methods of [Oliveros 2018] that need it, against a direct evaluation in double.
 #include <gtest/gtest.h>
 
 #include "methods/temporal/temporal.h"

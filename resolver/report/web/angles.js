@@ -25,7 +25,7 @@
     element("div", { class: "scroll", tabindex: "0", role: "region", "aria-labelledby": "angles-title" }, table));
   document.getElementById("viewer").before(section);
 
-  const hues = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#b8a800"]; // Okabe and Ito 2008
+  const hues = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#b8a800"]; // [Okabe 2008]
   const dashes = [[], [6, 3], [2, 2]];
   let chart;
   const draw = () => {

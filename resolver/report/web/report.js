@@ -176,7 +176,7 @@
   const megabytes1080 = (bytesPerPixel) => bytesPerPixel * 1920 * 1080 / 1048576;
   const stateOf = (m) => megabytes1080(m.stateBytes / (run.shot.resolution[0] * run.shot.resolution[1]));
   const passMemory = (m) => megabytes1080(m.passes.reduce((sum, p) => sum + (passBytes[p] || 0), 0));
-  // Extra memory at 1920 x 1080 that a GPU implementation reports: seed 001, table 5.6 (methods/10 s.B.3).
+  // Extra memory at 1920 x 1080 that a GPU implementation reports: [Stejmar n.d., table 5.6].
   const publishedMemory = (m) => ({ gbaa: 7.9, fxaa1: 0, fxaacs: 9.9, t2msaa: 67.2, asaa: 86.5 })[m.id] ?? (m.id === "msaa" ? { 2: 39.6, 4: 91, 8: 209.6 }[S] : undefined) ?? null;
   sortableTable($("price-figures"), order, [
     { title: "Passes, s per frame", better: "low", get: (m, i) => priceOf(i)?.render ?? null, small: (m) => m.passes.join(", ") },
@@ -189,7 +189,7 @@
     (S ? ` with ${S} sub-samples per pixel` : "") + ". Published: extra memory of a GPU implementation (Linköping thesis, table 5.6), which packs its buffers more tightly and counts its render targets.";
 
   // ---- charts ----
-  const hues = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#b8a800"]; // Okabe and Ito 2008
+  const hues = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#b8a800"]; // [Okabe 2008]
   const markers = ["circle", "rect", "triangle", "rectRot", "star", "crossRot", "rectRounded", "cross"];
   const colourOf = (i) => hues[order.indexOf(i) % hues.length];
   const markerOf = (i) => markers[(order.indexOf(i) + Math.floor(order.indexOf(i) / hues.length)) % markers.length];

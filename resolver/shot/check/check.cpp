@@ -135,7 +135,7 @@ class ShotCheck {
             numbersFound_.insert(prefix + channel);
             find("numbers", f.number, prefix + channel, first, "finite numbers",
                  std::to_string(nan) + " NaN and " + std::to_string(inf) + " Inf",
-                 "repair the render; `run` replaces and counts them (methods/08)", nan + inf);
+                 "repair the render; `run` replaces and counts them", nan + inf);
         };
         const auto rgb = [&](const Rgb& c, const std::string& part, const char* channels) {
             for (size_t k = 0; k < 3; k++) count(c.c[k], part + channels[k]);
@@ -164,7 +164,7 @@ class ShotCheck {
         if (bad == 0 || !numbersFound_.insert(prefix + "segments").second) return;
         find("numbers", f.number, prefix + "segments", std::nullopt, "finite positions and depths > 0",
              std::to_string(bad) + " unusable segments, the first at index " + std::to_string(first),
-             "repair the export; `run` leaves them out and counts them (methods/08)");
+             "repair the export; `run` leaves them out and counts them");
     }
 
     void normals(const Frame& f) {

@@ -292,7 +292,7 @@ void addStrand(SynthSceneContents& s, dvec2 at, double angle, double length, dou
 
 // Strands of 0.3 to 2 px in width, thrown over each other before a wall, half of them straight and half of them grey:
 // every random number is a hash of the strand's index. As many per area at every size, so that about a third of a large
-// picture is hair. Their values fill [0,1], as the picture that the thesis judges does (seed 000).
+// picture is hair. Their values fill [0,1], as the picture that the thesis judges does [Oliveros 2018].
 SynthSceneContents hairs(int w, int h, uint32_t seed) {
     constexpr double kAreaPerHair = 160, kShortest = 40, kLongest = 140, kThinnest = 0.3, kThickest = 2;  // px
     constexpr int kTufts = 16, kFewest = 24;

@@ -7,10 +7,10 @@
 #include "image/error.h"
 #include "image/io.h"
 #include "kernels/dispatch.h"
+#include "shot/manifest.h"
 #include "shot/patterns.h"
 #include "shot/synth/scenes.h"
 #include "shot/writer.h"
-#include "shot/manifest.h"
 
 namespace aa {
 using glm::dvec2;
@@ -69,7 +69,7 @@ const Placed* frontMost(const std::vector<Placed>& all, dvec2 p) {
 
 bool isSeam(const SynthShape& shape, size_t edge) { return edge < 32 && (shape.seams >> edge & 1); }
 
-// Signed distance along its major axis from p to the line of the shape's nearest edge (methods/05 s.5.1).
+// Signed distance along its major axis from p to the line of the shape's nearest edge (conventions 3).
 dvec2 nearestEdgePx(const Placed& placed, dvec2 p) {
     const auto& polygon = std::get<Polygon>(placed.region);
     double nearest = INFINITY;
@@ -139,8 +139,8 @@ class Sampler {
     glm::dmat3 toWorld_;
 };
 
-// Seed 001 s.3.7.1: the jitter's translation in clip space, multiplied to the wrong side of the projection, moves the
-// geometry in view space instead. It is a translation parallel to the picture's plane, so every depth stays.
+// [Stejmar n.d., 3.7.1]: the jitter's translation in clip space, multiplied to the wrong side of the projection, moves
+// the geometry in view space instead. It is a translation parallel to the picture's plane, so every depth stays.
 dvec3 premultipliedShift(dvec2 jitterPx, int width, int height) {
     return {-2 * jitterPx.x / width, 2 * jitterPx.y / height, 0.0};
 }

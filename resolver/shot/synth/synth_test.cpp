@@ -252,7 +252,7 @@ TEST(Synth, HairsAreStrandsOfTheirWidth) {
     EXPECT_NE(std::get<Polygon>(SynthShot(o).shapes()[0].region)[0], corners(0)[0]);
 }
 
-// methods/05 s.5.1: an edge 0.2 px to the right makes (0.2, 0.5); the sign follows the side.
+// conventions 3: an edge 0.2 px to the right makes (0.2, 0.5); the sign follows the side.
 TEST(Synth, EdgeDistancesAreSignedAndPointAtTheEdge) {
     SynthOptions o = small("half_planes", 1);
     o.jitter = "none";
