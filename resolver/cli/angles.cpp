@@ -57,23 +57,20 @@ void execute(Options& o) {
 }
 }  // namespace
 
-void addAngles(CLI::App& app, Context&) {
+void addAngles(CommandLine& line, Context&) {
     auto o = std::make_shared<Options>();
-    auto* c = app.add_subcommand("angles", "What methods gain on a straight edge, by its direction");
-    c->add_option("-m,--method", o->methods, "a method, `id` or `id:name=value`; repeat for more")
-        ->required()
-        ->allow_extra_args(false);
-    c->add_option("-o,--out", o->out,
-                  "folder for angles.json, angles.csv and angles.svg; `report` of that folder shows them");
-    c->add_option("--angles", o->study.angles, "number of directions, a multiple of 4")->check(CLI::Range(4, 3600));
-    c->add_option("--offsets", o->study.offsets, "sub-pixel offsets per direction")->check(CLI::Range(1, 256));
-    c->add_option("--size", o->study.sizePx, "width and height of a picture, px")->check(CLI::Range(16, 4096));
-    c->add_option("--frames", o->study.frames, "jittered frames for methods that accumulate")
-        ->check(CLI::Range(1, 1024));
-    c->add_option("--jitter", o->study.jitter, "jitter sequence of those frames (`synth --list`)");
-    c->add_flag("--json", o->json, "print angles.json instead of the table");
-    addWorkOptions(*c, o->work);
-    c->callback([o] { execute(*o); });
+    Command c = line.command("angles", "What methods gain on a straight edge, by its direction");
+    c.option("-m,--method", o->methods, "a method, `id` or `id:name=value`; repeat for more").required().oneEach();
+    c.option("-o,--out", o->out,
+             "folder for angles.json, angles.csv and angles.svg; `report` of that folder shows them");
+    c.option("--angles", o->study.angles, "number of directions, a multiple of 4").range(4, 3600);
+    c.option("--offsets", o->study.offsets, "sub-pixel offsets per direction").range(1, 256);
+    c.option("--size", o->study.sizePx, "width and height of a picture, px").range(16, 4096);
+    c.option("--frames", o->study.frames, "jittered frames for methods that accumulate").range(1, 1024);
+    c.option("--jitter", o->study.jitter, "jitter sequence of those frames (`synth --list`)");
+    c.flag("--json", o->json, "print angles.json instead of the table");
+    addWorkOptions(c, o->work);
+    c.run([o] { execute(*o); });
 }
 
 }  // namespace aa

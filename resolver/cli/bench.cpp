@@ -8,9 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/cli.h"
-#include "cli/runner.h"
 #include "image/error.h"
+#include "methods/driver.h"
 #include "shot/patterns.h"
+#include "shot/reader.h"
 #include "shot/synth/synth.h"
 
 namespace aa {
@@ -271,24 +272,23 @@ void execute(const Options& o) {
 
 }  // namespace
 
-void addBench(CLI::App& app, Context&) {
+void addBench(CommandLine& line, Context&) {
     auto o = std::make_shared<Options>();
-    auto* c = app.add_subcommand("bench", "Speed and memory of methods, and their error against the double form");
-    c->add_option("-m,--method", o->methods, "methods to time, noaa first as the baseline")->allow_extra_args(false);
-    c->add_option("--family", o->families, "time every method of a family: reference, spatial, geometry, temporal")
-        ->allow_extra_args(false);
-    c->add_option("--size", o->size, "size of the synthetic frames, px");
-    c->add_option("--shot", o->shot, "time on this shot's frames instead of synthetic ones");
-    c->add_option("--scene", o->scene,
-                  "synthetic scene (`synth --list`); default moving, half_planes for methods that read edges")
-        ->excludes("--shot");
-    c->add_option("--frames", o->frames, "frames in memory")->check(CLI::Range(1, 64));
-    c->add_option("--repeats", o->repeats, "passes over the frames")->check(CLI::Range(1, 100));
-    c->add_flag("--json", o->json, "as JSON");
-    c->add_flag("--markdown", o->markdown, "a table of memory and errors, the same on every machine")
-        ->excludes("--json");
-    addWorkOptions(*c, o->work);
-    c->callback([o] { execute(*o); });
+    Command c = line.command("bench", "Speed and memory of methods, and their error against the double form");
+    c.option("-m,--method", o->methods, "methods to time, noaa first as the baseline").oneEach();
+    c.option("--family", o->families, "time every method of a family: reference, spatial, geometry, temporal")
+        .oneEach();
+    c.option("--size", o->size, "size of the synthetic frames, px");
+    c.option("--shot", o->shot, "time on this shot's frames instead of synthetic ones");
+    c.option("--scene", o->scene,
+             "synthetic scene (`synth --list`); default moving, half_planes for methods that read edges")
+        .excludes("--shot");
+    c.option("--frames", o->frames, "frames in memory").range(1, 64);
+    c.option("--repeats", o->repeats, "passes over the frames").range(1, 100);
+    c.flag("--json", o->json, "as JSON");
+    c.flag("--markdown", o->markdown, "a table of memory and errors, the same on every machine").excludes("--json");
+    addWorkOptions(c, o->work);
+    c.run([o] { execute(*o); });
 }
 
 }  // namespace aa

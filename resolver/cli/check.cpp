@@ -27,23 +27,23 @@ void print(const CheckReport& r) {
 }
 }  // namespace
 
-void addCheck(CLI::App& app, Context& context) {
+void addCheck(CommandLine& line, Context& context) {
     struct Options {
         std::string shot;
         bool json = false, quiet = false;
         int threads = 0;
     };
     auto o = std::make_shared<Options>();
-    auto* c = app.add_subcommand("check", "Is the shot what its manifest claims? Exit code 1 when something is found");
-    c->add_option("SHOT", o->shot, "folder of the shot")->required();
-    c->add_option("-j,--threads", o->threads, "threads; 0 = all processors")->check(CLI::Range(0, 1024));
-    c->add_flag("--json", o->json, "as JSON");
-    c->add_flag("-q,--quiet", o->quiet, "no progress");
-    c->callback([o, &context] {
+    Command c = line.command("check", "Is the shot what its manifest claims? Exit code 1 when something is found");
+    c.option("SHOT", o->shot, "folder of the shot").required();
+    c.option("-j,--threads", o->threads, "threads; 0 = all processors").range(0, 1024);
+    c.flag("--json", o->json, "as JSON");
+    c.flag("-q,--quiet", o->quiet, "no progress");
+    c.run([o, &context] {
         CheckReport report;
         withThreads(o->threads, [&] {
             const size_t frames = readManifest(o->shot).frames.size();
-            Progress progress("check", frames, o->quiet || o->json);
+            TerminalProgress progress("check", frames, o->quiet || o->json);
             report = checkShot(o->shot, [&](int frame) {
                 progress.step("frame " + std::to_string(frame));
                 return !progress.interrupted();

@@ -13,7 +13,7 @@
 #include "report/colour_map.h"
 #include "report/format.h"
 #include "report/gallery.h"
-#include "report/protocol.h"
+#include "study/protocol.h"
 
 namespace aa {
 namespace {
@@ -205,23 +205,23 @@ void compare(const Options& o, Context& context) {
 }
 }  // namespace
 
-void addCompare(CLI::App& app, Context& context) {
+void addCompare(CommandLine& line, Context& context) {
     auto o = std::make_shared<Options>();
-    auto* c = app.add_subcommand("compare", "Metrics of two images or of two folders of frames; B is the reference");
-    c->add_option("A", o->a, "PNG (sRGB codes), EXR (linear), or a folder of frames")->required();
-    c->add_option("B", o->b, "the reference, of the same size or with the same frames")->required();
-    c->add_option("--metrics", o->metrics, "comma-separated; `ssim` is ssimLuma:" + listOfFigures())->delimiter(',');
-    c->add_option("--map", o->map, "error map on the fixed scale: a PNG, of folders a folder");
-    c->add_option("--fail-below", o->thresholds, "exit 1 when a pooled figure is below, for example psnr=40")
-        ->delimiter(',');
-    c->add_option("--exposure", o->exposure, "display exposure for linear images, EV")->check(CLI::Range(-20.0, 20.0));
-    c->add_option("--display", o->display,
-                  "of EXR files: srgb = encode, identity = the clamped values are compared as they are")
-        ->check(CLI::IsMember({"srgb", "identity"}));
-    c->add_flag("--q8", o->q8, "round both to 8-bit codes first");
-    c->add_flag("--json", o->json, "as JSON");
-    addWorkOptions(*c, o->work);
-    c->callback([o, &context] { compare(*o, context); });
+    Command c = line.command("compare", "Metrics of two images or of two folders of frames; B is the reference");
+    c.option("A", o->a, "PNG (sRGB codes), EXR (linear), or a folder of frames").required();
+    c.option("B", o->b, "the reference, of the same size or with the same frames").required();
+    c.option("--metrics", o->metrics, "comma-separated; `ssim` is ssimLuma:" + listOfFigures()).separatedBy(',');
+    c.option("--map", o->map, "error map on the fixed scale: a PNG, of folders a folder");
+    c.option("--fail-below", o->thresholds, "exit 1 when a pooled figure is below, for example psnr=40")
+        .separatedBy(',');
+    c.option("--exposure", o->exposure, "display exposure for linear images, EV").range(-20.0, 20.0);
+    c.option("--display", o->display,
+             "of EXR files: srgb = encode, identity = the clamped values are compared as they are")
+        .oneOf({"srgb", "identity"});
+    c.flag("--q8", o->q8, "round both to 8-bit codes first");
+    c.flag("--json", o->json, "as JSON");
+    addWorkOptions(c, o->work);
+    c.run([o, &context] { compare(*o, context); });
 }
 
 }  // namespace aa

@@ -4,7 +4,7 @@
 #include "image/error.h"
 #include "image/io.h"
 #include "methods/driver.h"
-#include "report/protocol.h"
+#include "study/protocol.h"
 
 namespace aa {
 namespace {
@@ -65,19 +65,18 @@ void filter(const Options& o) {
 }
 }  // namespace
 
-void addFilter(CLI::App& app, Context&) {
+void addFilter(CommandLine& line, Context&) {
     auto o = std::make_shared<Options>();
-    auto* c =
-        app.add_subcommand("filter", "One image through one spatial method; PNG = 8-bit sRGB codes, EXR = linear");
-    c->add_option("METHOD", o->method, "for example smaa1x:preset=HIGH")->required();
-    c->add_option("IN", o->in, "PNG or EXR")->required();
-    c->add_option("OUT", o->out, "PNG or EXR")->required();
-    c->add_option("--debug-layers", o->debugLayers, "also write the method's intermediate images to this EXR");
-    c->add_option("--display", o->display,
-                  "srgb = EXR values are linear light; identity = they are the displayed values, as the codes of a PNG")
-        ->check(CLI::IsMember({"srgb", "identity"}));
-    addWorkOptions(*c, o->work);
-    c->callback([o] { filter(*o); });
+    Command c = line.command("filter", "One image through one spatial method; PNG = 8-bit sRGB codes, EXR = linear");
+    c.option("METHOD", o->method, "for example smaa1x:preset=HIGH").required();
+    c.option("IN", o->in, "PNG or EXR").required();
+    c.option("OUT", o->out, "PNG or EXR").required();
+    c.option("--debug-layers", o->debugLayers, "also write the method's intermediate images to this EXR");
+    c.option("--display", o->display,
+             "srgb = EXR values are linear light; identity = they are the displayed values, as the codes of a PNG")
+        .oneOf({"srgb", "identity"});
+    addWorkOptions(c, o->work);
+    c.run([o] { filter(*o); });
 }
 
 }  // namespace aa

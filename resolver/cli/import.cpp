@@ -81,7 +81,7 @@ int import(Options& o) {
     bool interrupted = false;
     withThreads(o.threads, [&] {
         const size_t files = renderedFrames(o.import.from).size();
-        Progress progress("import", files, o.quiet);
+        TerminalProgress progress("import", files, o.quiet);
         report = importBlender(o.import, [&](int frame) {
             progress.step("frame " + std::to_string(frame));
             interrupted = progress.interrupted();
@@ -97,36 +97,34 @@ int import(Options& o) {
 }
 }  // namespace
 
-void addImport(CLI::App& app, Context& context) {
+void addImport(CommandLine& line, Context& context) {
     auto o = std::make_shared<Options>();
-    auto* c = app.add_subcommand("import", "A folder of Blender's own multilayer EXRs to a shot");
-    c->add_option("DIR", o->from,
-                  "folder of rendered frames, OpenEXR MultiLayer; the last number of a name is its frame")
-        ->required();
-    c->add_option("-o,--out", o->out, "folder of the shot; an interrupted import goes on there")->required();
-    c->add_option("--view-layer", o->import.viewLayer, "which view layer, where there are several");
-    c->add_option("--view", o->import.view, "which view of a multi-view render (stereo, sub-samples)");
-    c->add_option("--truth", o->truth,
-                  "one or two folders of the same frames rendered with many samples: independent halves, of which the "
-                  "second gives the error bar")
-        ->expected(1, 2);
-    c->add_option("--truth-filter", o->truthFilter,
-                  "pixel filter of the truth, NAME:WIDTH in px; Blender does not record it (box:1 is ideal)");
-    c->add_option(
-        "--jitter", o->jitter,
-        "JSON with the jitter of every frame, {\"frames\": [{\"frame\": 1, \"jitter\": [x, y]}]}, px, y down; "
-        "a shot.json serves; none = samples at the pixel centres");
-    c->add_option("--camera", o->camera,
-                  "JSON with the matrices of every frame, as in shot.json: background motion and zooms need them");
-    c->add_option("--ids", o->import.ids, "object ids: from the pass index, Cryptomatte, or the better of them")
-        ->check(CLI::IsMember({"auto", "index", "cryptomatte"}));
-    c->add_flag("--static", o->import.isStatic, "camera and objects rest; without it, the pixels tell");
-    c->add_option("--name", o->import.name, "of the shot; default the folder's");
-    c->add_option("--fps", o->import.fps, "frames per second")->check(CLI::Range(1e-3, 1e6));
-    c->add_option("-j,--threads", o->threads, "threads; 0 = all processors")->check(CLI::Range(0, 1024));
-    c->add_flag("--json", o->json, "the summary as JSON");
-    c->add_flag("-q,--quiet", o->quiet, "no progress");
-    c->callback([o, &context] { context.exitCode = import(*o); });
+    Command c = line.command("import", "A folder of Blender's own multilayer EXRs to a shot");
+    c.option("DIR", o->from, "folder of rendered frames, OpenEXR MultiLayer; the last number of a name is its frame")
+        .required();
+    c.option("-o,--out", o->out, "folder of the shot; an interrupted import goes on there").required();
+    c.option("--view-layer", o->import.viewLayer, "which view layer, where there are several");
+    c.option("--view", o->import.view, "which view of a multi-view render (stereo, sub-samples)");
+    c.option("--truth", o->truth,
+             "one or two folders of the same frames rendered with many samples: independent halves, of which the "
+             "second gives the error bar")
+        .values(1, 2);
+    c.option("--truth-filter", o->truthFilter,
+             "pixel filter of the truth, NAME:WIDTH in px; Blender does not record it (box:1 is ideal)");
+    c.option("--jitter", o->jitter,
+             "JSON with the jitter of every frame, {\"frames\": [{\"frame\": 1, \"jitter\": [x, y]}]}, px, y down; "
+             "a shot.json serves; none = samples at the pixel centres");
+    c.option("--camera", o->camera,
+             "JSON with the matrices of every frame, as in shot.json: background motion and zooms need them");
+    c.option("--ids", o->import.ids, "object ids: from the pass index, Cryptomatte, or the better of them")
+        .oneOf({"auto", "index", "cryptomatte"});
+    c.flag("--static", o->import.isStatic, "camera and objects rest; without it, the pixels tell");
+    c.option("--name", o->import.name, "of the shot; default the folder's");
+    c.option("--fps", o->import.fps, "frames per second").range(1e-3, 1e6);
+    c.option("-j,--threads", o->threads, "threads; 0 = all processors").range(0, 1024);
+    c.flag("--json", o->json, "the summary as JSON");
+    c.flag("-q,--quiet", o->quiet, "no progress");
+    c.run([o, &context] { context.exitCode = import(*o); });
 }
 
 }  // namespace aa

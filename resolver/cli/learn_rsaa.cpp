@@ -30,18 +30,17 @@ void writeText(const std::string& path, const std::string& text) {
 
 }  // namespace
 
-void addLearnRsaa(CLI::App& app, Context&) {
+void addLearnRsaa(CommandLine& line, Context&) {
     struct Options {
         bool json = false;
         std::string training = "all", source;
     };
     auto o = std::make_shared<Options>();
-    auto* c = app.add_subcommand("learn-rsaa", "Learns RSAA's offsets for 4, 8 and 16 sub-samples and measures them");
-    c->add_option("--training", o->training, "classes of training pictures")
-        ->check(CLI::IsMember({"all", "halfPlanes"}));
-    c->add_option("-o,--output", o->source, "write the offsets of --training all as C++ source here")->default_str("");
-    c->add_flag("--json", o->json, "as JSON");
-    c->callback([o] {
+    Command c = line.command("learn-rsaa", "Learns RSAA's offsets for 4, 8 and 16 sub-samples and measures them");
+    c.option("--training", o->training, "classes of training pictures").oneOf({"all", "halfPlanes"});
+    c.option("-o,--output", o->source, "write the offsets of --training all as C++ source here").defaultText("");
+    c.flag("--json", o->json, "as JSON");
+    c.run([o] {
         const auto training = o->training == "all" ? RsaaTraining::all : RsaaTraining::halfPlanes;
         if (!o->source.empty()) {
             if (training != RsaaTraining::all)

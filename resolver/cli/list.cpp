@@ -160,17 +160,17 @@ nlohmann::ordered_json describeRegistry() {
     return all;
 }
 
-void addList(CLI::App& app, Context&) {
+void addList(CommandLine& line, Context&) {
     struct Options {
         bool json = false, markdown = false;
         std::vector<std::string> ids;
     };
     auto o = std::make_shared<Options>();
-    auto* c = app.add_subcommand("list", "Methods, their passes, parameters and sources");
-    c->add_option("METHOD", o->ids, "only these, with their parameters");
-    c->add_flag("--json", o->json, "as JSON");
-    c->add_flag("--markdown", o->markdown, "as the page docs/methods.md");
-    c->callback([o] {
+    Command c = line.command("list", "Methods, their passes, parameters and sources");
+    c.option("METHOD", o->ids, "only these, with their parameters");
+    c.flag("--json", o->json, "as JSON");
+    c.flag("--markdown", o->markdown, "as the page docs/methods.md");
+    c.run([o] {
         if (o->markdown) return printMarkdown();
         if (o->json) {
             nlohmann::ordered_json all = describeRegistry();
@@ -192,16 +192,16 @@ void addList(CLI::App& app, Context&) {
     });
 }
 
-void addPlan(CLI::App& app, Context&) {
+void addPlan(CommandLine& line, Context&) {
     struct Options {
         bool json = false;
         std::vector<std::string> methods;
     };
     auto o = std::make_shared<Options>();
-    auto* c = app.add_subcommand("plan", "The passes that these methods need");
-    c->add_option("METHODS", o->methods, "methods, as for run")->required()->delimiter(' ');
-    c->add_flag("--json", o->json, "as JSON");
-    c->callback([o] {
+    Command c = line.command("plan", "The passes that these methods need");
+    c.option("METHODS", o->methods, "methods, as for run").required().separatedBy(' ');
+    c.flag("--json", o->json, "as JSON");
+    c.run([o] {
         std::vector<MethodSpec> specs;
         for (const auto& m : o->methods) specs.push_back(parseMethod(m));
         const PassSet needed = passesOf(specs);

@@ -19,18 +19,18 @@ std::string clock(double seconds) {
 }
 }  // namespace
 
-Progress::Progress(std::string title, size_t steps, bool quiet)
+TerminalProgress::TerminalProgress(std::string title, size_t steps, bool quiet)
     : title_(std::move(title)), steps_(steps), quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {
     stopAsked = 0;
     std::signal(SIGINT, askToStop);
 }
 
-Progress::~Progress() {
+TerminalProgress::~TerminalProgress() {
     std::signal(SIGINT, SIG_DFL);
     if (!quiet_ && terminal_ && done_ > 0) std::fputc('\n', stderr);
 }
 
-void Progress::step(const std::string& note) {
+void TerminalProgress::step(const std::string& note) {
     done_++;
     if (quiet_) return;
     const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
@@ -45,6 +45,10 @@ void Progress::step(const std::string& note) {
                  note.c_str(), clock(elapsed / double(done_) * double(steps_ - done_)).c_str());
 }
 
-bool Progress::interrupted() const { return stopAsked != 0; }
+bool TerminalProgress::interrupted() const { return stopAsked != 0; }
+
+Progress TerminalProgress::callbacks() {
+    return {[this](const std::string& note) { step(note); }, [this] { return interrupted(); }};
+}
 
 }  // namespace aa

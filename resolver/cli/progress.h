@@ -5,14 +5,17 @@
 #include <chrono>
 #include <string>
 
+#include "study/progress.h"
+
 namespace aa {
 
-class Progress {
+class TerminalProgress {
   public:
-    Progress(std::string title, size_t steps, bool quiet);
-    ~Progress();
+    TerminalProgress(std::string title, size_t steps, bool quiet);
+    ~TerminalProgress();
     void step(const std::string& note);  // one more step is done
     bool interrupted() const;            // Ctrl-C was pressed
+    Progress callbacks();                // for a study; this must outlive it
 
   private:
     std::string title_;

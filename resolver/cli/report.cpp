@@ -27,14 +27,14 @@ void writeReport(const Options& o) {
 }
 }  // namespace
 
-void addReport(CLI::App& app, Context&) {
+void addReport(CommandLine& line, Context&) {
     auto o = std::make_shared<Options>();
-    auto* c =
-        app.add_subcommand("report", "A run as one HTML file: figures, charts, before/after slider; needs no network");
-    c->add_option("RUN", o->run, "output folder of `aaresolve run`")->required();
-    c->add_option("-o,--out", o->out, "the HTML file; default RUN/report.html");
-    addWorkOptions(*c, o->work);
-    c->callback([o] { writeReport(*o); });
+    Command c =
+        line.command("report", "A run as one HTML file: figures, charts, before/after slider; needs no network");
+    c.option("RUN", o->run, "output folder of `aaresolve run`").required();
+    c.option("-o,--out", o->out, "the HTML file; default RUN/report.html");
+    addWorkOptions(c, o->work);
+    c.run([o] { writeReport(*o); });
 }
 
 }  // namespace aa

@@ -106,8 +106,8 @@ void execute(const Options& o, Context& context) {
     const ShotReader shot = openShot(o.run, run);
     RunResults results;
     withThreads(o.run.work.threads, [&] {
-        Progress progress(shot.manifest().name, stepsOf(run, shot.manifest()), o.run.quiet);
-        results = aa::run(shot, run, progress);
+        TerminalProgress progress(shot.manifest().name, stepsOf(run, shot.manifest()), o.run.quiet);
+        results = aa::run(shot, run, progress.callbacks());
         if (progress.interrupted()) context.exitCode = 130;
     });
     if (o.run.json)
@@ -119,15 +119,15 @@ void execute(const Options& o, Context& context) {
 
 }  // namespace
 
-void addRun(CLI::App& app, Context& context) {
+void addRun(CommandLine& line, Context& context) {
     auto o = std::make_shared<Options>();
-    auto* c = app.add_subcommand("run", "Run methods on a shot and measure them against its ground truth");
-    c->add_option("-m,--method", o->methods, "a method, `id` or `id:name=value,name=value`; repeat for more")
-        ->required()
-        ->allow_extra_args(false);
-    addRunArguments(*c, o->run);
-    c->add_flag("--debug-layers", o->debugLayers, "also write each method's intermediate images");
-    c->callback([o, &context] { execute(*o, context); });
+    Command c = line.command("run", "Run methods on a shot and measure them against its ground truth");
+    c.option("-m,--method", o->methods, "a method, `id` or `id:name=value,name=value`; repeat for more")
+        .required()
+        .oneEach();
+    addRunArguments(c, o->run);
+    c.flag("--debug-layers", o->debugLayers, "also write each method's intermediate images");
+    c.run([o, &context] { execute(*o, context); });
 }
 
 }  // namespace aa

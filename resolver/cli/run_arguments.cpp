@@ -4,40 +4,43 @@
 
 #include "image/error.h"
 #include "image/io.h"
+#include "study/prepare.h"
 
 namespace aa {
 
-void addRunArguments(CLI::App& c, RunArguments& a) {
-    c.add_option("SHOT", a.shot, "the shot's folder")->required();
-    c.add_option("-o,--out", a.out, "folder for images, results.json and results.csv")->required();
-    c.add_option("--frames", a.frames, "frames, as 1-16,20; default all");
-    c.add_option("--write", a.write, "image files: exr (linear), png (8-bit sRGB), exr,png or none");
-    c.add_option("--write-frames", a.writeFrames,
-                 "truth = frames that have their own truth (of a static shot the last), all")
-        ->check(CLI::IsMember({"truth", "all"}));
-    c.add_option("--exposure", a.exposure, "display exposure, EV")->check(CLI::Range(-20.0, 20.0));
-    c.add_option("--tone-map", a.toneMap, "display tone map")->check(CLI::IsMember({"none", "reinhard", "aces"}));
-    c.add_option("--display", a.display,
-                 "srgb = encode for the display; identity = the clamped values are the displayed ones, one space for "
-                 "truth, methods and figures (no gamma anywhere)")
-        ->check(CLI::IsMember({"srgb", "identity"}));
-    c.add_option("--history", a.history,
-                 "history at the first judged frame: first = none, ramp = none, with warmup=ramp, full = a static "
-                 "shot's frames ran for 10 jitter periods before")
-        ->check(CLI::IsMember({"first", "ramp", "full"}));
-    c.add_option("--quantise", a.quantise,
-                 "8 = round the compared images, truth included, to 8-bit codes; written EXR files are not rounded")
-        ->check(CLI::IsMember({8}));
-    c.add_option("--input", a.input, "NaN and Inf in the input: sanitise = replace and count, strict = refuse")
-        ->check(CLI::IsMember({"sanitise", "strict"}));
-    c.add_flag("--json", a.json, "print results.json instead of the table");
-    c.add_flag("-q,--quiet", a.quiet, "no progress");
+void addRunArguments(Command& c, RunArguments& a) {
+    c.option("SHOT", a.shot, "the shot's folder").required();
+    c.option("-o,--out", a.out, "folder for images, results.json and results.csv").required();
+    c.option("--frames", a.frames, "frames, as 1-16,20; default all");
+    c.option("--write", a.write, "image files: exr (linear), png (8-bit sRGB), exr,png or none");
+    c.option("--write-frames", a.writeFrames,
+             "truth = frames that have their own truth (of a static shot the last), all")
+        .oneOf({"truth", "all"});
+    c.option("--exposure", a.exposure, "display exposure, EV").range(-20.0, 20.0);
+    c.option("--tone-map", a.toneMap, "display tone map").oneOf({"none", "reinhard", "aces"});
+    c.option("--display", a.display,
+             "srgb = encode for the display; identity = the clamped values are the displayed ones, one space for "
+             "truth, methods and figures (no gamma anywhere)")
+        .oneOf({"srgb", "identity"});
+    c.option("--history", a.history,
+             "history at the first judged frame: first = none, ramp = none, with warmup=ramp, full = a static "
+             "shot's frames ran for 10 jitter periods before")
+        .oneOf({"first", "ramp", "full"});
+    c.option("--quantise", a.quantise,
+             "8 = round the compared images, truth included, to 8-bit codes; written EXR files are not rounded")
+        .oneOf({8});
+    c.option("--metrics", a.metrics, "figures beside those that every run has, comma-separated:" + listOfFigures(true))
+        .separatedBy(',');
+    c.option("--input", a.input, "NaN and Inf in the input: sanitise = replace and count, strict = refuse")
+        .oneOf({"sanitise", "strict"});
+    c.flag("--json", a.json, "print results.json instead of the table");
+    c.flag("-q,--quiet", a.quiet, "no progress");
     addWorkOptions(c, a.work);
 }
 
 ShotReader openShot(const RunArguments& a, RunOptions& run) {
     run.exec = a.work.exec();
-    run.threads = a.work.threads;
+    run.measure = measureOptions(a.metrics);
     run.protocol = {.display = {float(a.exposure), toneMapByName(a.toneMap), transferByName(a.display)},
                     .history = historyByName(a.history),
                     .eightBit = a.quantise == 8};

@@ -3,7 +3,8 @@
 #include <string>
 
 #include "cli/cli.h"
-#include "cli/runner.h"
+#include "cli/progress.h"
+#include "study/run.h"
 
 namespace aa {
 
@@ -11,11 +12,12 @@ struct RunArguments {
     std::string shot, out, frames, write = "exr", writeFrames = "truth", toneMap = "none", display = "srgb",
                                    history = "first", input = "sanitise";
     double exposure = 0;
+    std::vector<std::string> metrics;
     int quantise = 0;  // 0: off
     bool json = false, quiet = false;
     WorkOptions work;
 };
-void addRunArguments(CLI::App& command, RunArguments& arguments);
+void addRunArguments(Command& command, RunArguments& arguments);
 // Opens the shot and fills everything in `options` but the methods, which must be there already: they are made to fit
 // the history. Throws UsageError, InputError.
 ShotReader openShot(const RunArguments& arguments, RunOptions& options);

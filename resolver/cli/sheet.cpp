@@ -27,15 +27,14 @@ void drawSheet(const Options& o) {
 }
 }  // namespace
 
-void addSheet(CLI::App& app, Context&) {
+void addSheet(CommandLine& line, Context&) {
     auto o = std::make_shared<Options>();
-    auto* c = app.add_subcommand("sheet", "A contact sheet of a run: methods, magnified details, error maps, figures");
-    c->add_option("RUN", o->run, "output folder of `aaresolve run`")->required();
-    c->add_option("-o,--out", o->out, "the PNG; default RUN/sheet.png");
-    c->add_option("--frame", o->frame, "frame to show; 0 = the last that every method wrote")
-        ->check(CLI::NonNegativeNumber);
-    addWorkOptions(*c, o->work);
-    c->callback([o] { drawSheet(*o); });
+    Command c = line.command("sheet", "A contact sheet of a run: methods, magnified details, error maps, figures");
+    c.option("RUN", o->run, "output folder of `aaresolve run`").required();
+    c.option("-o,--out", o->out, "the PNG; default RUN/sheet.png");
+    c.option("--frame", o->frame, "frame to show; 0 = the last that every method wrote").notNegative();
+    addWorkOptions(c, o->work);
+    c.run([o] { drawSheet(*o); });
 }
 
 }  // namespace aa

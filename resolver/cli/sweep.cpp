@@ -1,147 +1,31 @@
-// Parameter sweeps: every combination of some parameters' values is one method of one run. The frames are read once
-// for as many variants as the memory allows.
-#include <algorithm>
+// `sweep`: every combination of some parameters' values.
+#include "study/sweep.h"
+
 #include <cstdio>
 #include <iostream>
-#include <set>
 
 #include "cli/run_arguments.h"
-#include "image/error.h"
 
 namespace aa {
 namespace {
-constexpr size_t kMostVariants = 256;  // every pair of variants is compared
-
 struct Options {
     RunArguments run;
-    std::vector<std::string> methods, vary, with = {"noaa"};
-    double memoryMb = 2048;
-};
-struct Variation {
-    std::string name;
-    std::vector<std::string> values;
+    SweepOptions sweep;
 };
 
-// "kmin=0.5,0.8,1"
-Variation parseVariation(const std::string& text) {
-    const size_t equals = text.find('=');
-    Variation v{text.substr(0, equals), {}};
-    for (size_t at = equals; at != std::string::npos; at = text.find(',', at + 1)) {
-        const size_t end = text.find(',', at + 1);
-        v.values.push_back(text.substr(at + 1, end == std::string::npos ? end : end - at - 1));
-    }
-    const std::set<std::string> different(v.values.begin(), v.values.end());
-    if (v.name.empty() || different.contains("") || different.size() != v.values.size() || v.values.empty())
-        throw UsageError("--vary: expected NAME=VALUE,VALUE,... with different values, found '" + text + "'");
-    return v;
-}
-
-std::vector<std::string> combinations(const std::string& method, const std::vector<Variation>& variations) {
-    std::vector<std::string> all = {""};
-    for (const Variation& v : variations) {
-        std::vector<std::string> longer;
-        for (const auto& before : all)
-            for (const auto& value : v.values)
-                longer.push_back(before + (before.empty() ? "" : ",") + v.name + "=" + value);
-        if (longer.size() > kMostVariants) break;  // refused by the caller
-        all = std::move(longer);
-    }
-    for (auto& parameters : all) parameters = withParameters(method, parameters);
-    return all;
-}
-
-std::vector<MethodSpec> variantsOf(const Options& o) {
-    std::vector<Variation> variations;
-    size_t count = 1;
-    std::set<std::string> varied;
-    for (const auto& text : o.vary) {
-        variations.push_back(parseVariation(text));
-        count *= variations.back().values.size();
-        if (!varied.insert(variations.back().name).second)
-            throw UsageError("--vary: parameter '" + variations.back().name + "' is varied twice");
-        if (count * o.methods.size() > kMostVariants)
-            throw UsageError("--vary: more than " + std::to_string(kMostVariants) +
-                             " combinations; vary fewer parameters at a time");
-    }
-    std::vector<MethodSpec> specs;
-    std::set<std::string> folders;
-    const auto add = [&](const std::string& text) {
-        MethodSpec spec = parseMethod(text);
-        spec.params();  // a value out of range ends the sweep before it starts
-        if (!folders.insert(spec.folderName()).second) throw UsageError("method '" + text + "' appears twice");
-        specs.push_back(std::move(spec));
-    };
-    for (const auto& text : o.with)
-        if (text != "none") add(text);
-    for (const auto& method : o.methods)
-        for (const auto& [name, value] : parseMethod(method).given)
-            if (varied.contains(name))
-                throw UsageError("--vary: parameter '" + name + "' is varied and fixed by -m " + method);
-    for (const auto& method : o.methods)
-        for (const auto& text : combinations(method, variations)) add(text);
-    return specs;
-}
-
-// Memory that a variant holds while it runs, measured on two frames.
-size_t bytesOf(const MethodSpec& spec, const ShotReader& shot, const RunOptions& o) {
-    std::vector<RunningMethod> probe;
-    probe.emplace_back(spec, shotInfo(shot.manifest()));
-    size_t bytes = 0;
-    for (size_t i = 0; i < std::min<size_t>(o.frames.size(), 2); i++) {
-        const bool centre = shot.hasCentreFrames() && spec.method->sampling() == Sampling::centre;
-        Frame frame = centre ? shot.readCentre(o.frames[i], spec.passes()) : shot.read(o.frames[i], spec.passes());
-        frame.reset = frame.reset || i == 0;
-        prepareFrame(frame, probe, o.protocol.display, o.exec);
-        probe[0].resolve(frame, frame.display, o.exec);
-        bytes = std::max(bytes, probe[0].method->stateBytes());
-    }
-    constexpr size_t kJudgePlanes = 2;  // metrics/temporal.h keeps a mean and a spread, or the last luma
-    return bytes + probe[0].out.bytes() + probe[0].outEncoded.bytes() + kJudgePlanes * probe[0].out.c[0].bytes();
-}
-
-void sweep(const Options& o, Context& context) {
+void execute(const Options& o, Context& context) {
     RunOptions run;
-    run.methods = variantsOf(o);
+    run.methods = variantsOf(o.sweep);
     const ShotReader shot = openShot(o.run, run);
-    const std::vector<MethodSpec> variants = run.methods;
     RunResults all;
-    std::vector<TileErrors> errors;
     size_t passes = 0;
     withThreads(o.run.work.threads, [&] {
-        requirePasses(shot, run.methods);
-        // Measured on the first and the last variant: where memory depends on a parameter, the values mostly ascend.
-        const auto compared =
-            size_t(std::count_if(o.with.begin(), o.with.end(), [](const auto& m) { return m != "none"; }));
-        const size_t each = std::max(bytesOf(variants[compared], shot, run), bytesOf(variants.back(), shot, run));
-        const size_t perPass =
-            std::clamp<size_t>(size_t(o.memoryMb * (1 << 20)) / std::max<size_t>(each, 1), 1, variants.size());
-        passes = (variants.size() + perPass - 1) / perPass;
-        std::vector<std::vector<MethodSpec>> parts;
-        size_t steps = 0;
-        for (size_t first = 0; first < variants.size(); first += perPass) {
-            parts.emplace_back(variants.begin() + ptrdiff_t(first),
-                               variants.begin() + ptrdiff_t(std::min(first + perPass, variants.size())));
-            run.methods = parts.back();
-            steps += stepsOf(run, shot.manifest());
-        }
-        Progress progress("sweep", steps, o.run.quiet);
-        for (size_t first = 0; first < parts.size() && !progress.interrupted(); first++) {
-            run.methods = parts[first];
-            std::vector<TileErrors> some;
-            RunResults part = runMethods(shot, run, progress, some);
-            if (first == 0) {
-                all = std::move(part);
-                errors = std::move(some);
-            } else if (!progress.interrupted()) {  // variants that saw fewer frames cannot be compared with the others
-                all.warmUpFrames = std::max(all.warmUpFrames, part.warmUpFrames);
-                std::move(part.methods.begin(), part.methods.end(), std::back_inserter(all.methods));
-                std::move(some.begin(), some.end(), std::back_inserter(errors));
-            }
-        }
+        Sweep sweep(shot, run, o.sweep);
+        passes = sweep.passes();
+        TerminalProgress progress("sweep", sweep.steps(), o.run.quiet);
+        all = sweep.run(progress.callbacks());
         if (progress.interrupted()) context.exitCode = 130;
     });
-    finish(all, errors);
-    writeResults(all, run.out);
     if (o.run.json) {
         std::cout << toJsonText(all) << "\n";
         return;
@@ -152,20 +36,21 @@ void sweep(const Options& o, Context& context) {
 }
 }  // namespace
 
-void addSweep(CLI::App& app, Context& context) {
+void addSweep(CommandLine& line, Context& context) {
     auto o = std::make_shared<Options>();
-    auto* c = app.add_subcommand("sweep", "Run every combination of some parameters' values");
-    c->add_option("-m,--method", o->methods, "the method, `id` or `id:name=value` with what stays the same; repeatable")
-        ->required()
-        ->allow_extra_args(false);
-    c->add_option("--vary", o->vary, "NAME=VALUE,VALUE,...: a parameter and its values; repeat for more parameters")
-        ->required()
-        ->allow_extra_args(false);
-    c->add_option("--with", o->with, "methods to compare with, as they are; none = without")->delimiter(' ');
-    c->add_option("--memory", o->memoryMb, "MiB that all variants may hold at a time; more are run in another pass")
-        ->check(CLI::Range(1.0, 1e7));
-    addRunArguments(*c, o->run);
-    c->callback([o, &context] { sweep(*o, context); });
+    Command c = line.command("sweep", "Run every combination of some parameters' values");
+    c.option("-m,--method", o->sweep.methods,
+             "the method, `id` or `id:name=value` with what stays the same; repeatable")
+        .required()
+        .oneEach();
+    c.option("--vary", o->sweep.vary, "NAME=VALUE,VALUE,...: a parameter and its values; repeat for more parameters")
+        .required()
+        .oneEach();
+    c.option("--with", o->sweep.with, "methods to compare with, as they are; none = without").separatedBy(' ');
+    c.option("--memory", o->sweep.memoryMb, "MiB that all variants may hold at a time; more are run in another pass")
+        .range(1.0, 1e7);
+    addRunArguments(c, o->run);
+    c.run([o, &context] { execute(*o, context); });
 }
 
 }  // namespace aa

@@ -7,9 +7,9 @@
 #include "cli/progress.h"
 #include "image/error.h"
 #include "methods/method.h"
-#include "shot/patterns.h"
-#include "shot/manifest.h"
 #include "methods/spec.h"
+#include "shot/manifest.h"
+#include "shot/patterns.h"
 
 namespace aa {
 namespace {
@@ -74,7 +74,7 @@ int synth(Options& o) {
     Manifest m;
     bool stopped = false;
     withThreads(o.threads, [&] {
-        Progress progress("synth " + o.synth.scene, size_t(std::max(o.synth.frames, 1)), o.quiet);
+        TerminalProgress progress("synth " + o.synth.scene, size_t(std::max(o.synth.frames, 1)), o.quiet);
         m = writeSynth(o.synth, o.out, [&](const FrameEntry& f) {
             progress.step("frame " + std::to_string(f.frame));
             stopped = progress.interrupted();
@@ -89,35 +89,34 @@ int synth(Options& o) {
 }
 }  // namespace
 
-void addSynth(CLI::App& app, Context& context) {
+void addSynth(CommandLine& line, Context& context) {
     auto o = std::make_shared<Options>();
     o->synth.scene.clear();
-    auto* c = app.add_subcommand("synth", "Analytic shots with exact truth, without Blender");
-    c->add_option("NAME", o->synth.scene, "scene; --list shows them");
-    c->add_option("-o,--out", o->out, "folder of the shot");
-    c->add_option("--resolution", o->resolution, "width and height, px")->expected(2);
-    c->add_option("--for", o->methods, "only the passes that these methods read; all passes without it")
-        ->delimiter(',');
-    c->add_option("--frames", o->synth.frames, "number of frames");
-    c->add_option("--jitter", o->synth.jitter, "sequence; `none` samples pixel centres");
-    c->add_option("--start", o->synth.jitterStart, "index of the first point of halton23; -1 = its own");
-    c->add_option("--period", o->synth.period, "frames after which the jitter repeats")->check(CLI::Range(1, 1 << 20));
-    c->add_flag("--centre", o->synth.centred, "subtract the mean of one period from the jitter");
-    c->add_option("--jitter-projection", o->jitterProjection,
-                  "post: samples move by the jitter; pre: labelled variant, the error of the T2MSAA/ASAA thesis, they "
-                  "move by jitter x focal length / depth (perspective scenes)")
-        ->check(CLI::IsMember({"post", "pre"}));
-    c->add_option("--subsamples", o->synth.subsamples,
-                  "pattern: d3d1, d3d2, d3d4, d3d8, d3d16, quincunx, grid1..grid8; empty = none");
-    c->add_flag("--subsample-color", o->synth.subsampleColor, "colour at the sub-samples, too");
-    c->add_option("--inject-nan", o->nanPixel, "x and y of a NaN in the colour of every frame")->expected(2);
-    c->add_option("--seed", o->synth.seed, "of the colours");
-    c->add_option("--angle", o->synth.angleDegrees, "scene half_plane: direction of the edge's normal, degrees");
-    c->add_option("--offset", o->synth.offsetPx, "scene half_plane: distance of the edge from the middle, px");
-    c->add_option("-j,--threads", o->threads, "threads; 0 = all processors")->check(CLI::Range(0, 1024));
-    c->add_flag("-q,--quiet", o->quiet, "no progress");
-    c->add_flag("--list", o->list, "names of the scenes and jitter sequences");
-    c->callback([o, &context] { context.exitCode = synth(*o); });
+    Command c = line.command("synth", "Analytic shots with exact truth, without Blender");
+    c.option("NAME", o->synth.scene, "scene; --list shows them");
+    c.option("-o,--out", o->out, "folder of the shot");
+    c.option("--resolution", o->resolution, "width and height, px").values(2, 2);
+    c.option("--for", o->methods, "only the passes that these methods read; all passes without it").separatedBy(',');
+    c.option("--frames", o->synth.frames, "number of frames");
+    c.option("--jitter", o->synth.jitter, "sequence; `none` samples pixel centres");
+    c.option("--start", o->synth.jitterStart, "index of the first point of halton23; -1 = its own");
+    c.option("--period", o->synth.period, "frames after which the jitter repeats").range(1, 1 << 20);
+    c.flag("--centre", o->synth.centred, "subtract the mean of one period from the jitter");
+    c.option("--jitter-projection", o->jitterProjection,
+             "post: samples move by the jitter; pre: labelled variant, the error of the T2MSAA/ASAA thesis, they "
+             "move by jitter x focal length / depth (perspective scenes)")
+        .oneOf({"post", "pre"});
+    c.option("--subsamples", o->synth.subsamples,
+             "pattern: d3d1, d3d2, d3d4, d3d8, d3d16, quincunx, grid1..grid8; empty = none");
+    c.flag("--subsample-color", o->synth.subsampleColor, "colour at the sub-samples, too");
+    c.option("--inject-nan", o->nanPixel, "x and y of a NaN in the colour of every frame").values(2, 2);
+    c.option("--seed", o->synth.seed, "of the colours");
+    c.option("--angle", o->synth.angleDegrees, "scene half_plane: direction of the edge's normal, degrees");
+    c.option("--offset", o->synth.offsetPx, "scene half_plane: distance of the edge from the middle, px");
+    c.option("-j,--threads", o->threads, "threads; 0 = all processors").range(0, 1024);
+    c.flag("-q,--quiet", o->quiet, "no progress");
+    c.flag("--list", o->list, "names of the scenes and jitter sequences");
+    c.run([o, &context] { context.exitCode = synth(*o); });
 }
 
 }  // namespace aa

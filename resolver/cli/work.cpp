@@ -3,15 +3,16 @@
 
 #include "cli/cli.h"
 #include "image/error.h"
+#include "kernels/dispatch.h"
 
 namespace aa {
 
-void addWorkOptions(CLI::App& command, WorkOptions& work) {
-    command.add_option("-j,--threads", work.threads, "threads; 0 = all processors")->check(CLI::Range(0, 1024));
-    command.add_option("--isa", work.isa, "instruction set; every one gives the same bits")
-        ->check(CLI::IsMember({"auto", "v2", "v3", "v4"}));
-    command.add_option("--precision", work.precision, "fast = float lanes, scalar = float, double = the oracle")
-        ->check(CLI::IsMember({"fast", "scalar", "double"}));
+void addWorkOptions(Command& command, WorkOptions& work) {
+    command.option("-j,--threads", work.threads, "threads; 0 = all processors").range(0, 1024);
+    command.option("--isa", work.isa, "instruction set; every one gives the same bits")
+        .oneOf({"auto", "v2", "v3", "v4"});
+    command.option("--precision", work.precision, "fast = float lanes, scalar = float, double = the oracle")
+        .oneOf({"fast", "scalar", "double"});
 }
 
 Exec WorkOptions::exec() const {

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "report/results.h"
+#include "study/results.h"
 
 namespace aa {
 

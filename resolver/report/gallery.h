@@ -2,7 +2,7 @@
 #pragma once
 #include <filesystem>
 
-#include "report/results.h"
+#include "study/results.h"
 
 namespace aa {
 

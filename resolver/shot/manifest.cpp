@@ -219,7 +219,8 @@ Manifest parseDocument(const Member& doc) {
         if (const auto v = t->find("samples_per_half")) m.truthSamplesPerHalf = v->integer(0, INT32_MAX);
         if (const auto v = t->find("filter")) m.truthFilter = v->text();
         if (const auto v = t->find("filter_width")) m.truthFilterWidthPx = v->number(0, 1000, "a width in px, 0..1000");
-        keepUnknown(m.extra, "truth", t->value(), {"samples_per_half", "filter", "filter_width"});
+        if (const auto v = t->find("halves")) m.truthHalves = v->integer(1, 2);
+        keepUnknown(m.extra, "truth", t->value(), {"samples_per_half", "filter", "filter_width", "halves"});
     }
     const Member frames = doc["frames"];
     if (frames.arraySize() == 0) frames.fail("at least one frame");
@@ -373,6 +374,7 @@ json toJson(const Manifest& m) {
         j["truth"]["samples_per_half"] = m.truthSamplesPerHalf;
         j["truth"]["filter"] = m.truthFilter;
         j["truth"]["filter_width"] = m.truthFilterWidthPx;
+        if (m.truthHalves) j["truth"]["halves"] = *m.truthHalves;
     }
     json& frames = j["frames"] = json::array();
     for (const auto& f : m.frames) frames.push_back(toJson(f));

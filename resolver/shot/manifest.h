@@ -47,6 +47,7 @@ struct Manifest {
     int truthSamplesPerHalf = 0;
     std::string truthFilter = "box";
     double truthFilterWidthPx = 1.0;
+    std::optional<int> truthHalves;  // 1: a single render, whose noise nobody knows; otherwise two
     std::vector<FrameEntry> frames;
     nlohmann::json extra = nlohmann::json::object();  // unknown members and `producer`, kept as they were (also nested)
     std::filesystem::path folder;                     // where shot.json lies; not part of the file

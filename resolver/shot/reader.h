@@ -9,11 +9,11 @@ namespace aa {
 struct SanitiseCounts {
     uint64_t colourNan = 0, colourInf = 0, colourNegative = 0, depth = 0, normal = 0, motion = 0, edges = 0,
              segments = 0;
-    uint64_t total() const {
-        return colourNan + colourInf + colourNegative + depth + normal + motion + edges + segments;
-    }
+    uint64_t total() const;
     SanitiseCounts& operator+=(const SanitiseCounts& o);
 };
+// By name, as results hold them; empty when nothing was replaced.
+std::map<std::string, uint64_t> counted(const SanitiseCounts& counts);
 enum class InputPolicy {
     strict,    // any NaN, Inf or depth <= 0 is an InputError naming plane, pixel and frame
     sanitise,  // replaced by the rules of conventions 8 and counted

@@ -103,16 +103,33 @@ void sanitiseVectors(std::initializer_list<PlaneF*> planes, float value, InputPo
 }
 }  // namespace
 
+namespace {
+constexpr std::pair<const char*, uint64_t SanitiseCounts::*> kCounts[] = {
+    {"colourNan", &SanitiseCounts::colourNan},
+    {"colourInf", &SanitiseCounts::colourInf},
+    {"colourNegative", &SanitiseCounts::colourNegative},
+    {"depth", &SanitiseCounts::depth},
+    {"normal", &SanitiseCounts::normal},
+    {"motion", &SanitiseCounts::motion},
+    {"edges", &SanitiseCounts::edges},
+    {"segments", &SanitiseCounts::segments}};
+static_assert(sizeof(SanitiseCounts) == std::size(kCounts) * sizeof(uint64_t));
+}  // namespace
+
 SanitiseCounts& SanitiseCounts::operator+=(const SanitiseCounts& o) {
-    colourNan += o.colourNan;
-    colourInf += o.colourInf;
-    colourNegative += o.colourNegative;
-    depth += o.depth;
-    normal += o.normal;
-    motion += o.motion;
-    edges += o.edges;
-    segments += o.segments;
+    for (const auto& [name, count] : kCounts) this->*count += o.*count;
     return *this;
+}
+uint64_t SanitiseCounts::total() const {
+    uint64_t all = 0;
+    for (const auto& [name, count] : kCounts) all += this->*count;
+    return all;
+}
+std::map<std::string, uint64_t> counted(const SanitiseCounts& counts) {
+    std::map<std::string, uint64_t> named;
+    if (counts.total() > 0)
+        for (const auto& [name, count] : kCounts) named[name] = counts.*count;
+    return named;
 }
 
 void sanitiseColour(Rgb& colour, bool storedAsHalf, InputPolicy policy, const PlaneName& name, SanitiseCounts& counts) {

@@ -131,7 +131,7 @@ class Import {
         if (!truths_.empty()) {
             m.truthFilter = o_.truthFilter;
             m.truthFilterWidthPx = o_.truthFilterWidthPx;
-            m.extra["truth"]["halves"] = truths_.size();
+            m.truthHalves = int(truths_.size());
             BlenderExr truth(truths_[0].begin()->second);
             for (const auto& layer : truth.layers())
                 if (const auto samples = truth.text("cycles." + layer + ".samples"))

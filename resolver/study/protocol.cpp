@@ -1,4 +1,4 @@
-#include "report/protocol.h"
+#include "study/protocol.h"
 
 #include <array>
 #include <cstdio>

@@ -1,4 +1,4 @@
-#include "report/results.h"
+#include "study/results.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include "metrics/error_bar.h"
 #include "metrics/measure.h"
 #include "metrics/temporal.h"
-#include "report/protocol.h"
+#include "study/protocol.h"
 
 namespace aa {
 
@@ -109,7 +109,5 @@ std::string toCsvText(const RunResults& run);
 std::vector<const Figure*> figuresIn(const RunResults& run);
 // Reads OUT/results.json. Throws InputError: no run there, damaged, wrong type of a member (named).
 RunResults readResults(const std::filesystem::path& folder);
-
-std::string machineName();  // the processor, as the system names it
 
 }  // namespace aa

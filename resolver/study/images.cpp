@@ -1,0 +1,48 @@
+#include "study/images.h"
+
+#include <cstdio>
+
+#include "image/io.h"
+
+namespace aa {
+namespace fs = std::filesystem;
+namespace {
+
+std::string frameName(int frame, const char* extension) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%06d%s", frame, extension);
+    return text;
+}
+}  // namespace
+
+std::string writeImage(const RunningMethod& m, int frame, const RunOptions& o) {
+    const fs::path folder = m.spec.folderName();
+    std::string written;
+    if (o.writePng) {
+        written = (folder / frameName(frame, ".png")).string();
+        writePng(o.out / written, m.outEncoded);
+    }
+    if (o.writeExr) {
+        written = (folder / frameName(frame, ".exr")).string();
+        const DisplayChain& display = o.protocol.display;
+        if (m.spec.outputSpace() == Space::linear && display.transfer != Transfer::identity) {
+            writeExr(o.out / written, m.out, false);
+        } else {
+            Rgb linear;
+            decode(m.out, display, o.exec, linear);
+            writeExr(o.out / written, linear, true);
+        }
+    }
+    if (o.debugLayers)
+        if (const auto layers = m.method->debugLayers(); !layers.empty())
+            writeLayers(o.out / folder / frameName(frame, ".layers.exr"), layers);
+    return written;
+}
+
+std::string writeTruthImage(const Reference& reference, int frame, const RunOptions& o) {
+    const std::string file = (fs::path("truth") / frameName(frame, ".exr")).string();
+    writeExr(o.out / file, reference.linear, o.protocol.display.transfer == Transfer::identity);
+    return file;
+}
+
+}  // namespace aa

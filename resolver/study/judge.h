@@ -1,0 +1,44 @@
+// Measures the methods of a run, frame by frame, against the truth and over time.
+#pragma once
+#include <memory>
+
+#include "methods/driver.h"
+#include "metrics/temporal.h"
+#include "study/results.h"
+#include "study/run.h"
+
+namespace aa {
+
+class Judge {
+  public:
+    Judge(const Manifest& manifest, const RunOptions& options, bool overTime);
+    // The next frame, prepared as the methods see it, and its truth or null. Frames of a static shot share one truth:
+    // encoded once.
+    void look(const Frame& frame, const std::shared_ptr<const Truth>& truth, RunResults& results);
+    // The reference of that frame; null without truth.
+    const Reference* reference() const { return reference_ ? &*reference_ : nullptr; }
+    // Figures of what method `k` gave for it.
+    FrameResult judge(size_t k, const RunningMethod& method, double seconds);
+    // Once all methods are judged: squared error where history was rejected, of every method that keeps the mask (one
+    // with a fill) and of its peers without or with another fill, which reject the same pixels.
+    void judgeRejected(const std::vector<RunningMethod>& methods, std::vector<MethodResult>& results) const;
+    // Fills what holds for the whole run; `fromReset`: the first frame had no history.
+    void finish(RunResults& results, bool fromReset);
+    const std::vector<TileErrors>& errors() const { return errors_; }
+
+  private:
+    const Manifest& manifest_;
+    const RunOptions& options_;
+    bool overTime_;
+    std::shared_ptr<const Truth> truth_;
+    std::optional<Reference> reference_;
+    std::vector<TileErrors> errors_;
+    TemporalScene scene_;
+    std::vector<TemporalJudge> overTimeOf_;
+    double noise_ = 0;
+    size_t seen_ = 0, withTruth_ = 0;
+    int number_ = 0;
+    bool reset_ = false;
+};
+
+}  // namespace aa

@@ -1,0 +1,174 @@
+#include "study/prepare.h"
+
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <sstream>
+
+#include "image/error.h"
+#include "image/io.h"
+#include "metrics/temporal.h"
+
+namespace aa {
+namespace {
+
+// All of `asked`, or nothing: the figures along the motion need every one of them.
+PassSet passesThatAreThere(PassSet asked, PassSet offered) {
+    return asked.without(offered).empty() ? asked : PassSet{};
+}
+}  // namespace
+
+std::vector<size_t> selectFrames(const Manifest& manifest, const std::string& list) {
+    std::vector<size_t> chosen;
+    if (list.empty()) {
+        for (size_t i = 0; i < manifest.frames.size(); i++) chosen.push_back(i);
+        return chosen;
+    }
+    std::vector<bool> wanted(manifest.frames.size());
+    std::istringstream parts(list);
+    for (std::string part; std::getline(parts, part, ',');) {
+        int first = 0, last = 0;
+        const char* end = part.data() + part.size();
+        auto [p, failed] = std::from_chars(part.data(), end, first);
+        last = first;
+        if (failed == std::errc{} && p != end && *p == '-') {
+            const auto second = std::from_chars(p + 1, end, last);
+            p = second.ptr;
+            failed = second.ec;
+        }
+        if (failed != std::errc{} || p != end || last < first)
+            throw UsageError("--frames: expected numbers and ranges like 1-16,20, found '" + part + "'");
+        size_t found = 0;
+        for (size_t i = 0; i < manifest.frames.size(); i++)
+            if (manifest.frames[i].frame >= first && manifest.frames[i].frame <= last) wanted[i] = true, found++;
+        if (found == 0)
+            throw InputError("--frames " + part + ": the shot has no such frame (it has " +
+                             std::to_string(manifest.frames.front().frame) + " to " +
+                             std::to_string(manifest.frames.back().frame) + ")");
+    }
+    for (size_t i = 0; i < wanted.size(); i++)
+        if (wanted[i]) chosen.push_back(i);
+    return chosen;
+}
+
+void requirePasses(const ShotReader& shot, const std::vector<MethodSpec>& methods) {
+    const PassSet jittered = shot.offered();
+    const PassSet centre = shot.hasCentreFrames() ? shot.offered(Sampling::centre) : jittered;
+    for (const auto& m : methods)
+        if (const auto missing =
+                names(m.passes().without(m.method->sampling() == Sampling::centre ? centre : jittered));
+            !missing.empty()) {
+            std::string all;
+            for (const auto& s : methods) all += (all.empty() ? "" : ",") + std::string(s.method->id);
+            throw InputError(shot.manifest().folder.string() + ": method '" + m.text + "' needs the pass '" +
+                             std::string(missing[0]) + "', which the shot does not have; export again with --for " +
+                             all);
+        }
+}
+
+std::vector<std::string> applyHistory(RunOptions& o, const Manifest& manifest) {
+    if (o.protocol.history == History::full && !manifest.isStatic)
+        throw UsageError("--history full: '" + manifest.name +
+                         "' moves, and only the frames of a static shot can be repeated; choose first or ramp");
+    std::vector<std::string> without;
+    if (o.protocol.history != History::ramp) return without;
+    for (auto& spec : o.methods) {
+        const auto& table = spec.method->params;
+        const auto named = [](const auto& p) { return p.first == "warmup"; };
+        if (std::none_of(table.begin(), table.end(), [](const auto& p) { return p.name == "warmup"; })) {
+            if (spec.method->temporal) without.push_back(spec.text);
+        } else if (std::none_of(spec.given.begin(), spec.given.end(), named)) {
+            spec.given.emplace_back("warmup", "ramp");
+        }
+    }
+    return without;
+}
+
+InputPlan planInput(const ShotReader& shot, const RunOptions& o) {
+    InputPlan plan;
+    plan.split = shot.hasCentreFrames();
+    plan.jittered = plan.split ? passesOf(o.methods, Sampling::jittered) : passesOf(o.methods);
+    if (plan.split) plan.centre = passesOf(o.methods, Sampling::centre);
+    plan.overTime = o.frames.size() > 1 && !passesOf(o.methods, Sampling::jittered).empty();
+    if (plan.overTime && !shot.manifest().isStatic)
+        plan.jittered |= passesThatAreThere(temporalMetricPasses(), shot.offered());
+    return plan;
+}
+
+std::vector<RunningMethod> startMethods(const ShotReader& shot, const RunOptions& o) {
+    requirePasses(shot, o.methods);
+    std::vector<RunningMethod> methods;
+    for (const auto& spec : o.methods) {
+        methods.emplace_back(spec, shotInfo(shot.manifest()));
+        methods.back().method->keepDebugLayers = o.debugLayers;
+    }
+    makeWritableFolder(o.out);
+    for (const auto& m : methods) makeWritableFolder(o.out / m.spec.folderName());
+    makeWritableFolder(o.out / "truth");
+    return methods;
+}
+
+std::string machineName() {
+    std::ifstream cpus("/proc/cpuinfo");
+    for (std::string line; std::getline(cpus, line);)
+        if (line.starts_with("model name")) {
+            const size_t colon = line.find(':');
+            if (colon != std::string::npos) return line.substr(std::min(line.size(), colon + 2));
+        }
+    return "unknown processor";
+}
+
+RunResults describeRun(const Manifest& m, const RunOptions& o) {
+    RunResults r;
+    r.shot = m.name;
+    r.width = m.width;
+    r.height = m.height;
+    r.isStatic = m.isStatic;
+    r.jitterSequence = m.jitterSequence;
+    r.jitterStart = m.jitterStart;
+    r.jitterPeriod = m.jitterPeriod;
+    const size_t period = std::min(m.frames.size(), size_t(std::max(m.jitterPeriod, 1)));
+    for (size_t i = 0; i < period; i++) {
+        r.jitterMeanPx[0] += m.frames[i].jitterPx.x / double(period);
+        r.jitterMeanPx[1] += m.frames[i].jitterPx.y / double(period);
+    }
+    r.subSamples = int(m.subsamplePositionsPx.size());
+    r.truthSamplesPerHalf = m.truthSamplesPerHalf;
+    r.truthFilter = m.truthFilter;
+    r.truthFilterWidthPx = m.truthFilterWidthPx;
+    r.programVersion = AA_VERSION;
+    r.isa = name(o.exec.isa);
+    r.precision = o.exec.precision == Precision::fast     ? "fast"
+                  : o.exec.precision == Precision::scalar ? "scalar"
+                                                          : "double";
+    r.machine = machineName();
+    r.threads =
+        o.exec.parallel ? int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)) : 1;
+    r.protocol = o.protocol;
+    std::map<std::string, int> counted;
+    for (const auto& f : m.frames)
+        for (const auto& [group, seconds] : f.renderSeconds) r.renderSeconds[group] += seconds, counted[group]++;
+    for (auto& [group, seconds] : r.renderSeconds) seconds /= counted[group];
+    for (const auto& spec : o.methods) {
+        MethodResult result;
+        result.id = spec.method->id;
+        result.text = spec.text;
+        result.title = spec.method->title;
+        result.family = spec.method->family;
+        result.source = spec.method->source;
+        result.folder = spec.folderName();
+        const bool unjittered =
+            std::all_of(m.frames.begin(), m.frames.end(), [](const auto& f) { return f.jitterPx == glm::dvec2(0.0); });
+        const bool centre = unjittered || (spec.method->sampling() == Sampling::centre && !m.frames[0].centre.empty());
+        result.sampling = centre ? "centre" : "jittered";
+        const Params params = spec.params();
+        result.parameters.insert(params.all().begin(), params.all().end());
+        for (auto n : names(spec.passes())) result.passes.emplace_back(n);
+        r.methods.push_back(std::move(result));
+    }
+    return r;
+}
+
+}  // namespace aa

@@ -1,0 +1,38 @@
+// What a run needs to know before its first frame: that the shot serves the methods, which frames and passes are read,
+// and what the results will say of shot, truth and program.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "methods/driver.h"
+#include "shot/reader.h"
+#include "study/results.h"
+#include "study/run.h"
+
+namespace aa {
+
+// Frames as a list `1-16,20` (frame numbers of the manifest; empty = all). Throws UsageError, InputError (no such
+// frame).
+std::vector<size_t> selectFrames(const Manifest& manifest, const std::string& list);
+// Throws InputError naming the first method that asks for a pass which the shot lacks.
+void requirePasses(const ShotReader& shot, const std::vector<MethodSpec>& methods);
+// Makes the methods fit options.protocol.history: ramp sets warmup=ramp wherever a method has the parameter and it was
+// not given. Returns the methods that accumulate and have no ramp. Throws UsageError: a full history of a moving shot.
+std::vector<std::string> applyHistory(RunOptions& options, const Manifest& manifest);
+
+// Which passes are read of which frames: methods that accumulate read the jittered ones, all others the centre-sampled
+// ones where the shot has them.
+struct InputPlan {
+    bool split = false;  // centre-sampled frames are read, too
+    PassSet jittered, centre;
+    bool overTime = false;  // a sequence is also judged over time, along the motion where the shot knows it
+    bool readsCentre(const MethodSpec& method) const { return split && method.method->sampling() == Sampling::centre; }
+};
+InputPlan planInput(const ShotReader& shot, const RunOptions& options);
+// The methods, ready to run; their folders and the truth's are made. Throws InputError, UsageError.
+std::vector<RunningMethod> startMethods(const ShotReader& shot, const RunOptions& options);
+// Everything that is known before the first frame.
+RunResults describeRun(const Manifest& manifest, const RunOptions& options);
+std::string machineName();  // the processor, as the system names it
+
+}  // namespace aa

@@ -1,0 +1,409 @@
+// results.json. Every member is described once, in a members() below: the writer and the reader are visitors of the
+// same description, so that nothing is written that cannot be read. JSON has no infinity and no NaN: they are texts.
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "image/error.h"
+#include "image/io.h"
+#include "study/results.h"
+
+namespace aa {
+namespace {
+namespace fs = std::filesystem;
+using json = nlohmann::ordered_json;
+
+json number(double v) {
+    if (std::isnan(v)) return "NaN";
+    if (std::isinf(v)) return v > 0 ? "Inf" : "-Inf";
+    return v;
+}
+double toNumber(const json& j) {
+    if (j.is_string()) {
+        const auto& s = j.get_ref<const std::string&>();
+        if (s == "Inf") return std::numeric_limits<double>::infinity();
+        if (s == "-Inf") return -std::numeric_limits<double>::infinity();
+        if (s == "NaN") return std::numeric_limits<double>::quiet_NaN();
+    }
+    return j.get<double>();  // throws on any other type
+}
+
+// A value as JSON holds it, and back.
+template <class T>
+json toJson(const T& v) {
+    if constexpr (std::is_same_v<T, double>)
+        return number(v);
+    else
+        return v;
+}
+template <class T>
+void fromJson(const json& j, T& v) {
+    if constexpr (std::is_same_v<T, double>)
+        v = toNumber(j);
+    else
+        j.get_to(v);
+}
+// Enumerations by name.
+json toJson(const ToneMap& v) { return name(v); }
+json toJson(const Transfer& v) { return name(v); }
+json toJson(const History& v) { return name(v); }
+void fromJson(const json& j, ToneMap& v) { v = toneMapByName(j.get<std::string>()); }
+void fromJson(const json& j, Transfer& v) { v = transferByName(j.get<std::string>()); }
+void fromJson(const json& j, History& v) { v = historyByName(j.get<std::string>()); }
+// JSON's keys are texts.
+json toJson(const std::map<int, std::string>& images) {
+    json j = json::object();
+    for (const auto& [frame, file] : images) j[std::to_string(frame)] = file;
+    return j;
+}
+void fromJson(const json& j, std::map<int, std::string>& images) {
+    for (const auto& [frame, file] : j.items()) images[std::stoi(frame)] = file.get<std::string>();
+}
+struct EightBit {
+    bool& on;
+};
+struct IsEightBit {
+    bool on;
+};
+json toJson(const IsEightBit& v) { return v.on ? json(8) : json(nullptr); }
+void fromJson(const json& j, EightBit v) {
+    if (!j.is_null() && j.get<int>() != 8) throw std::runtime_error("quantiseBits: expected 8 or null");
+    v.on = !j.is_null();
+}
+
+// The two visitors. One member per call: under a key, as a value or as what its own members() describe.
+class Writer {
+  public:
+    explicit Writer(json& to) : to_(to) {}
+    template <class T>
+    void value(const char* key, const T& v) {
+        to_[key] = toJson(v);
+    }
+    // Left out where there is nothing to say; absent, it is what it was.
+    template <class T>
+    void sparse(const char* key, const T& v, bool said) {
+        if (said) value(key, v);
+    }
+    template <class T>
+    void maybe(const char* key, const std::optional<T>& v) {
+        if (v) value(key, *v);
+    }
+    template <class T>
+    void orNull(const char* key, const std::optional<T>& v) {
+        to_[key] = v ? toJson(*v) : json(nullptr);
+    }
+    // Follows from other members: written alone.
+    template <class T>
+    void derived(const char* key, const T& v) {
+        value(key, v);
+    }
+    template <class... T>
+    void array(const char* key, const T&... v) {
+        to_[key] = json::array({toJson(v)...});
+    }
+    template <class Members>
+    void group(const char* key, const Members& inside) {
+        inside(Writer(to_[key]));
+    }
+    template <class Members>
+    void groupIf(bool present, const char* key, const Members& inside) {
+        if (present) group(key, inside);
+    }
+    template <class T>
+    void object(const char* key, const T& v) {
+        members(Writer(to_[key] = json::object()), v);
+    }
+    template <class T>
+    void maybeObject(const char* key, const std::optional<T>& v) {
+        if (v) object(key, *v);
+    }
+    template <class T>
+    void objectOrNull(const char* key, const std::optional<T>& v) {
+        to_[key] = nullptr;
+        maybeObject(key, v);
+    }
+    template <class T>
+    void list(const char* key, const std::vector<T>& all) {
+        json& j = to_[key] = json::array();
+        for (const T& v : all) members(Writer(j.emplace_back(json::object())), v);
+    }
+
+  private:
+    json& to_;
+};
+class Reader {
+  public:
+    explicit Reader(const json& from) : from_(from) {}
+    template <class T>
+    void value(const char* key, T&& v) {
+        fromJson(from_.at(key), v);
+    }
+    template <class T>
+    void sparse(const char* key, T&& v, bool) {
+        if (from_.contains(key)) fromJson(from_.at(key), v);
+    }
+    template <class T>
+    void maybe(const char* key, std::optional<T>& v) {
+        if (from_.contains(key) && !from_.at(key).is_null()) fromJson(from_.at(key), v.emplace());
+    }
+    template <class T>
+    void orNull(const char* key, std::optional<T>& v) {
+        maybe(key, v);
+    }
+    template <class T>
+    void derived(const char*, const T&) {}
+    template <class... T>
+    void array(const char* key, T&... v) {
+        size_t i = 0;
+        (fromJson(from_.at(key).at(i++), v), ...);
+    }
+    template <class Members>
+    void group(const char* key, const Members& inside) {
+        inside(Reader(from_.at(key)));
+    }
+    template <class Members>
+    void groupIf(bool, const char* key, const Members& inside) {
+        if (from_.contains(key)) group(key, inside);
+    }
+    template <class T>
+    void object(const char* key, T& v) {
+        members(Reader(from_.at(key)), v);
+    }
+    template <class T>
+    void maybeObject(const char* key, std::optional<T>& v) {
+        if (from_.contains(key) && !from_.at(key).is_null()) object(key, v.emplace());
+    }
+    template <class T>
+    void objectOrNull(const char* key, std::optional<T>& v) {
+        from_.at(key);
+        maybeObject(key, v);
+    }
+    template <class T>
+    void list(const char* key, std::vector<T>& all) {
+        for (const json& j : from_.at(key)) members(Reader(j), all.emplace_back());
+    }
+
+  private:
+    const json& from_;
+};
+template <class V>
+constexpr bool kReads = std::is_same_v<std::remove_cvref_t<V>, Reader>;
+
+// ---- the description; S is const where it is written ----
+template <class V, class S>
+requires std::is_same_v<std::remove_const_t<S>, FrameMetrics>
+void members(V v, S& m) {
+    v.value("mse", m.mse);
+    v.derived("psnr", m.psnr);
+    v.derived("snr", m.snr);
+    v.value("referencePower", m.reference);
+    if constexpr (kReads<V>) m = frameMetrics(m.squares());
+    if constexpr (kReads<V>) {
+        for (const Metric& metric : metrics())
+            for (const Figure& f : metric.figures) {
+                std::optional<double> value;
+                if (!f.ofSquares) v.maybe(std::string(f.name).c_str(), value);
+                if (value) m.others.emplace(f.name, *value);
+            }
+    } else {
+        for (const auto& [name, value] : m.others) v.value(name.c_str(), value);
+    }
+}
+template <class V, class S>
+requires std::is_same_v<std::remove_const_t<S>, PooledMetrics>
+void members(V v, S& p) {
+    members(v, p.mean);
+    v.value("frames", p.frames);
+    v.value("mseCorrected", p.mseInterval.corrected);
+    if constexpr (kReads<V>) p.mseInterval.raw = p.mean.mse;
+    v.value("meanFinitePsnr", p.meanFinitePsnr);
+    v.value("infinitePsnrFrames", p.infinitePsnrFrames);
+    v.maybe("gainDb", p.gainDb);
+}
+template <class V, class S>
+requires std::is_same_v<std::remove_const_t<S>, TemporalMetrics>
+void members(V v, S& t) {
+    v.value("warmupFrames", t.warmup);
+    v.value("frames", t.frames);
+    v.maybe("tPsnr", t.tPsnr);
+    v.maybe("flickerStatic", t.flickerStatic);
+    v.maybe("flickerStep", t.flickerStep);
+    v.maybe("flickerMoving", t.flickerMoving);
+    v.maybe("ghostMse", t.ghostMse);
+    v.maybe("ghostExcess", t.ghostExcess);
+    v.maybe("ghostMseError", t.ghostMseError);
+    v.maybe("flickerError", t.flickerError);
+    v.maybe("ghostHalfLifeFrames", t.ghostHalfLife);
+    v.sparse("ghostFraction", t.ghostFraction, !t.ghostFraction.empty());
+    v.sparse("trailShare", t.trailShare, !t.ghostFraction.empty());
+    v.maybe("convergenceFrames", t.convergence);
+}
+template <class V, class S>
+requires std::is_same_v<std::remove_const_t<S>, TemporalFrame>
+void members(V v, S& t) {
+    v.value("ghostSquares", t.ghostSquares);
+    v.value("ghostValues", t.ghostValues);
+    v.value("flickerSquares", t.flickerSquares);
+    v.value("flickerPixels", t.flickerPixels);
+}
+template <class V, class S>
+requires std::is_same_v<std::remove_const_t<S>, FrameSum>
+void members(V v, S& s) {
+    v.value("squares", s.sum);
+    v.value("values", s.count);
+}
+template <class V, class S>
+requires std::is_same_v<std::remove_const_t<S>, ClippedPixels>
+void members(V v, S& c) {
+    v.value("pixels", c.pixels);
+    v.value("of", c.of);
+}
+template <class V, class S>
+requires std::is_same_v<std::remove_const_t<S>, TimeComparison>
+void members(V v, S& c) {
+    v.value("gainDb", c.gainDb);
+    v.value("low95", c.low);
+    v.value("high95", c.high);
+    v.value("resolved", c.resolved);
+}
+template <class V, class S>
+requires std::is_same_v<std::remove_const_t<S>, FrameResult>
+void members(V v, S& f) {
+    v.value("frame", f.frame);
+    v.value("seconds", f.seconds);
+    v.value("judged", f.judged);
+    v.sparse("image", f.image, !f.image.empty());
+    v.maybeObject("metrics", f.metrics);
+    v.maybeObject("temporal", f.temporal);
+    v.maybeObject("rejected", f.rejected);
+}
+template <class V, class S>
+requires std::is_same_v<std::remove_const_t<S>, MethodResult>
+void members(V v, S& m) {
+    v.value("id", m.id);
+    v.value("text", m.text);
+    v.value("title", m.title);
+    v.value("family", m.family);
+    v.value("source", m.source);
+    v.value("folder", m.folder);
+    v.value("sampling", m.sampling);
+    v.value("parameters", m.parameters);
+    v.value("passes", m.passes);
+    v.value("stateBytes", m.stateBytes);
+    v.value("secondsMedian", m.secondsMedian);
+    v.value("secondsMin", m.secondsMin);
+    v.value("nsPerPixel", m.nsPerPixel);
+    v.objectOrNull("pooled", m.pooled);
+    v.list("frames", m.frames);
+    v.maybeObject("temporal", m.temporal);
+    v.sparse("tileSquares", m.tileSquares, !m.tileSquares.empty());
+    v.groupIf(m.rejectedMse.has_value(), "rejected", [&](auto rejected) {
+        rejected.orNull("mse", m.rejectedMse);
+        rejected.orNull("share", m.rejectedShare);
+    });
+}
+template <class V, class S>
+requires std::is_same_v<std::remove_const_t<S>, PairResult>
+void members(V v, S& p) {
+    v.array("indices", p.first, p.second);
+    v.value("mseDifference", p.comparison.mseDifference);
+    v.value("low95", p.comparison.low);
+    v.value("high95", p.comparison.high);
+    v.value("gainDb", p.comparison.gainDb);
+    v.value("gainLow95", p.comparison.gainLow);
+    v.value("gainHigh95", p.comparison.gainHigh);
+    v.value("resolved", p.comparison.resolved);
+    v.maybeObject("ghost", p.ghost);
+    v.maybeObject("flicker", p.flicker);
+    v.maybeObject("rejected", p.rejected);
+}
+template <class V, class S>
+requires std::is_same_v<std::remove_const_t<S>, RunResults>
+void members(V all, S& run) {
+    all.group("shot", [&](auto v) {
+        v.value("name", run.shot);
+        v.array("resolution", run.width, run.height);
+        v.value("static", run.isStatic);
+        v.group("jitter", [&](auto j) {
+            j.value("sequence", run.jitterSequence);
+            j.value("start", run.jitterStart);
+            j.value("period", run.jitterPeriod);
+            j.array("meanPx", run.jitterMeanPx[0], run.jitterMeanPx[1]);
+            j.derived("centred", run.jitterCentred());
+        });
+        v.sparse("subSamples", run.subSamples, run.subSamples > 0);
+        v.sparse("renderSeconds", run.renderSeconds, !run.renderSeconds.empty());
+    });
+    all.group("truth", [&](auto v) {
+        v.value("samplesPerHalf", run.truthSamplesPerHalf);
+        v.value("filter", run.truthFilter);
+        v.value("filterWidthPx", run.truthFilterWidthPx);
+        v.orNull("noiseMse", run.truthNoise);
+        v.value("images", run.truthImages);
+        v.maybeObject("clipped", run.truthClipped);
+    });
+    // Runs before the protocol could be chosen have none of it but exposure and tone map.
+    all.group("run", [&](auto v) {
+        v.value("program", run.programVersion);
+        v.value("instructionSet", run.isa);
+        v.value("precision", run.precision);
+        v.value("threads", run.threads);
+        v.value("machine", run.machine);
+        v.group("display", [&](auto d) {
+            d.value("exposureEv", run.protocol.display.exposure);
+            d.value("toneMap", run.protocol.display.toneMap);
+            d.sparse("transfer", run.protocol.display.transfer, true);
+        });
+        v.sparse("history", run.protocol.history, true);
+        v.sparse("warmUpFrames", run.warmUpFrames, true);
+        if constexpr (kReads<decltype(v)>)
+            v.sparse("quantiseBits", EightBit{run.protocol.eightBit}, true);
+        else
+            v.sparse("quantiseBits", IsEightBit{run.protocol.eightBit}, true);
+        v.value("sanitised", run.sanitised);
+    });
+    all.list("methods", run.methods);
+    all.list("pairs", run.pairs);
+}
+}  // namespace
+
+std::string toJsonText(const RunResults& run) {
+    json j = {{"format", "aaresolve-results"}, {"version", 1}};
+    members(Writer(j), run);
+    for (size_t i = 0; i < run.pairs.size(); i++) {  // for those who read the file without counting
+        j["pairs"][i]["first"] = run.methods[run.pairs[i].first].text;
+        j["pairs"][i]["second"] = run.methods[run.pairs[i].second].text;
+    }
+    return j.dump(1) + "\n";
+}
+
+void writeResults(const RunResults& run, const fs::path& folder) {
+    writeText(folder / "results.json", toJsonText(run));
+    writeText(folder / "results.csv", toCsvText(run));
+}
+
+RunResults readResults(const fs::path& folder) {
+    const fs::path file = folder / "results.json";
+    std::ifstream in(file);
+    if (!in)
+        throw InputError(file.string() +
+                         ": no such file; expected the output folder of `aaresolve run SHOT -m ... -o OUT`");
+    RunResults run;
+    try {
+        const json j = json::parse(in);
+        if (j.at("format") != "aaresolve-results" || j.at("version") != 1)
+            throw InputError(file.string() + ": not results of this program's version; run the shot again");
+        members(Reader(j), run);
+        for (const PairResult& p : run.pairs)
+            if (p.first >= run.methods.size() || p.second >= run.methods.size())
+                throw InputError(file.string() + ": a pair names a method that is not there; run the shot again");
+    } catch (const InputError&) {
+        throw;
+    } catch (const std::exception& e) {
+        throw InputError(file.string() + ": damaged (" + e.what() + "); run the shot again");
+    }
+    return run;
+}
+
+}  // namespace aa

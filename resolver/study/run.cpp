@@ -1,0 +1,74 @@
+#include "study/run.h"
+
+#include "metrics/temporal.h"
+#include "shot/frame_stream.h"
+#include "study/images.h"
+#include "study/judge.h"
+#include "study/prepare.h"
+#include "study/warm_up.h"
+
+namespace aa {
+
+size_t stepsOf(const RunOptions& o, const Manifest& m) { return o.frames.size() * (1 + warmUpPasses(o, m)); }
+
+RunResults run(const ShotReader& shot, const RunOptions& o, const Progress& progress) {
+    std::vector<TileErrors> errors;
+    RunResults results = runMethods(shot, o, progress, errors);
+    finish(results, errors);
+    writeResults(results, o.out);
+    return results;
+}
+
+RunResults runMethods(const ShotReader& shot, const RunOptions& o, const Progress& progress,
+                      std::vector<TileErrors>& errors) {
+    const Manifest& manifest = shot.manifest();
+    std::vector<RunningMethod> methods = startMethods(shot, o);
+    RunResults results = describeRun(manifest, o);
+    const InputPlan plan = planInput(shot, o);
+    Judge judge(manifest, o, plan.overTime);
+
+    const size_t passes = warmUpPasses(o, manifest);
+    std::optional<Camera> before;
+    if (passes > 0) before = warmUp(shot, o, methods, passes, progress);
+    results.warmUpFrames = passes * o.frames.size();
+    errors = judge.errors();
+    if (progress.interrupted()) return results;
+
+    FrameStream stream(shot, o.frames, plan.jittered, /*withTruth=*/true, plan.centre);
+    const DisplayChain& display = o.protocol.display;
+    std::shared_ptr<Frame> centreFrame;  // of the last frame; shared by those of a static shot, and prepared once
+    for (size_t i = 0; auto frame = stream.next(); i++) {
+        if (i == 0) {
+            frame->reset = passes == 0;  // a sequence may start in the middle
+            if (passes > 0) frame->previousCamera = before;
+        }
+        prepareFrame(*frame, methods, display, o.exec);
+        if (stream.centre() && stream.centre() != centreFrame) prepareFrame(*stream.centre(), methods, display, o.exec);
+        centreFrame = stream.centre();
+        judge.look(*frame, stream.truth(), results);
+        const Reference* reference = judge.reference();
+        const bool write = o.writeAllFrames || (reference && (!manifest.isStatic || i + 1 == o.frames.size()));
+        if (write && reference) results.truthImages[frame->number] = writeTruthImage(*reference, frame->number, o);
+
+        for (size_t k = 0; k < methods.size(); k++) {
+            const Frame& input = plan.readsCentre(methods[k].spec) ? *stream.centre() : *frame;
+            const double seconds = methods[k].resolve(input, input.display, o.exec);
+            if (o.protocol.eightBit) quantise8(methods[k].outEncoded, o.exec);
+            FrameResult result = judge.judge(k, methods[k], seconds);
+            if (write) result.image = writeImage(methods[k], frame->number, o);
+            MethodResult& of = results.methods[k];
+            if (manifest.isStatic && !of.frames.empty()) of.frames.back().judged = false;
+            of.frames.push_back(std::move(result));
+            of.stateBytes = std::max(of.stateBytes, methods[k].method->stateBytes());
+        }
+        judge.judgeRejected(methods, results.methods);
+        progress.step("frame " + std::to_string(frame->number));
+        if (progress.interrupted()) break;
+    }
+    judge.finish(results, passes == 0);
+    results.sanitised = counted(stream.counts());
+    errors = judge.errors();
+    return results;
+}
+
+}  // namespace aa

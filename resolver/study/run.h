@@ -1,0 +1,37 @@
+// A run: every chosen method on every frame while it is in memory; the next frame is decoded meanwhile; only the passes
+// that the methods need are read. Memory does not grow with the number of frames. The way of the data is that of the
+// files here: prepare -> (warm_up) -> resolve -> judge -> images, results.
+#pragma once
+#include <filesystem>
+
+#include "methods/spec.h"
+#include "shot/reader.h"
+#include "study/progress.h"
+#include "study/results.h"
+
+namespace aa {
+
+struct RunOptions {
+    std::vector<MethodSpec> methods;
+    std::vector<size_t> frames;  // indices into the manifest, ascending; the methods see them all, in order
+    Protocol protocol;
+    Exec exec;
+    MeasureOptions measure;
+    std::filesystem::path out;
+    bool writeExr = true, writePng = false;
+    bool writeAllFrames = false;  // otherwise: frames with ground truth of their own; of a static shot, the last
+    bool debugLayers = false;
+};
+
+// Steps that a run shows as progress: its frames, before them those of a full history.
+size_t stepsOf(const RunOptions& options, const Manifest& manifest);
+
+// Runs, measures and writes OUT/<method>/<frame>.*, OUT/truth/<frame>.exr, results.json and results.csv. When
+// interrupted, the results cover the frames that were finished. Throws InputError, UsageError.
+RunResults run(const ShotReader& shot, const RunOptions& options, const Progress& progress);
+// The same without what needs all methods together: figures are not pooled, no results are written. `errors` receives
+// the tile errors that finish() asks for.
+RunResults runMethods(const ShotReader& shot, const RunOptions& options, const Progress& progress,
+                      std::vector<TileErrors>& errors);
+
+}  // namespace aa
