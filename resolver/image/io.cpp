@@ -1,22 +1,21 @@
 #include "image/io.h"
 
-#include <OpenImageIO/imageio.h>
 #include <unistd.h>
 
-#include <cmath>
+#include <algorithm>
+#include <array>
+#include <cerrno>
 #include <fstream>
+#include <system_error>
 
 #include "image/error.h"
-#include "image/no_date.h"
+#include "image/exr.h"
+#include "image/other_formats.h"
+#include "image/png.h"
 
 namespace aa {
 namespace fs = std::filesystem;
-constexpr int kLargestSide = 16384;  // conventions 10
-
-using OIIO::ImageInput;
-using OIIO::ImageOutput;
-using OIIO::ImageSpec;
-using OIIO::TypeDesc;
+constexpr const char* kDisplayReferred = "aaresolve:displayReferred";  // attribute of an EXR: 1 or 0
 
 fs::path temporaryName(const fs::path& file) {
     std::string name = ".";
@@ -42,115 +41,83 @@ void makeWritableFolder(const fs::path& folder) {
                          "; choose another output folder or change its permissions");
 }
 
-void writeText(const fs::path& file, const std::string& text) {
+void giveUpWriting(const fs::path& file, const std::string& why) {
+    std::error_code ignored;
+    fs::remove(temporaryName(file), ignored);
+    throw InputError(file.string() + ": cannot be written (" + why + "); check permissions and free disk space");
+}
+
+void writeBytes(const fs::path& file, std::span<const unsigned char> bytes) {
     const fs::path temporary = temporaryName(file);
     std::ofstream out(temporary, std::ios::binary);
-    out << text;
+    out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
     out.close();
-    if (!out) {
-        std::error_code ignored;
-        fs::remove(temporary, ignored);
-        throw InputError(file.string() + ": cannot be written; check permissions and free disk space");
-    }
+    if (!out) giveUpWriting(file, std::generic_category().message(errno));
     renameInto(temporary, file);
 }
+void writeText(const fs::path& file, const std::string& text) {
+    writeBytes(file, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+}
+
+namespace {
+// Whole numbers of 32 bits are codes too, of 2^32 - 1, when a file holds nothing else.
+void fromCodes(const PlaneU& codes, PlaneF& values) {
+    constexpr float kScale = 1.0f / 4294967295.0f;
+    values = PlaneF(codes.width(), codes.height());
+    for (int y = 0; y < codes.height(); y++)
+        for (int x = 0; x < codes.width(); x++) values.at(x, y) = float(codes.at(x, y)) * kScale;
+}
+LoadedImage readExr(const fs::path& file) {
+    ExrFile exr(file, "write the file again");
+    const ExrPart& part = exr.parts()[0];
+    const auto isUint = [](const ExrChannel& c) { return c.type == ChannelType::uint; };
+    if (part.channels.empty()) throw InputError(file.string() + ": has no pixels");
+    LoadedImage image;
+    if (std::all_of(part.channels.begin(), part.channels.end(), isUint)) image.space = FileSpace::encoded;
+    const auto mark = part.integers.find(kDisplayReferred);
+    image.displayReferred = mark != part.integers.end() && mark->second != 0;
+    const size_t channels = part.channels.size() < 3 ? 1 : 3;
+    std::array<PlaneU, 3> codes;
+    std::vector<ChannelTarget> targets;
+    for (size_t c = 0; c < channels; c++)
+        if (isUint(part.channels[c]))
+            targets.push_back({part.channels[c].name, &codes[c]});
+        else
+            targets.push_back({part.channels[c].name, &image.rgb.c[c]});
+    exr.read(part, targets);
+    for (size_t c = 0; c < channels; c++)
+        if (isUint(part.channels[c])) fromCodes(codes[c], image.rgb.c[c]);
+    for (size_t c = channels; c < 3; c++) image.rgb.c[c] = image.rgb.c[0];
+    return image;
+}
+}  // namespace
 
 LoadedImage readImage(const fs::path& file) {
     if (!fs::exists(file)) throw InputError(file.string() + ": no such file");
-    auto in = ImageInput::open(file.string());
-    if (!in) {
-        OIIO::geterror();
-        throw InputError(file.string() + ": not an image that can be read; expected PNG or EXR");
-    }
-    const ImageSpec& spec = in->spec();
-    if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) throw InputError(file.string() + ": has no pixels");
-    if (spec.width > kLargestSide || spec.height > kLargestSide)
-        throw InputError(file.string() + ": " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
-                         " pixels; expected 1..16384 a side");
-    const int channels = std::min(spec.nchannels, 3);
-    std::vector<float> pixels(size_t(spec.width) * size_t(spec.height) * size_t(channels));
-    if (!in->read_image(0, 0, 0, channels, TypeDesc::FLOAT, pixels.data())) {
-        in->geterror();
-        throw InputError(file.string() + ": truncated or damaged; write the file again");
-    }
-    LoadedImage image{Rgb(spec.width, spec.height),
-                      spec.format.is_floating_point() ? FileSpace::linear : FileSpace::encoded};
-    image.displayReferred = spec.get_int_attribute("aaresolve:displayReferred", 0) != 0;
-    for (int c = 0; c < 3; c++) {
-        const int from = channels == 3 ? c : 0;
-        for (int y = 0; y < spec.height; y++)
-            for (int x = 0; x < spec.width; x++)
-                image.rgb.c[size_t(c)].at(x, y) =
-                    pixels[(size_t(y) * size_t(spec.width) + size_t(x)) * size_t(channels) + size_t(from)];
-    }
+    LoadedImage image = isExr(file)   ? readExr(file)
+                        : isPng(file) ? LoadedImage{readPng(file), FileSpace::encoded}
+                                      : readOtherFormat(file);
     image.rgb.fillBorder();
     return image;
 }
 
-namespace {
-// Writes interleaved pixels under a temporary name and renames.
-void writePixels(const fs::path& file, const ImageSpec& spec, const void* pixels) {
-    const fs::path temporary = temporaryName(file);
-    auto out = ImageOutput::create(temporary.string());
-    std::string why = out ? "" : OIIO::geterror();
-    if (out && (!out->open(temporary.string(), spec) || !out->write_image(spec.format, pixels) || !out->close()))
-        why = out->geterror();
-    if (!why.empty()) {
-        std::error_code ignored;
-        fs::remove(temporary, ignored);
-        throw InputError(file.string() + ": cannot be written (" + why.substr(0, why.find('\n')) +
-                         "); check permissions and free disk space");
-    }
-    renameInto(temporary, file);
-}
-template <class T, class Convert>
-void writeRgb(const fs::path& file, const Rgb& image, const ImageSpec& spec, Convert convert) {
-    const int w = image.width(), h = image.height();
-    std::vector<T> pixels(size_t(w) * size_t(h) * 3);
-    for (int y = 0; y < h; y++)
-        for (int x = 0; x < w; x++)
-            for (int c = 0; c < 3; c++)
-                pixels[(size_t(y) * size_t(w) + size_t(x)) * 3 + size_t(c)] = convert(image.c[size_t(c)].at(x, y));
-    writePixels(file, spec, pixels.data());
-}
-}  // namespace
-
 void writeLayers(const fs::path& file, const std::vector<NamedPlanes>& layers) {
     if (layers.empty()) throw InputError(file.string() + ": this method has no debug layers");
-    std::vector<const PlaneF*> planes;
-    std::vector<std::string> channels;
+    PartSource part;
     for (const auto& layer : layers)
-        for (size_t i = 0; i < layer.planes.size(); i++) {
-            planes.push_back(&layer.planes[i]);
-            channels.push_back(layer.planes.size() == 1 ? layer.name : layer.name + "." + "RGB"[i]);
-        }
-    const int w = planes[0]->width(), h = planes[0]->height(), n = int(planes.size());
-    std::vector<float> pixels(size_t(w) * size_t(h) * size_t(n));
-    for (int c = 0; c < n; c++)
-        for (int y = 0; y < h; y++)
-            for (int x = 0; x < w; x++)
-                pixels[(size_t(y) * size_t(w) + size_t(x)) * size_t(n) + size_t(c)] = planes[size_t(c)]->at(x, y);
-    ImageSpec spec(w, h, n, TypeDesc::FLOAT);
-    spec.channelnames = channels;
-    spec.attribute("compression", "zip");
-    spec.attribute("DateTime", kNoDate);
-    writePixels(file, spec, pixels.data());
+        for (size_t i = 0; i < layer.planes.size(); i++)
+            part.channels.push_back(
+                {layer.planes.size() == 1 ? layer.name : layer.name + "." + "RGB"[i], &layer.planes[i]});
+    writeParts(file, {part});
 }
 
 void writeExr(const fs::path& file, const Rgb& linear, bool displayReferred) {
-    ImageSpec spec(linear.width(), linear.height(), 3, TypeDesc::FLOAT);
-    spec.attribute("compression", "zip");
-    spec.attribute("DateTime", kNoDate);
-    spec.attribute("oiio:ColorSpace", "Linear");
-    spec.attribute("aaresolve:displayReferred", displayReferred ? 1 : 0);
-    writeRgb<float>(file, linear, spec, [](float v) { return v; });
+    const std::vector<ChannelSource> channels = {{"R", &linear.c[0]}, {"G", &linear.c[1]}, {"B", &linear.c[2]}};
+    writeParts(file, {{"", channels, {{kDisplayReferred, displayReferred ? 1 : 0}}}});
 }
 
 void writePng(const fs::path& file, const Rgb& encoded) {
-    ImageSpec spec(encoded.width(), encoded.height(), 3, TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    writeRgb<uint8_t>(file, encoded, spec,
-                      [](float v) { return uint8_t(std::floor(255.0f * (v > 0 ? (v < 1 ? v : 1.0f) : 0.0f) + 0.5f)); });
+    writeBytes(file, pngBytes(codesOf(encoded), encoded.width(), encoded.height(), {}));
 }
 
 }  // namespace aa

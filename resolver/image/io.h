@@ -1,12 +1,16 @@
-// Still images on disk through OpenImageIO. Files are written under a temporary name and renamed when complete.
+// Still images on disk: EXR (image/exr.h) and PNG (image/png.h) in the program itself, every other kind through a
+// module (image/other_formats.h). Files are written under a temporary name and renamed when complete.
 #pragma once
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "image/plane.h"
 
 namespace aa {
+
+inline constexpr int kLargestSide = 16384;  // px, conventions 10
 
 // How the three channels of a file are to be read.
 enum class FileSpace {
@@ -19,8 +23,9 @@ struct LoadedImage {
     bool displayReferred = false;  // written by writeExr(..., true): linear light that must not be tone mapped again
 };
 
-// Reads the first three channels (one channel is repeated). Integer files are taken as sRGB codes, float files as
-// linear. Throws InputError: missing, not an image, truncated, no pixels.
+// Reads the first three channels of the first picture in the file; of one or two channels the first is repeated. What
+// the file is, its content says, not its name. Integer files are taken as sRGB codes, float files as linear. Throws
+// InputError: missing, not an image, truncated, no pixels, larger than kLargestSide.
 LoadedImage readImage(const std::filesystem::path& file);
 
 // Float EXR, ZIP, three channels R G B. `displayReferred` marks images that must not be tone mapped again.
@@ -34,7 +39,10 @@ void writeLayers(const std::filesystem::path& file, const std::vector<NamedPlane
 // A path next to `file` to write to before renaming over it.
 std::filesystem::path temporaryName(const std::filesystem::path& file);
 void renameInto(const std::filesystem::path& temporary, const std::filesystem::path& file);  // throws InputError
-// Writes a text file through a temporary name. Throws InputError when it cannot.
+// Removes the temporary file and throws InputError.
+[[noreturn]] void giveUpWriting(const std::filesystem::path& file, const std::string& why);
+// Writes a file through a temporary name. Throws InputError when it cannot.
+void writeBytes(const std::filesystem::path& file, std::span<const unsigned char> bytes);
 void writeText(const std::filesystem::path& file, const std::string& text);
 // Creates a folder (and its parents) and makes sure that files can be written there. Throws InputError.
 void makeWritableFolder(const std::filesystem::path& folder);

@@ -1,15 +1,20 @@
 #include "report/canvas.h"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
+#include <ft2build.h>
+#include FT_FREETYPE_H
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
+#include <map>
+#include <string_view>
+#include <vector>
 
 #include "image/colour.h"
 #include "image/error.h"
 #include "image/io.h"
+#include "image/png.h"
 
 namespace aa {
 namespace fs = std::filesystem;
@@ -27,10 +32,55 @@ std::string fontFile(Canvas::Font font) {
     throw InputError(std::string(name) +
                      ": no such font on this machine; install the DejaVu fonts (fonts-dejavu-core)");
 }
-const std::string& cachedFontFile(Canvas::Font font) {
-    static const std::string regular = fontFile(Canvas::Font::regular), bold = fontFile(Canvas::Font::bold);
-    return font == Canvas::Font::bold ? bold : regular;
+// The character that starts at `at`, which moves on; bytes that are no UTF-8 are the replacement character.
+uint32_t nextCharacter(std::string_view text, size_t& at) {
+    constexpr uint32_t kReplacement = 0xfffd;
+    const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
+    const unsigned char first = byte(at++);
+    if (first < 0x80) return first;
+    const int more = first >= 0xf0 && first < 0xf8 ? 3 : first >= 0xe0 ? 2 : first >= 0xc0 ? 1 : 0;
+    if (more == 0 || first >= 0xf8) return kReplacement;
+    uint32_t character = first & (0x3fu >> more);
+    for (int i = 0; i < more; i++, at++) {
+        if (at == text.size() || (byte(at) & 0xc0) != 0x80) return kReplacement;
+        character = character << 6 | (byte(at) & 0x3fu);
+    }
+    return character;
 }
+// FreeType and the two faces, each opened when it is first needed.
+class Fonts {
+  public:
+    Fonts() {
+        if (FT_Init_FreeType(&library_)) throw InputError("FreeType cannot be started; install it again");
+    }
+    ~Fonts() { FT_Done_FreeType(library_); }
+    Fonts(const Fonts&) = delete;
+    Fonts& operator=(const Fonts&) = delete;
+
+    // Calls draw(x, glyph) for each character: x is the pen's, from 0, in whole pixels.
+    template <class Draw>
+    void each(const std::string& text, int sizePx, Canvas::Font font, Draw draw) {
+        const FT_Face face = faceOf(font);
+        FT_Set_Pixel_Sizes(face, 0, FT_UInt(sizePx));
+        int x = 0;
+        for (size_t at = 0; at < text.size();) {
+            if (FT_Load_Char(face, nextCharacter(text, at), FT_LOAD_RENDER)) continue;
+            draw(x, *face->glyph);
+            x += int(face->glyph->advance.x >> 6);
+        }
+    }
+
+  private:
+    FT_Face faceOf(Canvas::Font font) {
+        FT_Face& face = faces_[font];
+        if (!face)
+            if (const std::string file = fontFile(font); FT_New_Face(library_, file.c_str(), 0, &face))
+                throw InputError(file + ": not a font that can be read; install the DejaVu fonts (fonts-dejavu-core)");
+        return face;
+    }
+    FT_Library library_ = nullptr;
+    std::map<Canvas::Font, FT_Face> faces_;
+};
 // Weighted sum of the source columns (or rows) that target cell i covers.
 struct Span {
     int first;
@@ -50,21 +100,32 @@ std::vector<Span> spans(int from, int to) {
 }
 }  // namespace
 
+// Encoded values are kept as 8-bit codes, as in the file.
 struct Canvas::Pixels {
-    OIIO::ImageBuf image;
+    int width, height;
+    std::vector<unsigned char> codes;  // R G B R G B ...
+    Fonts fonts;
+
+    bool holds(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
+    unsigned char* at(int x, int y) { return codes.data() + (size_t(y) * size_t(width) + size_t(x)) * 3; }
 };
 
-Canvas::Canvas(int width, int height, Colour background) : pixels_(std::make_unique<Pixels>()) {
-    pixels_->image.reset(OIIO::ImageSpec(width, height, 3, OIIO::TypeDesc::UINT8));
+namespace {
+unsigned char codeOf(float v) { return static_cast<unsigned char>(255.0f * (v > 0 ? std::min(v, 1.0f) : 0.0f) + 0.5f); }
+}  // namespace
+
+Canvas::Canvas(int width, int height, Colour background)
+    : pixels_(new Pixels{width, height, std::vector<unsigned char>(size_t(width) * size_t(height) * 3), {}}) {
     fill({0, 0, width, height}, background);
 }
 Canvas::~Canvas() = default;
-int Canvas::width() const { return pixels_->image.spec().width; }
-int Canvas::height() const { return pixels_->image.spec().height; }
+int Canvas::width() const { return pixels_->width; }
+int Canvas::height() const { return pixels_->height; }
 
 void Canvas::fill(const Window& a, Colour colour) {
-    OIIO::ImageBufAlgo::fill(pixels_->image, OIIO::cspan<float>(colour.data(), 3),
-                             OIIO::ROI(a.x, a.x + a.width, a.y, a.y + a.height));
+    for (int y = std::max(a.y, 0); y < std::min(a.y + a.height, height()); y++)
+        for (int x = std::max(a.x, 0); x < std::min(a.x + a.width, width()); x++)
+            std::transform(colour.begin(), colour.end(), pixels_->at(x, y), codeOf);
 }
 void Canvas::frame(const Window& a, Colour colour, int t) {
     fill({a.x - t, a.y - t, a.width + 2 * t, t}, colour);
@@ -74,39 +135,48 @@ void Canvas::frame(const Window& a, Colour colour, int t) {
 }
 void Canvas::draw(const Rgb& encoded, int x0, int y0, int magnification) {
     const int w = encoded.width() * magnification, h = encoded.height() * magnification;
-    OIIO::ImageBuf::Iterator<unsigned char, float> p(pixels_->image, OIIO::ROI(x0, x0 + w, y0, y0 + h));
-    for (; !p.done(); ++p)
-        for (int c = 0; c < 3; c++) {
-            const float v = encoded.c[size_t(c)].at((p.x() - x0) / magnification, (p.y() - y0) / magnification);
-            p[c] = v > 0 ? std::min(v, 1.0f) : 0.0f;
-        }
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++)
+            if (pixels_->holds(x0 + x, y0 + y))
+                for (size_t c = 0; c < 3; c++)
+                    pixels_->at(x0 + x, y0 + y)[c] = codeOf(encoded.c[c].at(x / magnification, y / magnification));
 }
-void Canvas::text(int x, int y, const std::string& text, int sizePx, Colour colour, Font font, Align align) {
-    const int shift = align == Align::left ? 0 : textWidth(text, sizePx, font) / (align == Align::centre ? 2 : 1);
-    if (!OIIO::ImageBufAlgo::render_text(pixels_->image, x - shift, y, text, sizePx, cachedFontFile(font),
-                                         OIIO::cspan<float>(colour.data(), 3)))
-        throw InputError(cachedFontFile(font) + ": text cannot be drawn (" + pixels_->image.geterror() +
-                         "); OpenImageIO needs FreeType");
+void Canvas::text(int x0, int y0, const std::string& text, int sizePx, Colour colour, Font font, Align align) {
+    const int start =
+        x0 - (align == Align::left ? 0 : textWidth(text, sizePx, font) / (align == Align::centre ? 2 : 1));
+    pixels_->fonts.each(text, sizePx, font, [&](int pen, const FT_GlyphSlotRec_& glyph) {
+        const FT_Bitmap& b = glyph.bitmap;
+        for (int j = 0; j < int(b.rows); j++)
+            for (int i = 0; i < int(b.width); i++) {
+                const int x = start + pen + glyph.bitmap_left + i, y = y0 - glyph.bitmap_top + j;
+                const float covered = float(b.buffer[j * b.pitch + i]) / 255.0f;
+                if (!pixels_->holds(x, y)) continue;
+                unsigned char* to = pixels_->at(x, y);
+                for (size_t c = 0; c < 3; c++)
+                    to[c] = codeOf(covered * colour[c] + (1.0f - covered) * (float(to[c]) / 255.0f));
+            }
+    });
 }
+// From the first mark to a pixel past the last one.
 int Canvas::textWidth(const std::string& text, int sizePx, Font font) const {
-    const OIIO::ROI drawn = OIIO::ImageBufAlgo::text_size(text, sizePx, cachedFontFile(font));
-    return drawn.xend > drawn.xbegin ? drawn.width() : 0;  // inside out for a text without marks
+    int begin = std::numeric_limits<int>::max(), end = std::numeric_limits<int>::min();
+    pixels_->fonts.each(text, sizePx, font, [&](int pen, const FT_GlyphSlotRec_& glyph) {
+        begin = std::min(begin, pen + glyph.bitmap_left);
+        end = std::max(end, pen + glyph.bitmap_left + int(glyph.bitmap.width) + 1);
+    });
+    return end > begin ? end - begin : 0;
 }
 std::string Canvas::fitted(const std::string& text, int maxWidth, int sizePx, Font font) const {
     if (textWidth(text, sizePx, font) <= maxWidth) return text;
     std::string cut = text;
-    while (!cut.empty() && textWidth(cut + "...", sizePx, font) > maxWidth) cut.pop_back();
+    while (!cut.empty() && textWidth(cut + "...", sizePx, font) > maxWidth) {
+        while (cut.size() > 1 && (static_cast<unsigned char>(cut.back()) & 0xc0) == 0x80) cut.pop_back();
+        cut.pop_back();
+    }
     return cut + "...";
 }
 void Canvas::writePng(const fs::path& file) const {
-    const fs::path temporary = temporaryName(file);
-    if (!pixels_->image.write(temporary.string(), OIIO::TypeDesc::UINT8)) {
-        std::error_code ignored;
-        fs::remove(temporary, ignored);
-        throw InputError(file.string() + ": cannot be written (" + pixels_->image.geterror() +
-                         "); check permissions and free disk space");
-    }
-    renameInto(temporary, file);
+    writeBytes(file, pngBytes(pixels_->codes, width(), height(), {.srgb = false}));
 }
 
 PlaneF shrunk(const PlaneF& plane, int width, int height) {

@@ -25,8 +25,7 @@ class Canvas {
     void frame(const Window& area, Colour colour, int thickness);  // outside `area`
     // Top-left corner at (x, y), each pixel as a square of `magnification`.
     void draw(const Rgb& encoded, int x, int y, int magnification = 1);
-    // ASCII only (OpenImageIO 2.4 garbles UTF-8); `y` is the text's baseline. Throws InputError when no DejaVu Sans
-    // font is installed.
+    // UTF-8; `y` is the text's baseline, without kerning. Throws InputError when no DejaVu Sans font is installed.
     void text(int x, int y, const std::string& text, int sizePx, Colour colour, Font font = Font::regular,
               Align align = Align::left);
     int textWidth(const std::string& text, int sizePx, Font font = Font::regular) const;

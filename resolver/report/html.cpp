@@ -1,14 +1,11 @@
 #include "report/html.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "image/error.h"
+#include "image/png.h"
 #include "report/canvas.h"
 #include "report/caption.h"
 #include "report/colour_map.h"
@@ -90,26 +87,7 @@ std::vector<int> framesToShow(const std::vector<int>& withPictures) {
 }
 
 std::vector<unsigned char> pngBytes(const Rgb& encoded) {
-    const int w = encoded.width(), h = encoded.height();
-    std::vector<unsigned char> codes(size_t(w) * size_t(h) * 3);
-    for (int y = 0; y < h; y++)
-        for (int x = 0; x < w; x++)
-            for (size_t c = 0; c < 3; c++) {
-                const float v = encoded.c[c].at(x, y);
-                codes[(size_t(y) * size_t(w) + size_t(x)) * 3 + c] =
-                    static_cast<unsigned char>(std::floor(255.0f * (v > 0 ? std::min(v, 1.0f) : 0.0f) + 0.5f));
-            }
-    std::vector<unsigned char> bytes;
-    OIIO::Filesystem::IOVecOutput memory(bytes);
-    OIIO::ImageSpec spec(w, h, 3, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    spec.attribute("png:compressionLevel", 9);
-    auto out = OIIO::ImageOutput::create("png");
-    if (!out || !out->set_ioproxy(&memory) || !out->open("picture.png", spec) ||
-        !out->write_image(OIIO::TypeDesc::UINT8, codes.data()) || !out->close())
-        throw InputError("a picture cannot be encoded as PNG (" + (out ? out->geterror() : OIIO::geterror()) +
-                         "); check OpenImageIO's installation");
-    return bytes;
+    return pngBytes(codesOf(encoded), encoded.width(), encoded.height(), {.compressionLevel = 9});
 }
 std::string base64(const std::vector<unsigned char>& bytes) {
     constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

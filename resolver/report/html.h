@@ -10,7 +10,7 @@ std::vector<int> framesToShow(const std::vector<int>& withPictures);
 // after about 11 MB of them further frames are left out (the first is always there).
 // `angles` is the section of the half-plane study (report/angles.h), empty when there is none.
 std::string reportHtml(const RunResults& run, const std::vector<Pictures>& pictures, const std::string& angles = {});
-// 8-bit sRGB codes, as writePng. Throws InputError when OpenImageIO cannot.
+// The same pixels as writePng's, packed as small as PNG can.
 std::vector<unsigned char> pngBytes(const Rgb& encoded);
 std::string base64(const std::vector<unsigned char>& bytes);
 

@@ -1,7 +1,7 @@
 #include "shot/reader.h"
 
 #include "image/error.h"
-#include "shot/exr_parts.h"
+#include "image/exr.h"
 #include "shot/sanitise.h"
 #include "shot/segments.h"
 

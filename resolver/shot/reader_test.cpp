@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "image/error.h"
-#include "shot/exr_parts.h"
+#include "image/exr.h"
 #include "shot/frame_stream.h"
 #include "shot/segments.h"
 #include "shot/writer.h"

@@ -1,6 +1,6 @@
 #include "shot/writer.h"
 
-#include "shot/exr_parts.h"
+#include "image/exr.h"
 #include "shot/segments.h"
 
 namespace aa {

@@ -7,9 +7,18 @@ import os
 import resource
 import shutil
 import signal
+import struct
+import subprocess
 from pathlib import Path
 
-from program import ProgramTest, main
+from program import PROGRAM, ProgramTest, main
+
+
+def write_tiff(path: Path, width: int, height: int, codes: bytes) -> None:
+    """Grey, 8 bits, not compressed: a picture that is neither PNG nor EXR."""
+    entries = [(256, width), (257, height), (258, 8), (259, 1), (262, 1), (273, 8), (277, 1), (278, height), (279, len(codes))]
+    listed = b"".join(struct.pack("<HHII", tag, 4, 1, value) for tag, value in entries)
+    path.write_bytes(b"II*\0" + struct.pack("<I", 8 + len(codes)) + codes + struct.pack("<H", len(entries)) + listed + bytes(4))
 
 
 class BadInput(ProgramTest):
@@ -101,6 +110,37 @@ class BadInput(ProgramTest):
         self.run_refused(3, "cannot be written", preexec_fn=small_files)
         self.assertEqual(before, {p: p.read_bytes() for p in sorted(out.rglob("*.exr"))})
         self.assertEqual([], [p for p in out.rglob(".*")], "a partial file was left behind")
+
+    def test_other_formats_need_their_module_and_nothing_else_does(self) -> None:
+        tiff, png = self.folder / "in.tif", self.folder / "out.png"
+        write_tiff(tiff, 24, 20, bytes(i % 251 for i in range(24 * 20)))
+        self.aaresolve("filter", "noaa", tiff, png)
+        expected = png.read_bytes()
+        loaded = subprocess.run([PROGRAM], env={"LD_TRACE_LOADED_OBJECTS": "1"}, capture_output=True, text=True)
+        self.assertIn("OpenEXR", loaded.stdout)
+        self.assertNotIn("OpenImageIO", loaded.stdout)
+        alone = self.folder / "alone" / "bin" / PROGRAM.name
+        alone.parent.mkdir(parents=True)
+        shutil.copy(PROGRAM, alone)
+        command = [alone, "filter", "noaa", tiff, png]
+        refused = subprocess.run(command, capture_output=True, text=True)
+        self.assertEqual(refused.returncode, 3)
+        for words in ("in.tif", "TIFF file", "aaresolve_formats.so", "OpenImageIO", "AARESOLVE_FORMATS"):
+            self.assertIn(words, refused.stderr)
+        self.assertEqual(refused.stderr.count("\n"), 1)
+        module = PROGRAM.parent / "aaresolve_formats.so"
+        subprocess.run(command, check=True, env={**os.environ, "AARESOLVE_FORMATS": str(module)}, capture_output=True)
+        self.assertEqual(png.read_bytes(), expected)
+        installed = self.folder / "alone" / "lib" / "aaresolve" / module.name
+        installed.parent.mkdir(parents=True)
+        installed.write_text("no library")
+        refused = subprocess.run(command, capture_output=True, text=True)
+        self.assertEqual(refused.returncode, 3)
+        self.assertIn(str(installed), refused.stderr)
+        shutil.copy(module, installed)
+        subprocess.run(command, check=True, capture_output=True)
+        tiff.write_bytes(tiff.read_bytes()[:200])
+        self.refused(3, "filter", "noaa", tiff, png, says=("in.tif",))
 
     def test_usage(self) -> None:
         self.refused(2, "run", self.shot, says=("--method",))

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "shot/exr_parts.h"
+#include "image/exr.h"
 
 namespace aa {
 

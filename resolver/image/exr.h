@@ -1,12 +1,14 @@
-// Multi-part EXR through OpenImageIO, part by part and channel by channel: what reader, writer and import share.
+// OpenEXR files, part by part and channel by channel: what images, shots and imports share.
 //
-// Reading goes in blocks of rows straight into planes, so that a part of 40 channels needs no second copy of itself.
-// Types are converted only without loss: half -> float; uint stays uint; an id stored as float must be a whole number.
+// Pixels go straight between the file and planes, so that a part of 40 channels needs no second copy of itself; OpenEXR
+// unpacks and packs them in threads of its own, as many as the program may use (-j). Types are converted only without
+// loss: half -> float; uint stays uint; an id stored as float must be a whole number.
 #pragma once
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -20,14 +22,17 @@ std::string_view name(ChannelType type);
 struct ExrChannel {
     std::string name;
     ChannelType type = ChannelType::real;
+    bool subsampled = false;  // one value for several pixels, as chroma has
 };
 struct ExrPart {
     std::string name;
     int width = 0, height = 0;
-    std::vector<ExrChannel> channels;
-    std::string compression;                   // "zip", "dwaa:45", ...
+    std::vector<ExrChannel> channels;          // image/channel_order.h
+    std::string compression;                   // "zip", "dwaa", ...
+    bool deep = false;                         // several values per pixel
     bool cropped = false;                      // the pixels stored are not the picture: a border, overscan
     std::map<std::string, std::string> texts;  // attributes that are texts
+    std::map<std::string, int> integers;       // and whole numbers
     const ExrChannel* find(std::string_view channel) const;
 };
 
@@ -38,10 +43,13 @@ struct ChannelTarget {
     ChannelType stored = ChannelType::real;  // set by the read
 };
 
+bool isExr(const std::filesystem::path& file);  // by its first bytes
+
 // An EXR file opened for reading. Not thread-safe; open one per thread. Errors are InputErrors of one line.
 class ExrFile {
   public:
-    explicit ExrFile(const std::filesystem::path& file);  // missing, not an EXR, damaged header
+    // `advice` ends the errors. Throws: missing, not an EXR, damaged header.
+    explicit ExrFile(const std::filesystem::path& file, std::string advice = "export the frame again");
     ~ExrFile();
     ExrFile(ExrFile&&) noexcept;
     ExrFile& operator=(ExrFile&&) noexcept;
@@ -49,12 +57,13 @@ class ExrFile {
     const std::filesystem::path& path() const { return path_; }
     const std::vector<ExrPart>& parts() const { return parts_; }
     const ExrPart* find(std::string_view part) const;
-    // Throws InputError: channel missing, wrong type, truncated or damaged pixels.
+    // Each channel once. Throws InputError: channel missing, wrong type, truncated or damaged pixels.
     void read(const ExrPart& part, std::vector<ChannelTarget>& targets);
 
   private:
     struct Input;
     std::filesystem::path path_;
+    std::string advice_;
     std::unique_ptr<Input> input_;
     std::vector<ExrPart> parts_;
 };
@@ -65,8 +74,9 @@ struct ChannelSource {
     std::variant<const PlaneF*, const PlaneU*> plane;
 };
 struct PartSource {
-    std::string name;
+    std::string name;  // may be empty in a file of one part
     std::vector<ChannelSource> channels;
+    std::map<std::string, int> integers = {};  // attributes
 };
 // ZIP, float and uint, through a temporary name. Throws InputError when it cannot (disk full, permissions).
 void writeParts(const std::filesystem::path& file, const std::vector<PartSource>& parts);

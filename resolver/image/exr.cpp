@@ -1,0 +1,321 @@
+#include "image/exr.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfThreading.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <system_error>
+#include <tuple>
+
+#include "image/channel_order.h"
+#include "image/error.h"
+#include "image/io.h"
+
+namespace aa {
+namespace fs = std::filesystem;
+
+namespace {
+// The same image must give the same file, so the date of every file is this one.
+constexpr const char* kNoDate = "2000:01:01 00:00:00";
+
+// OpenEXR's words without the file's name, which our messages begin with: 'Cannot read image file "a.exr". Early end.'
+std::string whyOf(const std::exception& e) {
+    const std::string text = e.what(), line = text.substr(0, text.find('\n'));
+    const size_t name = line.find("\". ");
+    return name == std::string::npos ? line : line.substr(name + 3);
+}
+
+// At the first file, not at the program's start. With one thread allowed OpenEXR works in the caller's.
+void startThreads() {
+    static const int threads = [] {
+        const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+        const int count = allowed > 1 ? int(allowed) : 0;
+        Imf::setGlobalThreadCount(count);
+        return count;
+    }();
+    (void)threads;
+}
+
+ChannelType typeOf(Imf::PixelType type) {
+    return type == Imf::HALF    ? ChannelType::half
+           : type == Imf::FLOAT ? ChannelType::real
+           : type == Imf::UINT  ? ChannelType::uint
+                                : ChannelType::other;
+}
+std::string nameOf(Imf::Compression compression) {
+    switch (compression) {
+        case Imf::NO_COMPRESSION:
+            return "none";
+        case Imf::RLE_COMPRESSION:
+            return "rle";
+        case Imf::ZIPS_COMPRESSION:
+            return "zips";
+        case Imf::ZIP_COMPRESSION:
+            return "zip";
+        case Imf::PIZ_COMPRESSION:
+            return "piz";
+        case Imf::PXR24_COMPRESSION:
+            return "pxr24";
+        case Imf::B44_COMPRESSION:
+            return "b44";
+        case Imf::B44A_COMPRESSION:
+            return "b44a";
+        case Imf::DWAA_COMPRESSION:
+            return "dwaa";
+        case Imf::DWAB_COMPRESSION:
+            return "dwab";
+        default:  // newer than OpenEXR 3.1
+            return "another";
+    }
+}
+
+int lengthOf(int first, int last) {
+    constexpr int64_t kMost = std::numeric_limits<int>::max();
+    return int(std::clamp<int64_t>(int64_t(last) - first + 1, 0, kMost));
+}
+ExrPart described(const Imf::Header& header) {
+    const auto data = header.dataWindow(), display = header.displayWindow();
+    ExrPart part;
+    if (header.hasName()) part.name = header.name();
+    part.width = lengthOf(data.min.x, data.max.x);
+    part.height = lengthOf(data.min.y, data.max.y);
+    part.compression = nameOf(header.compression());
+    part.deep = header.hasType() && header.type().starts_with("deep");
+    part.cropped = data != display;
+    for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
+        part.channels.push_back(
+            {c.name(), typeOf(c.channel().type), c.channel().xSampling != 1 || c.channel().ySampling != 1});
+    orderChannels(part.channels);
+    for (auto a = header.begin(); a != header.end(); ++a)
+        if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&a.attribute()))
+            part.texts[a.name()] = text->value();
+        else if (const auto* number = dynamic_cast<const Imf::IntAttribute*>(&a.attribute()))
+            part.integers[a.name()] = number->value();
+    return part;
+}
+
+// Where OpenEXR finds or puts a channel's samples.
+template <class T>
+Imf::Slice slice(Imf::PixelType type, const Plane<T>& plane, const Imath::Box2i& window) {
+    return Imf::Slice::Make(type, plane.row(0), window, sizeof(T), sizeof(T) * size_t(plane.stride()));
+}
+// The first row that cannot be read.
+int unreadableRow(Imf::InputPart& in, const Imath::Box2i& window) {
+    for (int y = window.min.y; y <= window.max.y; y++) try {
+            in.readPixels(y);
+        } catch (const std::exception&) {
+            return y - window.min.y;
+        }
+    return 0;
+}
+// Ids that were stored as numbers. Throws InputError when one is no whole number.
+void idsOf(const PlaneF& numbers, PlaneU& ids, const std::string& where) {
+    for (int y = 0; y < numbers.height(); y++)
+        for (int x = 0; x < numbers.width(); x++) {
+            const float v = numbers.at(x, y);
+            if (!(v >= 0 && v < 4294967296.0f) || v != float(uint32_t(v)))
+                throw InputError(where + ", pixel (" + std::to_string(x) + ", " + std::to_string(y) +
+                                 "): expected a whole number, found a fraction; export the shot again");
+            ids.at(x, y) = uint32_t(v);
+        }
+}
+
+// A file that remembers its first failure: OpenEXR writes its table of offsets in a destructor, which cannot throw.
+class OutputStream : public Imf::OStream {
+  public:
+    explicit OutputStream(const fs::path& file) : Imf::OStream(file.c_str()), out_(file, std::ios::binary) { check(); }
+    void write(const char bytes[], int count) override {
+        out_.write(bytes, count);
+        check();
+    }
+    uint64_t tellp() override { return uint64_t(std::streamoff(out_.tellp())); }
+    void seekp(uint64_t position) override {
+        out_.seekp(std::streamoff(position));
+        check();
+    }
+    void close() {
+        out_.close();
+        check();
+    }
+
+  private:
+    void check() {
+        if (out_) return;
+        if (why_.empty()) why_ = std::generic_category().message(errno);
+        throw std::runtime_error(why_);
+    }
+    std::ofstream out_;
+    std::string why_;
+};
+
+std::pair<int, int> sizeOf(const ChannelSource& source) {
+    return std::visit([](auto* plane) { return std::pair(plane->width(), plane->height()); }, source.plane);
+}
+Imath::Box2i windowOf(const PartSource& part) {
+    const auto [w, h] = sizeOf(part.channels.at(0));
+    return {{0, 0}, {w - 1, h - 1}};
+}
+Imf::PixelType typeOf(const ChannelSource& source) {
+    return std::holds_alternative<const PlaneU*>(source.plane) ? Imf::UINT : Imf::FLOAT;
+}
+Imf::Header headerOf(const PartSource& part, const Imath::Box2i& displayWindow) {
+    Imf::Header header(displayWindow, windowOf(part));
+    header.compression() = Imf::ZIP_COMPRESSION;
+    header.insert("capDate", Imf::StringAttribute(kNoDate));
+    for (const auto& [key, value] : part.integers) header.insert(key, Imf::IntAttribute(value));
+    if (!part.name.empty()) header.setName(part.name);
+    for (const auto& c : part.channels) header.channels().insert(c.channel, Imf::Channel(typeOf(c)));
+    return header;
+}
+// Into an OutputFile or an OutputPart.
+template <class Output>
+void writePixels(Output&& out, const PartSource& part) {
+    Imf::FrameBuffer samples;
+    for (const auto& c : part.channels) {
+        assert(sizeOf(c) == sizeOf(part.channels[0]));
+        std::visit([&](auto* plane) { samples.insert(c.channel, slice(typeOf(c), *plane, windowOf(part))); }, c.plane);
+    }
+    out.setFrameBuffer(samples);
+    out.writePixels(sizeOf(part.channels[0]).second);
+}
+}  // namespace
+
+std::string_view name(ChannelType type) {
+    switch (type) {
+        case ChannelType::half:
+            return "half";
+        case ChannelType::real:
+            return "float";
+        case ChannelType::uint:
+            return "uint";
+        case ChannelType::other:
+            break;
+    }
+    return "another type";
+}
+
+const ExrChannel* ExrPart::find(std::string_view channel) const {
+    for (const auto& c : channels)
+        if (c.name == channel) return &c;
+    return nullptr;
+}
+
+bool isExr(const fs::path& file) {
+    char bytes[4] = {};
+    std::ifstream(file, std::ios::binary).read(bytes, sizeof bytes);
+    return std::memcmp(bytes, "\x76\x2f\x31\x01", sizeof bytes) == 0;
+}
+
+struct ExrFile::Input {
+    Imf::MultiPartInputFile file;
+};
+ExrFile::~ExrFile() = default;
+ExrFile::ExrFile(ExrFile&&) noexcept = default;
+ExrFile& ExrFile::operator=(ExrFile&&) noexcept = default;
+
+ExrFile::ExrFile(const fs::path& file, std::string advice) : path_(file), advice_("; " + std::move(advice)) {
+    std::error_code ignored;
+    if (!fs::exists(file, ignored)) throw InputError(file.string() + ": no such file" + advice_);
+    if (fs::is_directory(file, ignored)) throw InputError(file.string() + ": is a folder; expected an EXR file");
+    if (!isExr(file)) throw InputError(file.string() + ": not an EXR file" + advice_);
+    startThreads();
+    try {
+        input_ = std::make_unique<Input>(file.c_str());
+        for (int i = 0; i < input_->file.parts(); i++) parts_.push_back(described(input_->file.header(i)));
+    } catch (const std::exception& e) {
+        throw InputError(file.string() + ": damaged EXR header (" + whyOf(e) + ")" + advice_);
+    }
+}
+
+const ExrPart* ExrFile::find(std::string_view part) const {
+    for (const auto& p : parts_)
+        if (p.name == part) return &p;
+    return nullptr;
+}
+
+void ExrFile::read(const ExrPart& part, std::vector<ChannelTarget>& targets) {
+    const std::string where = path_.string() + (part.name.empty() ? "" : ": part '" + part.name + "'");
+    if (part.width < 1 || part.height < 1 || part.width > kLargestSide || part.height > kLargestSide)
+        throw InputError(where + ": " + std::to_string(part.width) + " x " + std::to_string(part.height) +
+                         " pixels; expected 1..16384 a side");
+    if (part.deep) throw InputError(where + ": deep pixels; expected one value per pixel" + advice_);
+    const int index = int(&part - parts_.data());
+    const Imath::Box2i window = input_->file.header(index).dataWindow();
+    Imf::FrameBuffer samples;
+    std::map<size_t, PlaneF> numbers;  // ids that are stored as numbers, by target
+    for (size_t i = 0; i < targets.size(); i++) {
+        ChannelTarget& t = targets[i];
+        const ExrChannel* c = part.find(t.channel);
+        if (!c) throw InputError(where + " has no channel '" + t.channel + "'; export the shot again with this pass");
+        const bool id = std::holds_alternative<PlaneU*>(t.plane);
+        if (c->type == ChannelType::other || (!id && c->type == ChannelType::uint))
+            throw InputError(where + ", channel '" + t.channel + "': expected " + (id ? "uint" : "half or float") +
+                             ", found " + std::string(name(c->type)) + "; export the shot again");
+        if (c->subsampled)
+            throw InputError(where + ", channel '" + t.channel +
+                             "': expected one value per pixel, found one for several; write R, G and B");
+        t.stored = c->type;
+        std::visit([&](auto* p) { *p = std::remove_pointer_t<decltype(p)>(part.width, part.height); }, t.plane);
+        assert(!samples.findSlice(t.channel));
+        if (id && c->type == ChannelType::uint)
+            samples.insert(t.channel, slice(Imf::UINT, *std::get<PlaneU*>(t.plane), window));
+        else
+            samples.insert(
+                t.channel,
+                slice(Imf::FLOAT, id ? numbers[i] = PlaneF(part.width, part.height) : *std::get<PlaneF*>(t.plane),
+                      window));
+    }
+    if (targets.empty()) return;
+    std::unique_ptr<Imf::InputPart> in;
+    try {
+        in = std::make_unique<Imf::InputPart>(input_->file, index);
+        in->setFrameBuffer(samples);
+        in->readPixels(window.min.y, window.max.y);
+    } catch (const std::exception& e) {
+        throw InputError(where + ": truncated or damaged at row " +
+                         std::to_string(in ? unreadableRow(*in, window) : 0) + " (" + whyOf(e) + ")" + advice_);
+    }
+    for (const auto& [i, plane] : numbers)
+        idsOf(plane, *std::get<PlaneU*>(targets[i].plane), where + ", channel '" + targets[i].channel + "'");
+}
+
+void writeParts(const fs::path& file, const std::vector<PartSource>& parts) {
+    startThreads();
+    // All parts show one picture: a list of another size keeps its display window.
+    const Imath::Box2i displayWindow = windowOf(parts.at(0));
+    std::vector<Imf::Header> headers;
+    for (const auto& part : parts) headers.push_back(headerOf(part, displayWindow));
+    try {
+        OutputStream stream(temporaryName(file));
+        if (parts.size() == 1) {
+            writePixels(Imf::OutputFile(stream, headers[0]), parts[0]);
+        } else {
+            for (auto& header : headers) header.setType(Imf::SCANLINEIMAGE);
+            Imf::MultiPartOutputFile out(stream, headers.data(), int(headers.size()));
+            for (size_t i = 0; i < parts.size(); i++) writePixels(Imf::OutputPart(out, int(i)), parts[i]);
+        }
+        stream.close();
+    } catch (const std::exception& e) {
+        giveUpWriting(file, whyOf(e));
+    }
+    renameInto(temporaryName(file), file);
+}
+
+}  // namespace aa

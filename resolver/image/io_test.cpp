@@ -1,0 +1,321 @@
+#include "image/io.h"
+
+#include <OpenEXR/ImfArray.h>
+#include <OpenEXR/ImfRgbaFile.h>
+#include <OpenImageIO/deepdata.h>
+#include <OpenImageIO/imageio.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+#include "image/error.h"
+#include "image/exr.h"
+#include "image/png.h"
+
+namespace aa {
+namespace {
+namespace fs = std::filesystem;
+using OIIO::ImageInput;
+using OIIO::ImageOutput;
+using OIIO::ImageSpec;
+using OIIO::TypeDesc;
+using ::testing::AllOf;
+using ::testing::AnyOf;
+using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
+using ::testing::StartsWith;
+
+constexpr int kWidth = 37, kHeight = 23;
+
+class ImageFiles : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder = fs::path(testing::TempDir()) /
+                 (std::string("aa_image_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+        fs::remove_all(folder);
+        fs::create_directories(folder);
+    }
+    void TearDown() override { fs::remove_all(folder); }
+
+    static std::string errorOf(const fs::path& file) {
+        try {
+            readImage(file);
+        } catch (const InputError& e) {
+            EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << e.what();
+            return e.what();
+        }
+        return "no error";
+    }
+    void cut(const fs::path& file, double share) const {
+        fs::resize_file(file, uintmax_t(double(fs::file_size(file)) * share));
+    }
+    fs::path folder;
+};
+
+// Values in [0,1] that no two channels or pixels share.
+float valueAt(int x, int y, int c) { return float((x * 7 + y * 131 + c * 977) % 4001) / 4000.0f; }
+Rgb ramp() {
+    Rgb image(kWidth, kHeight);
+    for (size_t c = 0; c < 3; c++)
+        for (int y = 0; y < kHeight; y++)
+            for (int x = 0; x < kWidth; x++) image.c[c].at(x, y) = valueAt(x, y, int(c));
+    return image;
+}
+// Written by OpenImageIO.
+void writeByOther(const fs::path& file, ImageSpec spec, const std::vector<TypeDesc>& formats = {}) {
+    if (!formats.empty()) spec.channelformats = formats;
+    std::vector<float> pixels;
+    for (int y = 0; y < spec.height; y++)
+        for (int x = 0; x < spec.width; x++)
+            for (int c = 0; c < spec.nchannels; c++) pixels.push_back(valueAt(x, y, c));
+    auto out = ImageOutput::create(file.string());
+    ASSERT_TRUE(out->open(file.string(), spec)) << out->geterror();
+    ASSERT_TRUE(out->write_image(TypeDesc::FLOAT, pixels.data())) << out->geterror();
+    ASSERT_TRUE(out->close());
+}
+// The first three channels (or the first, repeated) as OpenImageIO reads them. OpenImageIO 2.4 gives the same bits; the
+// tolerance of 4 units in the last place is for other versions' scaling of codes.
+void expectAsOther(const fs::path& file) {
+    auto in = ImageInput::open(file.string());
+    ASSERT_TRUE(in) << file;
+    const ImageSpec& spec = in->spec();
+    std::vector<float> pixels(size_t(spec.width) * size_t(spec.height) * size_t(spec.nchannels));
+    ASSERT_TRUE(in->read_image(0, 0, 0, spec.nchannels, TypeDesc::FLOAT, pixels.data())) << in->geterror();
+    const LoadedImage image = readImage(file);
+    EXPECT_EQ(image.space, spec.format.is_floating_point() ? FileSpace::linear : FileSpace::encoded) << file;
+    ASSERT_EQ(image.rgb.width(), spec.width);
+    ASSERT_EQ(image.rgb.height(), spec.height);
+    for (int y = 0; y < spec.height; y++)
+        for (int x = 0; x < spec.width; x++)
+            for (int c = 0; c < 3; c++) {
+                const float* pixel =
+                    pixels.data() + (size_t(y) * size_t(spec.width) + size_t(x)) * size_t(spec.nchannels);
+                ASSERT_FLOAT_EQ(image.rgb.c[size_t(c)].at(x, y), pixel[spec.nchannels < 3 ? 0 : c])
+                    << file << " pixel " << x << ", " << y << " channel " << c;
+            }
+}
+
+TEST_F(ImageFiles, ExrOfEveryCompressionTypeAndLayout) {
+    const fs::path file = folder / "a.exr";
+    for (const char* compression : {"none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"})
+        for (const auto type : {TypeDesc::HALF, TypeDesc::FLOAT}) {
+            ImageSpec spec(kWidth, kHeight, 3, type);
+            spec.attribute("compression", compression);
+            writeByOther(file, spec);
+            expectAsOther(file);
+        }
+    for (const auto& names : std::vector<std::vector<std::string>>{{"Y"},
+                                                                   {"Y", "A"},
+                                                                   {"R", "G", "B", "A"},
+                                                                   {"zeta", "b", "A", "Z", "R"},
+                                                                   {"N.X", "N.Y", "N.Z", "L.R", "L.G", "L.B"},
+                                                                   {"Depth", "green", "Red", "U"}}) {
+        ImageSpec spec(kWidth, kHeight, int(names.size()), TypeDesc::FLOAT);
+        spec.channelnames = names;
+        writeByOther(file, spec);
+        expectAsOther(file);
+    }
+    ImageSpec spec(kWidth, kHeight, 3, TypeDesc::UINT);
+    writeByOther(file, spec);
+    expectAsOther(file);
+    spec.format = TypeDesc::FLOAT;
+    writeByOther(file, spec, {TypeDesc::UINT, TypeDesc::FLOAT, TypeDesc::HALF});
+    expectAsOther(file);
+    spec = ImageSpec(kWidth, kHeight, 3, TypeDesc::HALF);
+    spec.tile_width = spec.tile_height = 16;
+    writeByOther(file, spec);
+    expectAsOther(file);
+    spec.tile_width = spec.tile_height = 0;
+    spec.x = 5, spec.y = -3, spec.full_width = 64, spec.full_height = 48;
+    writeByOther(file, spec);
+    expectAsOther(file);
+}
+
+TEST_F(ImageFiles, ExrThatHasNotOneValuePerPixelIsRefused) {
+    const fs::path file = folder / "yc.exr";
+    Imf::Array2D<Imf::Rgba> pixels(kHeight + 1, kWidth + 1);
+    {
+        Imf::RgbaOutputFile out(file.c_str(), kWidth + 1, kHeight + 1, Imf::WRITE_YC);
+        out.setFrameBuffer(&pixels[0][0], 1, kWidth + 1);
+        out.writePixels(kHeight + 1);
+    }
+    EXPECT_THAT(errorOf(file), AllOf(HasSubstr("yc.exr"), HasSubstr("expected one value per pixel")));
+    const fs::path deep = folder / "deep.exr";
+    ImageSpec spec(4, 4, 1, TypeDesc::FLOAT);
+    spec.channelnames = {"Z"};
+    spec.deep = true;
+    auto out = ImageOutput::create("exr");
+    OIIO::DeepData data(spec);
+    data.set_samples(0, 2);
+    ASSERT_TRUE(out->open(deep.string(), spec) && out->write_deep_image(data) && out->close()) << out->geterror();
+    EXPECT_THAT(errorOf(deep), AllOf(HasSubstr("deep.exr"), HasSubstr("deep pixels")));
+}
+
+TEST_F(ImageFiles, WrittenExrIsWhatOthersExpect) {
+    const fs::path file = folder / "a.exr";
+    const Rgb image = ramp();
+    for (const bool mark : {false, true}) {
+        writeExr(file, image, mark);
+        EXPECT_EQ(readImage(file).displayReferred, mark);
+        EXPECT_TRUE(readImage(file).rgb.samePixels(image));
+        expectAsOther(file);
+        const ImageSpec spec = ImageInput::open(file.string())->spec();
+        EXPECT_EQ(spec.channelnames, (std::vector<std::string>{"R", "G", "B"}));
+        EXPECT_EQ(spec.format, TypeDesc::FLOAT);
+        EXPECT_EQ(spec.get_string_attribute("compression"), "zip");
+        EXPECT_EQ(spec.get_string_attribute("DateTime"), "2000:01:01 00:00:00");
+        EXPECT_THAT(std::string(spec.get_string_attribute("oiio:ColorSpace")), MatchesRegex("[Ll]in.*"));
+        EXPECT_EQ(spec.get_int_attribute("aaresolve:displayReferred", -1), mark);
+    }
+    writeLayers(file, {{"weight", {image.c[0]}}, {"edge", {image.c[0], image.c[1], image.c[2]}}});
+    EXPECT_EQ(ImageInput::open(file.string())->spec().channelnames,
+              (std::vector<std::string>{"weight", "edge.R", "edge.G", "edge.B"}));
+    PlaneF real(8, 5, 0.5f), list(3, 1, 2.0f);
+    PlaneU id(8, 5, 4'000'000'000u);
+    writeParts(file, {{"one", {{"Z", &real}, {"id", &id}}}, {"two", {{"v", &list}}}});
+    auto in = ImageInput::open(file.string());
+    EXPECT_EQ(in->spec().get_string_attribute("oiio:subimagename"), "one");
+    ASSERT_EQ(in->spec().channelnames, (std::vector<std::string>{"Z", "id"}));
+    EXPECT_EQ(in->spec().channelformat(0), TypeDesc::FLOAT);
+    EXPECT_EQ(in->spec().channelformat(1), TypeDesc::UINT32);
+    ASSERT_TRUE(in->seek_subimage(1, 0));
+    EXPECT_EQ(in->spec().get_string_attribute("oiio:subimagename"), "two");
+    EXPECT_EQ(in->spec().width, 3);
+    EXPECT_EQ(in->spec().full_width, 8);
+    EXPECT_FALSE(in->seek_subimage(2, 0));
+    in->geterror();
+}
+
+// A file of any depth and colour type, its codes as they lie in the file.
+void writeCodes(const fs::path& file, int bits, int type, const std::vector<unsigned char>& rows, size_t rowBytes,
+                double gamma = 0) {
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+    png_infop info = png_create_info_struct(png);
+    std::unique_ptr<FILE, int (*)(FILE*)> out(std::fopen(file.c_str(), "wb"), std::fclose);
+    png_init_io(png, out.get());
+    const int height = int(rows.size() / rowBytes);
+    png_set_IHDR(png, info, kWidth, png_uint_32(height), bits, type, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+                 PNG_FILTER_TYPE_DEFAULT);
+    if (gamma > 0) png_set_gAMA(png, info, gamma);
+    std::vector<png_color> palette;
+    for (int i = 0; i < 1 << std::min(bits, 8); i++)
+        palette.push_back({png_byte(i * 3), png_byte(255 - i), png_byte(i ^ 0x55)});
+    if (type == PNG_COLOR_TYPE_PALETTE) png_set_PLTE(png, info, palette.data(), int(palette.size()));
+    png_write_info(png, info);
+    for (int y = 0; y < height; y++) png_write_row(png, rows.data() + size_t(y) * rowBytes);
+    png_write_end(png, info);
+    png_destroy_write_struct(&png, &info);
+}
+std::vector<unsigned char> bytes(size_t count) {
+    std::vector<unsigned char> r(count);
+    for (size_t i = 0; i < count; i++) r[i] = static_cast<unsigned char>(i * 2654435761u >> 13);
+    return r;
+}
+
+TEST_F(ImageFiles, PngOfEveryDepthAndType) {
+    const fs::path file = folder / "a.png";
+    for (const auto& [type, channels] :
+         {std::pair{PNG_COLOR_TYPE_GRAY, 1}, {PNG_COLOR_TYPE_PALETTE, 1}, {PNG_COLOR_TYPE_RGB, 3}})
+        for (const int bits : {1, 2, 4, 8, 16}) {
+            if ((channels == 3 && bits < 8) || (type == PNG_COLOR_TYPE_PALETTE && bits > 8)) continue;
+            const size_t rowBytes = size_t((kWidth * channels * bits + 7) / 8);
+            writeCodes(file, bits, type, bytes(rowBytes * kHeight), rowBytes);
+            expectAsOther(file);
+        }
+}
+
+TEST_F(ImageFiles, PngColoursAreMultipliedByAlpha) {
+    const fs::path file = folder / "a.png";
+    const auto codes = bytes(size_t(kWidth) * kHeight * 4);
+    for (const double gamma : {0.0, 1.0, 1 / 2.2}) {  // of the file: the exponent that decodes is its inverse
+        writeCodes(file, 8, PNG_COLOR_TYPE_RGB_ALPHA, codes, size_t(kWidth) * 4, gamma);
+        const Rgb image = readImage(file).rgb;
+        for (int y = 0; y < kHeight; y++)
+            for (int x = 0; x < kWidth; x++)
+                for (size_t c = 0; c < 3; c++) {
+                    const unsigned char* p = codes.data() + (size_t(y) * kWidth + size_t(x)) * 4;
+                    const double alpha = p[3] / 255.0;
+                    const double expected =
+                        std::floor(p[c] * (gamma < 1 && gamma > 0 ? std::pow(alpha, 2.2) : alpha) + 1e-4);
+                    ASSERT_NEAR(image.c[c].at(x, y) * 255, expected, 1e-3)
+                        << gamma << " " << int(p[c]) << " " << int(p[3]);
+                }
+    }
+    writeCodes(file, 16, PNG_COLOR_TYPE_GRAY_ALPHA, codes, size_t(kWidth) * 4);
+    const Rgb grey = readImage(file).rgb;
+    const uint32_t code = uint32_t(codes[0]) << 8 | codes[1], alpha = uint32_t(codes[2]) << 8 | codes[3];
+    EXPECT_NEAR(grey.c[0].at(0, 0) * 65535, code * alpha / 65535, 0.01);
+    EXPECT_TRUE(grey.c[0].samePixels(grey.c[2]));
+}
+
+TEST_F(ImageFiles, WrittenPngIsWhatOthersExpect) {
+    const fs::path file = folder / "a.png";
+    Rgb image = ramp();
+    image.c[0].at(0, 0) = -1, image.c[0].at(1, 0) = 2, image.c[0].at(2, 0) = NAN;
+    writePng(file, image);
+    expectAsOther(file);
+    const Rgb back = readImage(file).rgb;
+    EXPECT_EQ(back.c[0].at(0, 0), 0);
+    EXPECT_EQ(back.c[0].at(1, 0), 1);
+    EXPECT_EQ(back.c[0].at(2, 0), 0);
+    for (size_t c = 0; c < 3; c++)
+        for (int x = 3; x < kWidth; x++)
+            EXPECT_EQ(std::lround(255 * back.c[c].at(x, 0)), std::floor(255 * image.c[c].at(x, 0) + 0.5f));
+    const ImageSpec spec = ImageInput::open(file.string())->spec();
+    EXPECT_THAT(std::string(spec.get_string_attribute("oiio:ColorSpace")), AnyOf("sRGB", StartsWith("srgb")));
+    EXPECT_EQ(spec.format, TypeDesc::UINT8);
+    EXPECT_LT(pngBytes(codesOf(image), kWidth, kHeight, {.compressionLevel = 9}).size(),
+              pngBytes(codesOf(image), kWidth, kHeight, {.compressionLevel = 0}).size());
+}
+
+TEST_F(ImageFiles, ContentDecidesAndNotTheName) {
+    writePng(folder / "png.png", ramp());
+    fs::rename(folder / "png.png", folder / "png.exr");
+    EXPECT_EQ(readImage(folder / "png.exr").space, FileSpace::encoded);
+    writeExr(folder / "exr.exr", ramp(), false);
+    fs::rename(folder / "exr.exr", folder / "exr");
+    EXPECT_EQ(readImage(folder / "exr").space, FileSpace::linear);
+}
+
+TEST_F(ImageFiles, DamageIsNamed) {
+    for (const char* name : {"a.png", "a.exr"}) {
+        const fs::path file = folder / name;
+        const auto write = [&] { file.extension() == ".png" ? writePng(file, ramp()) : writeExr(file, ramp(), false); };
+        write();
+        cut(file, 0.6);
+        EXPECT_THAT(errorOf(file), AllOf(HasSubstr(name), HasSubstr("truncated or damaged")));
+        fs::resize_file(file, 24);
+        EXPECT_THAT(errorOf(file), AllOf(HasSubstr(name), HasSubstr("damaged"), HasSubstr("header")));
+        write();
+        std::fstream(file, std::ios::in | std::ios::out | std::ios::binary)
+                .seekp(std::streamoff(fs::file_size(file) / 2))
+            << std::string(100, '\x5a');
+        EXPECT_THAT(errorOf(file), AllOf(HasSubstr(name), HasSubstr("truncated or damaged")));
+    }
+    EXPECT_THAT(errorOf(folder / "none.png"), HasSubstr("no such file"));
+    ImageSpec wide(kLargestSide + 1, 1, 1, TypeDesc::UINT8);
+    writeByOther(folder / "wide.png", wide);
+    EXPECT_THAT(errorOf(folder / "wide.png"), HasSubstr("16385 x 1 pixels"));
+    wide.format = TypeDesc::HALF;
+    writeByOther(folder / "wide.exr", wide);
+    EXPECT_THAT(errorOf(folder / "wide.exr"), HasSubstr("16385 x 1 pixels"));
+}
+
+TEST_F(ImageFiles, WhatCannotBeWrittenIsSaidAndLeavesNothing) {
+    for (const char* name : {"a.png", "a.exr"}) {
+        const fs::path file = folder / "nowhere" / name;
+        try {
+            file.extension() == ".png" ? writePng(file, ramp()) : writeExr(file, ramp(), false);
+            ADD_FAILURE() << name;
+        } catch (const InputError& e) {
+            EXPECT_THAT(e.what(), AllOf(HasSubstr(name), HasSubstr("cannot be written"), HasSubstr("No such file")));
+        }
+    }
+}
+
+}  // namespace
+}  // namespace aa

@@ -1,0 +1,13 @@
+// Pictures that are neither PNG nor EXR (TIFF, JPEG, HDR, DPX, TGA, WebP ...), through the module aaresolve_formats.so.
+//
+// OpenImageIO, which reads them, brings hundreds of shared libraries; so it is loaded when such a file is named and not
+// before. The module is looked for beside the program, in ../lib/aaresolve from there, and at $AARESOLVE_FORMATS.
+#pragma once
+#include "image/io.h"
+
+namespace aa {
+
+// Throws InputError: not a picture, truncated, larger than kLargestSide, no module.
+LoadedImage readOtherFormat(const std::filesystem::path& file);
+
+}  // namespace aa

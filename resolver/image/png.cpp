@@ -1,0 +1,189 @@
+#include "image/png.h"
+
+#include <png.h>
+
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "image/error.h"
+#include "image/io.h"
+
+namespace aa {
+namespace fs = std::filesystem;
+
+namespace {
+// libpng reports an error by a call that must not return, so it jumps. Each function that calls setjmp therefore has
+// nothing to destroy and no variable that it changes.
+void jump(png_structp png, png_const_charp why) {
+    *static_cast<std::string*>(png_get_error_ptr(png)) = why;
+    png_longjmp(png, 1);
+}
+void ignore(png_structp, png_const_charp) {}
+
+class Reader {
+  public:
+    explicit Reader(const fs::path& file) : file_(std::fopen(file.c_str(), "rb"), std::fclose) {
+        if (!file_) throw InputError(file.string() + ": cannot be opened; check its permissions");
+        png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &why_, jump, ignore);
+        info_ = png_ ? png_create_info_struct(png_) : nullptr;
+        if (!info_) throw std::bad_alloc();
+    }
+    ~Reader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+    Reader(const Reader&) = delete;
+    Reader& operator=(const Reader&) = delete;
+
+    // Codes of 8 or 16 bits in the machine's order, palette as colours, transparent colours as alpha.
+    bool readHeader() {
+        if (setjmp(png_jmpbuf(png_))) return false;
+        png_init_io(png_, file_.get());
+        png_read_info(png_, info_);
+        png_set_expand(png_);
+        if constexpr (std::endian::native == std::endian::little) png_set_swap(png_);
+        png_set_interlace_handling(png_);
+        png_read_update_info(png_, info_);
+        return true;
+    }
+    int64_t width() const { return png_get_image_width(png_, info_); }
+    int64_t height() const { return png_get_image_height(png_, info_); }
+    int channels() const { return png_get_channels(png_, info_); }
+    int bits() const { return png_get_bit_depth(png_, info_); }
+    size_t rowBytes() const { return png_get_rowbytes(png_, info_); }
+    // Of the codes, to the nearest hundredth: 1 for sRGB and where nothing is stated.
+    float gamma() const {
+        int intent = 0;
+        double exponent = 0;
+        if (png_get_sRGB(png_, info_, &intent) || !png_get_gAMA(png_, info_, &exponent)) return 1;
+        return std::round(100.0f * float(1.0 / exponent)) / 100.0f;
+    }
+    bool readPixels(png_bytepp rows) {
+        if (setjmp(png_jmpbuf(png_))) return false;
+        png_read_image(png_, rows);
+        return true;
+    }
+    const std::string& why() const { return why_; }
+
+  private:
+    std::string why_;
+    std::unique_ptr<FILE, int (*)(FILE*)> file_;
+    png_structp png_ = nullptr;
+    png_infop info_ = nullptr;
+};
+
+template <class T>
+T timesAlpha(T code, T alpha, float gamma) {
+    constexpr uint32_t kMax = std::numeric_limits<T>::max();
+    if (gamma == 1) return T(uint32_t(code) * alpha / kMax);
+    return T(float(code) * std::pow(float(alpha) * (1.0f / float(kMax)), gamma));
+}
+// One row of interleaved codes into row y of the planes.
+template <class T>
+void unpackRow(const T* codes, int channels, float gamma, int y, Rgb& to) {
+    constexpr float kScale = 1.0f / float(std::numeric_limits<T>::max());
+    for (int x = 0; x < to.width(); x++, codes += channels)
+        for (int c = 0; c < 3; c++) {
+            T code = codes[channels < 3 ? 0 : c];
+            if (channels % 2 == 0) code = timesAlpha(code, codes[channels - 1], gamma);
+            to.c[size_t(c)].at(x, y) = float(code) * kScale;
+        }
+}
+
+class Writer {
+  public:
+    Writer() {
+        png_ = png_create_write_struct(PNG_LIBPNG_VER_STRING, &why_, jump, ignore);
+        info_ = png_ ? png_create_info_struct(png_) : nullptr;
+        if (!info_) throw std::bad_alloc();
+    }
+    ~Writer() { png_destroy_write_struct(&png_, &info_); }
+    Writer(const Writer&) = delete;
+    Writer& operator=(const Writer&) = delete;
+
+    bool write(png_const_bytep codes, png_uint_32 width, png_uint_32 height, PngOptions options) {
+        if (setjmp(png_jmpbuf(png_))) return false;
+        png_set_write_fn(png_, &bytes_, append, [](png_structp) {});
+        png_set_compression_level(png_, options.compressionLevel);
+        png_set_IHDR(png_, info_, width, height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                     PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+        if (options.srgb) png_set_sRGB_gAMA_and_cHRM(png_, info_, PNG_sRGB_INTENT_ABSOLUTE);
+        png_write_info(png_, info_);
+        for (png_uint_32 y = 0; y < height; y++) png_write_row(png_, codes + size_t(y) * width * 3);
+        png_write_end(png_, info_);
+        return true;
+    }
+    const std::string& why() const { return why_; }
+    std::vector<unsigned char> take() { return std::move(bytes_); }
+
+  private:
+    static void append(png_structp png, png_bytep data, size_t count) {
+        auto& bytes = *static_cast<std::vector<unsigned char>*>(png_get_io_ptr(png));
+        try {
+            bytes.insert(bytes.end(), data, data + count);
+        } catch (const std::bad_alloc&) {
+            png_error(png, "out of memory");
+        }
+    }
+    std::string why_;
+    std::vector<unsigned char> bytes_;
+    png_structp png_ = nullptr;
+    png_infop info_ = nullptr;
+};
+}  // namespace
+
+bool isPng(const fs::path& file) {
+    unsigned char bytes[8] = {};
+    std::ifstream(file, std::ios::binary).read(reinterpret_cast<char*>(bytes), sizeof bytes);
+    return png_sig_cmp(bytes, 0, sizeof bytes) == 0;
+}
+
+Rgb readPng(const fs::path& file) {
+    Reader in(file);
+    const auto damaged = [&](const char* what) {
+        return InputError(file.string() + ": " + what + " (" + in.why() + "); write the file again");
+    };
+    if (!in.readHeader()) throw damaged("damaged PNG header");
+    if (in.width() > kLargestSide || in.height() > kLargestSide)
+        throw InputError(file.string() + ": " + std::to_string(in.width()) + " x " + std::to_string(in.height()) +
+                         " pixels; expected 1..16384 a side");
+    const int width = int(in.width()), height = int(in.height());
+    std::vector<unsigned char> codes(in.rowBytes() * size_t(height));
+    std::vector<png_bytep> rows;
+    for (int y = 0; y < height; y++) rows.push_back(codes.data() + in.rowBytes() * size_t(y));
+    if (!in.readPixels(rows.data())) throw damaged("truncated or damaged");
+    Rgb rgb(width, height);
+    for (int y = 0; y < height; y++)
+        if (in.bits() == 16)
+            unpackRow(reinterpret_cast<const uint16_t*>(rows[size_t(y)]), in.channels(), in.gamma(), y, rgb);
+        else
+            unpackRow(rows[size_t(y)], in.channels(), in.gamma(), y, rgb);
+    return rgb;
+}
+
+std::vector<unsigned char> codesOf(const Rgb& encoded) {
+    const int w = encoded.width(), h = encoded.height();
+    std::vector<unsigned char> codes;
+    codes.reserve(size_t(w) * size_t(h) * 3);
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++)
+            for (const PlaneF& plane : encoded.c) {
+                const float v = plane.at(x, y);
+                codes.push_back(uint8_t(std::floor(255.0f * (v > 0 ? (v < 1 ? v : 1.0f) : 0.0f) + 0.5f)));
+            }
+    return codes;
+}
+
+std::vector<unsigned char> pngBytes(std::span<const unsigned char> codes, int width, int height, PngOptions options) {
+    assert(codes.size() == size_t(width) * size_t(height) * 3);
+    Writer out;
+    if (!out.write(codes.data(), png_uint_32(width), png_uint_32(height), options))
+        throw InputError("a picture of " + std::to_string(width) + " x " + std::to_string(height) +
+                         " pixels cannot be encoded as PNG (" + out.why() + ")");
+    return out.take();
+}
+
+}  // namespace aa
