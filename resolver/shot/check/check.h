@@ -9,6 +9,7 @@
 // What cannot be tested with the passes at hand is listed as such.
 #pragma once
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
