@@ -37,7 +37,7 @@ ExpectedDepth moved(ExpectedDepth e, glm::ivec2 texel) {
     return e;
 }
 void unjitter(const Rgb& in, glm::dvec2 jitterPx, const Exec& exec, Rgb& out) {
-    if (out.width() != in.width() || out.height() != in.height()) out = Rgb(in.width(), in.height());
+    fitted(out, in.width(), in.height());
     const int stride = in.stride();
     const UnjitterArgs all{view(in), view(out), stride, kBorderX, -float(jitterPx.x), -float(jitterPx.y)};
     const auto fn = rowsOf(temporalKernelsFor(exec).unjitter, exec.precision);
@@ -122,10 +122,7 @@ void sharpenEncodedRow(const RgbaPlane& blend, SharpenKernel kernel, const Exec&
 TemporalDebug TemporalDebugLayers::begin(const Method& method, int width, int height) {
     TemporalDebug d;
     if (!method.keepDebugLayers && !method.keepRejection) return d;
-    const auto fit = [&](PlaneF& plane) {
-        if (plane.width() != width || plane.height() != height) plane = PlaneF(width, height);
-        return plane.row(0);
-    };
+    const auto fit = [&](PlaneF& plane) { return fitted(plane, width, height).row(0); };
     d.rejection = fit(rejection_);
     if (!method.keepDebugLayers) return d;
     d.motionXPx = fit(motionX_), d.motionYPx = fit(motionY_);
