@@ -1,13 +1,16 @@
 #include "methods/temporal/history.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "image/error.h"
 #include "methods/temporal/temporal_test_frames.h"
+#include "shot/patterns.h"
 
 namespace aa {
 namespace {
 using namespace testing;
+using ::testing::HasSubstr;
 
 Frame sized(int number, int w, int h, bool reset = false) {
     Frame f;
@@ -166,6 +169,35 @@ TEST(History, ColourHistoryServesPlanesBesideTheBlend) {
     EXPECT_EQ(count.previous().at(0, 0), 1);
     count.next();
     EXPECT_EQ(history.bytes(), 2 * (RgbaPlane(5, 3).bytes() + PlaneF(5, 3).bytes()));
+}
+TEST(History, EveryMethodRefusesAnotherSizeWithoutReset) {
+    for (const auto& method : registry()) {
+        if (method.family != "temporal") continue;
+        SCOPED_TRACE(method.id);
+        const auto positionsPx = patternPositionsPx(method.id == "smaa4x" ? "d3d4" : "d3d2");
+        RunningMethod m(parseMethod(method.id), {.width = 20,
+                                                 .height = 20,
+                                                 .jitterPeriod = 16,
+                                                 .isStatic = false,
+                                                 .frameCount = 16,
+                                                 .subSamplePositionsPx = positionsPx});
+        const auto resolve = [&](int n, int w, bool reset) {
+            Frame f = temporalFrame(n, w, 20, noisePicture(1));
+            f.reset = reset;
+            f.subSamplePositionsPx = positionsPx;
+            f.subSamples.assign(positionsPx.size(), {f.depthView, Rgb(w, 20), f.objectId, f.colorLinear});
+            m.resolve(f, {}, {});
+        };
+        resolve(0, 20, true);
+        try {
+            resolve(1, 24, false);
+            ADD_FAILURE() << "accepted";
+        } catch (const InputError& e) {
+            EXPECT_THAT(e.what(), HasSubstr(": frame 1 is 24x20, its history is 20x20; set `reset`"));
+        }
+        EXPECT_NO_THROW(resolve(1, 20, false));
+        EXPECT_NO_THROW(resolve(2, 24, true));
+    }
 }
 }  // namespace
 }  // namespace aa
