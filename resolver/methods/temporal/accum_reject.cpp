@@ -22,12 +22,7 @@ class AccumReject : public Method {
             args.objectId = frame.objectId.row(0);
             args.previousId = id_.previous().row(0);
         }
-        if (p.flag("unjitter")) {
-            temporal::unjitter(frame, args.in);
-            const glm::ivec2 texel = temporal::unjitteredTexel(frame);
-            args.expected = temporal::moved(args.expected, texel);
-            if (args.objectId) args.objectId += ptrdiff_t(texel.y) * args.in.stride + texel.x;
-        }
+        if (p.flag("unjitter")) temporal::unjitter(frame, args.in, args.expected, args.objectId);
         args.in.dilation = temporal::dilation(p);
         args.in.filter = temporal::historyFilter(p);
         args.in.debug = debug_.begin(*this, frame.width, frame.height);

@@ -25,9 +25,7 @@ class Master : public Method {
         if (p.flag("unjitter")) {
             const glm::ivec2 texel = temporal::unjitteredTexel(frame);
             m.texelX = texel.x, m.texelY = texel.y;
-            m.objectId += ptrdiff_t(texel.y) * in.stride + texel.x;
-            m.expected = temporal::moved(m.expected, texel);
-            temporal::unjitter(frame, in);
+            temporal::unjitter(frame, in, m.expected, m.objectId);
         }
         if (sharpen_ == SharpenKernel::none) in.out = view(out);
         history_.begin(frame, "master", in);

@@ -31,10 +31,12 @@ void unjitter(const Frame& frame, TemporalIn& in) {
     in.readXPx = -in.jitterXPx, in.readYPx = -in.jitterYPx;
     in.jitterXPx = in.jitterYPx = 0;
 }
-ExpectedDepth moved(ExpectedDepth e, glm::ivec2 texel) {
+void unjitter(const Frame& frame, TemporalIn& in, ExpectedDepth& e, const uint32_t*& objectId) {
+    unjitter(frame, in);
+    const glm::ivec2 texel = unjitteredTexel(frame);
     e.perDepth[2] += e.perDepth[0] * float(texel.x) + e.perDepth[1] * float(texel.y);
     e.constant[2] += e.constant[0] * float(texel.x) + e.constant[1] * float(texel.y);
-    return e;
+    if (objectId) objectId += ptrdiff_t(texel.y) * in.stride + texel.x;
 }
 void unjitter(const Rgb& in, glm::dvec2 jitterPx, const Exec& exec, Rgb& out) {
     fitted(out, in.width(), in.height());

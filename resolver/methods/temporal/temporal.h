@@ -23,8 +23,8 @@ TemporalIn frameView(const Frame& frame, const Rgb& color);
 glm::ivec2 unjitteredTexel(const Frame& frame);
 // Makes `in` see the frame so: moves depth and motion, and asks runTemporal() for the colours.
 void unjitter(const Frame& frame, TemporalIn& in);
-// Expectation for a pixel whose surface is that of another texel.
-ExpectedDepth moved(ExpectedDepth expected, glm::ivec2 texel);
+// The same, and what a method reads beside it: the expectation of the texel's depth, and ids unless null.
+void unjitter(const Frame& frame, TemporalIn& in, ExpectedDepth& expected, const uint32_t*& objectId);
 // A whole picture un-jittered, into `out`; for methods that filter the current frame before they blend it.
 void unjitter(const Rgb& in, glm::dvec2 jitterPx, const Exec& exec, Rgb& out);
 
