@@ -15,53 +15,36 @@ class AccumReject : public Method {
         const AccumRejectKernels& kernels = accumRejectKernelsFor(exec);
         AccumRejectArgs args{};
         args.in = temporal::frameView(frame, frame.colorLinear);
-        if (p.flag("unjitter")) temporal::unjitter(frame, args.in);
         args.in.out = view(out);
         history_.begin(frame, "accumReject", args.in);
+        args.expected = expectedDepth(frame);
+        if (p.flag("objectIds") && args.in.history) {
+            args.objectId = frame.objectId.row(0);
+            args.previousId = id_.previous().row(0);
+        }
+        if (p.flag("unjitter")) temporal::unjitter(frame, args.in, args.expected, args.objectId);
         args.in.dilation = temporal::dilation(p);
         args.in.filter = temporal::historyFilter(p);
         args.in.debug = debug_.begin(*this, frame.width, frame.height);
-        if (keepDebugLayers) {
-            if (count_.width() != frame.width || count_.height() != frame.height)
-                count_ = PlaneF(frame.width, frame.height);
-            args.debugCount = count_.row(0);
-        }
-        if (residual_[0].width() != frame.width || residual_[0].height() != frame.height) {
-            for (auto& plane : residual_) plane = RgbaPlane(frame.width, frame.height);
-            farthest_ = PlaneF(frame.width, frame.height);
-        }
-        args.residual = residual_[0].row(0);
-        args.nextResidual = residual_[1].row(0);
-        args.previousFarthest = farthest_.row(0);
-        if (p.flag("objectIds") && args.in.history) {
-            args.objectId = frame.objectId.row(0);
-            args.previousId = previousId_.row(0);
-        }
-        args.expected = expectedDepth(frame);
-        if (p.flag("unjitter")) {
-            const glm::ivec2 texel = temporal::unjitteredTexel(frame);
-            args.expected = temporal::moved(args.expected, texel);
-            if (args.objectId) args.objectId += ptrdiff_t(texel.y) * args.in.stride + texel.x;
-        }
+        if (keepDebugLayers) args.debugCount = fitted(count_, frame.width, frame.height).row(0);
+        args.residual = residual_.previous().row(0);
+        args.nextResidual = residual_.next().row(0);
+        args.previousFarthest = farthest_.previous().row(0);
         args.depthTest = test_;
         args.rejection = temporal::rejectionTest(p);
         args.nMaxStatic = p.realf("nMaxStatic");
         args.nMaxMoving = p.realf("nMaxMoving");
         temporal::runTemporal(kernels.resolve, exec, args);
 
-        history_.end({}, exec);
-        std::swap(residual_[0], residual_[1]);
-        residual_[0].fillBorder();
-        if (p.flag("objectIds")) previousId_ = frame.objectId;
+        if (p.flag("objectIds")) id_.inPlace() = frame.objectId;
         if (test_ == DepthTest::window) {
-            const DilateMaxArgs d{args.in.depthView, farthest_.row(0), farthest_.stride(), frame.width};
+            PlaneF& farthest = farthest_.inPlace();
+            const DilateMaxArgs d{args.in.depthView, farthest.row(0), farthest.stride(), frame.width};
             runKernel(kernels.farthest, exec, d, frame.height);
-            farthest_.fillBorder();
         }
+        history_.end({}, exec);
     }
-    size_t stateBytes() const override {
-        return history_.bytes() + residual_[0].bytes() + residual_[1].bytes() + farthest_.bytes() + previousId_.bytes();
-    }
+    size_t stateBytes() const override { return history_.bytes(); }
     const PlaneF* rejection() const override { return debug_.rejection(); }
     std::vector<DebugLayer> debugLayers() const override {
         std::vector<DebugLayer> layers = debug_.layers();
@@ -73,9 +56,9 @@ class AccumReject : public Method {
     Params params_;
     DepthTest test_;
     ColourHistory history_;
-    RgbaPlane residual_[2];
-    PlaneF farthest_;  // of the previous frame
-    PlaneU previousId_;
+    Kept<RgbaPlane> residual_{history_};
+    Kept<PlaneF> farthest_{history_};
+    Kept<PlaneU> id_{history_};
     TemporalDebugLayers debug_;
     PlaneF count_;
 };

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "image/error.h"
 #include "methods/method.h"
 #include "methods/temporal/temporal.h"
 
@@ -31,20 +30,7 @@ class Asaa : public Method {
     explicit Asaa(const Params& params) : params_(params) {}
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
-        const int w = frame.width, h = frame.height;
-        const bool fits = spare_.width() == w && spare_.height() == h, fresh = frame.reset || !started_;
-        if (!fresh && !fits)
-            throw InputError("asaa: frame " + std::to_string(frame.number) + " is " + std::to_string(w) + "x" +
-                             std::to_string(h) + ", its history is " + std::to_string(spare_.width()) + "x" +
-                             std::to_string(spare_.height()) + "; set `reset` on the frame where the size changes");
-        if (!fits) {
-            spare_ = RgbaPlane(w, h);
-            for (auto& b : buffers_) b.image = RgbaPlane(w, h);
-            for (auto& c : count_) c = PlaneF(w, h);
-        }
-        if (fresh)
-            for (auto& b : buffers_) b.filled = false;
-        for (auto& b : buffers_) b.age++;
+        history_.begin(frame, "asaa");
 
         // (-.25, -.25), (-.25, .25), (.25, -.25), (.25, .25): the quadrant that the jitter lies in.
         const size_t quadrant = size_t(frame.jitterPx.x >= 0) * 2 + size_t(frame.jitterPx.y >= 0);
@@ -56,55 +42,43 @@ class Asaa : public Method {
             args.in.color = view(std::as_const(unjittered_));
         }
         args.in.out = view(out);
-        args.in.next = spare_.row(0);
+        args.in.next = buffers_.next(quadrant).row(0);
         args.lastFrame = cameraPath(frame, frame.previousCamera);
         for (size_t i = 0; i < 4; i++) {
-            const Buffer& b = buffers_[i];
-            if (!b.filled) continue;
+            const RgbaPlane& image = buffers_.previous(i);
+            if (!buffers_.filled(i)) continue;
             args.anyHistory = true;
-            args.buffer[i] = {b.image.row(0), phi(i).x, phi(i).y, float(b.age), cameraPath(frame, b.camera), {}};
-            if (b.camera) args.buffer[i].expected = expectedDepth(frame, *b.camera);
+            args.buffer[i] = {
+                image.row(0), phi(i).x, phi(i).y, float(buffers_.age(i)), cameraPath(frame, cameras_[i]), {}};
+            if (cameras_[i]) args.buffer[i].expected = expectedDepth(frame, *cameras_[i]);
         }
         args.phiX = phi(quadrant).x, args.phiY = phi(quadrant).y;
-        args.previousCount = count_[0].row(0);
-        args.nextCount = count_[1].row(0);
+        args.previousCount = count_.previous().row(0);
+        args.nextCount = count_.next().row(0);
         args.eq331 = params_.choice("blurMode") == "eq331";
         args.fourInMotion = params_.choice("motionCount") == "four";
         args.countAtPixel = !args.eq331 && temporal::countAtPixel(params_);
         args.rejection = temporal::rejectionTest(params_);
-        args.in.debug = debug_.begin(*this, w, h);
-        runKernel(asaaKernelsFor(exec).resolve, exec, args, h);
-
-        std::swap(spare_, buffers_[quadrant].image);
-        buffers_[quadrant].image.fillBorder();
-        buffers_[quadrant].camera = frame.camera;
-        buffers_[quadrant].filled = true;
-        buffers_[quadrant].age = 0;
-        std::swap(count_[0], count_[1]);
-        count_[0].fillBorder();
-        started_ = true;
+        args.in.debug = debug_.begin(*this, frame.width, frame.height);
+        runKernel(asaaKernelsFor(exec).resolve, exec, args, frame.height);
+        cameras_[quadrant] = frame.camera;
+        history_.end();
     }
-    size_t stateBytes() const override { return 5 * spare_.bytes() + 2 * count_[0].bytes() + unjittered_.bytes(); }
+    size_t stateBytes() const override { return history_.bytes() + unjittered_.bytes(); }
     const PlaneF* rejection() const override { return debug_.rejection(); }
     std::vector<DebugLayer> debugLayers() const override {
         std::vector<DebugLayer> layers = debug_.layers();
-        if (!layers.empty()) layers.push_back({"sampleCount", {count_[0]}});
+        if (!layers.empty()) layers.push_back({"sampleCount", {count_.latest()}});
         return layers;
     }
 
   private:
-    struct Buffer {
-        RgbaPlane image;
-        std::optional<Camera> camera;
-        int age = 0;  // frames since its update
-        bool filled = false;
-    };
     Params params_;
-    Buffer buffers_[4];
-    RgbaPlane spare_;
-    PlaneF count_[2];
+    History history_;
+    Kept<RgbaPlane> buffers_{history_, 4};
+    Kept<PlaneF> count_{history_};
+    std::optional<Camera> cameras_[4];  // of the frames that wrote the buffers
     Rgb unjittered_;
-    bool started_ = false;
     TemporalDebugLayers debug_;
 };
 }  // namespace

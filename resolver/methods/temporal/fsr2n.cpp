@@ -45,17 +45,15 @@ class Fsr2n : public Method {
         history_.begin(frame, "fsr2n", args.in);
         args.in.feedbackCeiling = temporal::feedbackCeiling(p, history_.framesSinceReset());
         args.in.dilation = Dilation::closest3x3;
-        for (PlaneF* plane : {&nearest_, &luma_[0], &luma_[1]})
-            if (plane->width() != frame.width || plane->height() != frame.height)
-                *plane = PlaneF(frame.width, frame.height);
+        fitted(nearest_, frame.width, frame.height);
         if (args.in.history) {
             for (int y = 0; y < frame.height; y++) std::fill(nearest_.row(y), nearest_.row(y) + frame.width, kNoDepth);
             runKernel(kernels.scatter, exec, Fsr2nScatterArgs{args.in, nearest_.row(0), exec.parallel}, frame.height);
             nearest_.fillBorder();
         }
         args.nearest = nearest_.row(0);
-        args.previousLuma = luma_[0].row(0);
-        args.nextLuma = luma_[1].row(0);
+        args.previousLuma = luma_.previous().row(0);
+        args.nextLuma = luma_.next().row(0);
         fillWeights(args.lanczos, jitterPx, lanczos2);
         fillWeights(args.still, jitterPx, [](double d) { return std::exp(-2 * d * d); });
         fillWeights(args.moving, jitterPx, [](double d) { return std::exp(-3 * d * d); });
@@ -68,19 +66,13 @@ class Fsr2n : public Method {
         args.power = float(1 + 2 * std::min(1.0, diagonalPx / std::hypot(1920, 1080)));  // FSR 2 has 2203, its rounding
         args.in.debug = debug_.begin(*this, frame.width, frame.height);
         if (keepDebugLayers) {
-            for (PlaneF* plane : {&depthClip_, &lock_})
-                if (plane->width() != frame.width || plane->height() != frame.height)
-                    *plane = PlaneF(frame.width, frame.height);
-            args.debugDepthClip = depthClip_.row(0), args.debugLock = lock_.row(0);
+            args.debugDepthClip = fitted(depthClip_, frame.width, frame.height).row(0);
+            args.debugLock = fitted(lock_, frame.width, frame.height).row(0);
         }
         temporal::runTemporal(kernels.resolve, exec, args);
         history_.end({}, exec);
-        std::swap(luma_[0], luma_[1]);
-        luma_[0].fillBorder();
     }
-    size_t stateBytes() const override {
-        return history_.bytes() + nearest_.bytes() + luma_[0].bytes() + luma_[1].bytes();
-    }
+    size_t stateBytes() const override { return history_.bytes() + nearest_.bytes(); }
     const PlaneF* rejection() const override { return debug_.rejection(); }
     std::vector<DebugLayer> debugLayers() const override {
         std::vector<DebugLayer> layers = debug_.layers();
@@ -95,7 +87,8 @@ class Fsr2n : public Method {
     Params params_;
     float lockDecay_;
     ColourHistory history_;
-    PlaneF nearest_, luma_[2];
+    Kept<PlaneF> luma_{history_};
+    PlaneF nearest_;  // scratch
     TemporalDebugLayers debug_;
     PlaneF depthClip_, lock_;
 };

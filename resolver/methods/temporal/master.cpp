@@ -25,9 +25,7 @@ class Master : public Method {
         if (p.flag("unjitter")) {
             const glm::ivec2 texel = temporal::unjitteredTexel(frame);
             m.texelX = texel.x, m.texelY = texel.y;
-            m.objectId += ptrdiff_t(texel.y) * in.stride + texel.x;
-            m.expected = temporal::moved(m.expected, texel);
-            temporal::unjitter(frame, in);
+            temporal::unjitter(frame, in, m.expected, m.objectId);
         }
         if (sharpen_ == SharpenKernel::none) in.out = view(out);
         history_.begin(frame, "master", in);
@@ -35,11 +33,9 @@ class Master : public Method {
         in.dilation = temporal::dilation(p);
         in.filter = temporal::historyFilter(p);
         in.debug = debug_.begin(*this, frame.width, frame.height);
-        fit(frame.width, frame.height);
         m.in = in;
         m.albedoEncoded = view(frame.albedoEncoded);
-        std::swap(depth_[0], depth_[1]);
-        m.keptDepth = depth_[0].row(0), m.previousDepth = depth_[1].row(0);
+        m.previousDepth = depth_.previous().row(0), m.keptDepth = depth_.next().row(0);
         m.weightAlbedo = p.realf("wU"), m.weightLit = p.realf("wL");
         m.depthUnit = DepthUnit(p.choiceIndex("depthUnit"));
         m.luminance = temporal::luminance(p);
@@ -56,9 +52,7 @@ class Master : public Method {
         m.useSobel = p.flag("sobel");
         if (keepDebugLayers) {
             terms_.resize(5);
-            for (auto& plane : terms_)
-                if (plane.width() != frame.width || plane.height() != frame.height)
-                    plane = PlaneF(frame.width, frame.height);
+            for (auto& plane : terms_) fitted(plane, frame.width, frame.height);
             m.debugAliased = terms_[0].row(0), m.debugSobel = terms_[1].row(0), m.debugModel = terms_[2].row(0);
             m.debugDepth = terms_[3].row(0), m.debugDepthTemporal = terms_[4].row(0);
         }
@@ -68,11 +62,10 @@ class Master : public Method {
         }
         const std::vector<int> seams = run(m, exec);
         history_.end(temporal::historyStorage(p), exec);
-        depth_[0].fillBorder();
         if (sharpen_ != SharpenKernel::none)
             for (int y : seams) sharpenEncodedRow(history_.latest(), sharpen_, exec, y, out);
     }
-    size_t stateBytes() const override { return history_.bytes() + depth_[0].bytes() + depth_[1].bytes(); }
+    size_t stateBytes() const override { return history_.bytes(); }
     const PlaneF* rejection() const override { return debug_.rejection(); }
     std::vector<DebugLayer> debugLayers() const override {
         std::vector<DebugLayer> layers = debug_.layers();
@@ -104,10 +97,6 @@ class Master : public Method {
             if (seam[size_t(y)]) rows.push_back(y);
         return rows;
     }
-    void fit(int width, int height) {
-        if (depth_[0].width() == width && depth_[0].height() == height) return;
-        for (PlaneF& p : depth_) p = PlaneF(width, height);
-    }
     // The camera's far plane, or the largest depth that is not background.
     static float farDepthOf(const Frame& frame) {
         static constexpr float kFar = 1e9f;
@@ -130,7 +119,7 @@ class Master : public Method {
     Params params_;
     SharpenKernel sharpen_;
     ColourHistory history_;
-    PlaneF depth_[2];  // of this frame and of the last one
+    Kept<PlaneF> depth_{history_};
     TemporalDebugLayers debug_;
     std::vector<PlaneF> terms_;
 };

@@ -47,9 +47,7 @@ class Raptor : public Method {
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         const Params& p = params_;
         const float sharpen = p.realf("sharpen");
-        if (sharpen > 0 && (blend_.width() != frame.width || blend_.height() != frame.height))
-            blend_ = Rgb(frame.width, frame.height);
-        Rgb& blend = sharpen > 0 ? blend_ : out;
+        Rgb& blend = sharpen > 0 ? fitted(blend_, frame.width, frame.height) : out;
         RaptorArgs args{};
         args.in = temporal::frameView(frame, frame.colorLinear);
         if (p.flag("unjitter")) temporal::unjitter(frame, args.in);

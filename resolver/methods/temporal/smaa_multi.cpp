@@ -45,10 +45,10 @@ class TwoSamples {
             const Rgb& color = frame.subSamples[samples[k]].colorLinear;
             encode(color, frame.display, exec, encoded_);
             smaa_.findEdges(frame, encoded_, frame.jitterPx + shot.subSamplePositionsPx[samples[k]], exec);
-            blend(frame, linear_ ? color : encoded_, k == 0 ? out : sized(second_, frame),
+            blend(frame, linear_ ? color : encoded_, k == 0 ? out : fitted(second_, frame.width, frame.height),
                   !velocity ? nullptr
                   : k == 0  ? velocity
-                            : &sized(secondVelocity_, frame),
+                            : &fitted(secondVelocity_, frame.width, frame.height),
                   exec);
             for (auto& layer : smaa_.debugLayers()) {
                 layer.name = "s" + std::to_string(k) + "." + layer.name;
@@ -57,10 +57,6 @@ class TwoSamples {
         }
         average(out, second_, 3, exec);
         if (velocity) average(*velocity, secondVelocity_, 2, exec);
-    }
-    static Rgb& sized(Rgb& image, const Frame& frame) {
-        if (image.width() != frame.width || image.height() != frame.height) image = Rgb(frame.width, frame.height);
-        return image;
     }
     // By the weights of the edges found last; `velocity` (null: not wanted) gets the motion.
     void blend(const Frame& frame, const Rgb& in, Rgb& out, Rgb* velocity, const Exec& exec) {
@@ -111,28 +107,33 @@ class SmaaS2x : public Method {
 // The anti-aliased frame before and the velocities that it showed.
 class VelocityWeightedPair {
   public:
-    explicit VelocityWeightedPair(const Params& p)
-        : rejection_(p.realf("rejection")),
+    VelocityWeightedPair(std::string_view method, const Params& p)
+        : method_(method),
+          rejection_(p.realf("rejection")),
           reproject_(p.flag("reproject")),
           pixels1080_(p.choice("velocityUnit") == "px1080"),
           unjitter_(p.flag("unjitter")) {}
-    Rgb& current(const Frame& frame) { return TwoSamples::sized(current_, frame); }
-    Rgb& velocity(const Frame& frame) { return TwoSamples::sized(velocity_, frame); }
+    // First of a frame; then its caller fills these two, then resolve().
+    void begin(const Frame& frame) { history_.begin(frame, method_); }
+    Rgb& color() { return color_.next(); }
+    Rgb& velocity() { return velocity_.next(); }
     // Mixes the current frame with the previous one and keeps the current one for the next.
     void resolve(const Frame& frame, bool debug, const Exec& exec, Rgb& out) {
+        Rgb& current = color_.next();
+        const Rgb& velocity = velocity_.next();
         if (unjitter_) {
-            current_.fillBorder();
-            temporal::unjitter(current_, frame.jitterPx, exec, unjittered_);
-            std::swap(current_, unjittered_);
+            current.fillBorder();
+            temporal::unjitter(current, frame.jitterPx, exec, unjittered_);
+            std::swap(current, unjittered_);
         }
-        const bool first = frame.reset || previous_.width() != frame.width || previous_.height() != frame.height;
-        const Rgb& previous = first ? current_ : previous_;
-        const Rgb& previousVelocity = first ? velocity_ : previousVelocity_;
+        const bool first = history_.fresh();
+        const Rgb& previous = first ? current : color_.previous();
+        const Rgb& previousVelocity = first ? velocity : velocity_.previous();
         if (debug) weight_ = PlaneF(frame.width, frame.height);
-        const SmaaTemporalArgs args{view(std::as_const(current_)),
+        const SmaaTemporalArgs args{view(std::as_const(current)),
                                     view(previous),
-                                    velocity_.c[0].row(0),
-                                    velocity_.c[1].row(0),
+                                    velocity.c[0].row(0),
+                                    velocity.c[1].row(0),
                                     frame.motionXPx.row(0),
                                     frame.motionYPx.row(0),
                                     previousVelocity.c[0].row(0),
@@ -147,32 +148,31 @@ class VelocityWeightedPair {
                                     frame.width,
                                     frame.height};
         runKernel(smaaTemporalKernelsFor(exec).resolve, exec, args, frame.height);
-        std::swap(previous_, current_);
-        std::swap(previousVelocity_, velocity_);
+        history_.end();
     }
-    size_t bytes() const {
-        return current_.bytes() + unjittered_.bytes() + previous_.bytes() + velocity_.bytes() +
-               previousVelocity_.bytes();
-    }
+    size_t bytes() const { return history_.bytes() + unjittered_.bytes(); }
     DebugLayer debugLayer() const { return {"weight.previous", {weight_}}; }
 
   private:
+    std::string_view method_;
     float rejection_;
     bool reproject_, pixels1080_, unjitter_;
+    History history_;
+    Kept<Rgb> color_{history_}, velocity_{history_};  // velocity: two of the three planes
     Rgb unjittered_;
-    Rgb current_, previous_, velocity_, previousVelocity_;
     PlaneF weight_;
 };
 
 class SmaaT2x : public Method {
   public:
-    explicit SmaaT2x(const Params& p) : one_(p), pair_(p) {}
+    explicit SmaaT2x(const Params& p) : one_(p), pair_("smaaT2x", p) {}
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
+        pair_.begin(frame);
         Smaa& smaa = one_.smaa();
         smaa.keepDebugLayers = keepDebugLayers;
         smaa.findEdges(frame, frame.colorEncoded, frame.jitterPx, exec);
-        one_.blend(frame, one_.linear() ? frame.colorLinear : frame.colorEncoded, pair_.current(frame),
-                   &pair_.velocity(frame), exec);
+        one_.blend(frame, one_.linear() ? frame.colorLinear : frame.colorEncoded, pair_.color(), &pair_.velocity(),
+                   exec);
         pair_.resolve(frame, keepDebugLayers, exec, out);
     }
     size_t stateBytes() const override { return one_.bytes() + pair_.bytes(); }
@@ -192,7 +192,7 @@ class SmaaT2x : public Method {
 // pattern frames alternate between two opposite ones of the four, which are nearly the same places without jitter.
 class Smaa4x : public Method {
   public:
-    Smaa4x(const Params& p, const ShotInfo& shot) : shot_(shot), two_(p), pair_(p) {
+    Smaa4x(const Params& p, const ShotInfo& shot) : shot_(shot), two_(p), pair_("smaa4x", p) {
         if (const auto even = opposites(shot, kFourEven), odd = opposites(shot, kFourOdd); even && odd)
             even_ = *even, odd_ = *odd;
         else if (const auto both = opposites(shot, kTwo))
@@ -201,8 +201,9 @@ class Smaa4x : public Method {
             refuse(shot, "smaa4x", "2x or 4x");
     }
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
-        two_.resolve(frame, shot_, frame.number % 2 == 0 ? even_ : odd_, keepDebugLayers, exec, pair_.current(frame),
-                     &pair_.velocity(frame));
+        pair_.begin(frame);
+        two_.resolve(frame, shot_, frame.number % 2 == 0 ? even_ : odd_, keepDebugLayers, exec, pair_.color(),
+                     &pair_.velocity());
         pair_.resolve(frame, keepDebugLayers, exec, out);
     }
     size_t stateBytes() const override { return two_.bytes() + pair_.bytes(); }

@@ -34,10 +34,8 @@ class T2msaa : public Method {
             args.sampleDepth[i] += ptrdiff_t(texel.y) * args.in.stride + texel.x;
         }
         if (p.flag("unjitter")) temporal::unjitter(frame, args.in);
-        for (auto& c : count_)
-            if (c.width() != frame.width || c.height() != frame.height) c = PlaneF(frame.width, frame.height);
-        args.previousCount = count_[0].row(0);
-        args.nextCount = count_[1].row(0);
+        args.previousCount = count_.previous().row(0);
+        args.nextCount = count_.next().row(0);
         args.expected = expectedDepth(frame);
         args.encoded = p.choice("space") == "encoded";
         args.display = displayArgs(frame.display);
@@ -47,17 +45,12 @@ class T2msaa : public Method {
         args.in.debug = debug_.begin(*this, frame.width, frame.height);
         runKernel(t2msaaKernelsFor(exec).resolve, exec, args, frame.height);
         history_.end({}, exec);
-        std::swap(count_[0], count_[1]);
-        count_[0].fillBorder();
     }
-    size_t stateBytes() const override {
-        return history_.bytes() + count_[0].bytes() + count_[1].bytes() + unjittered_[0].bytes() +
-               unjittered_[1].bytes();
-    }
+    size_t stateBytes() const override { return history_.bytes() + unjittered_[0].bytes() + unjittered_[1].bytes(); }
     const PlaneF* rejection() const override { return debug_.rejection(); }
     std::vector<DebugLayer> debugLayers() const override {
         std::vector<DebugLayer> layers = debug_.layers();
-        if (!layers.empty()) layers.push_back({"sampleCount", {count_[0]}});
+        if (!layers.empty()) layers.push_back({"sampleCount", {count_.latest()}});
         return layers;
     }
 
@@ -82,7 +75,7 @@ class T2msaa : public Method {
     Params params_;
     double offsetPx_;
     ColourHistory history_;
-    PlaneF count_[2];
+    Kept<PlaneF> count_{history_};
     Rgb unjittered_[2];
     TemporalDebugLayers debug_;
 };

@@ -1,83 +1,18 @@
-// Host side shared by the temporal methods: the colour history, their common parameters, the display-space sharpening
-// and the debug layers. The steps themselves are kernel text in temporal_blocks.kernel.h; what each does:
-// conventions 7.
-//
-// The history holds the blend before sharpening (conventions 5), RGBA float, two planes that swap roles. A frame with
-// `reset` set, and the first frame, drop it; a change of size without reset is an InputError (conventions 5).
+// Host side shared by the temporal methods: history.h, temporal_params.h, and here what they read of a frame, the
+// un-jittered current frame, expected depths, the display-space sharpening and the debug layers. The steps themselves
+// are kernel text in temporal_blocks.kernel.h; what each does: conventions 7.
 #pragma once
 #include <algorithm>
 #include <glm/vec3.hpp>
 
 #include "methods/method.h"
+#include "methods/temporal/history.h"
 #include "methods/temporal/temporal_kernels.h"
+#include "methods/temporal/temporal_params.h"
 
 namespace aa {
 
-// How the history is kept from one frame to the next: parameters historyBits and dither.
-struct HistoryStorage {
-    HistoryFormat format = HistoryFormat::float32;
-    bool dither = false;
-};
-
-class ColourHistory {
-  public:
-    // Fills the history members of `in` for this frame: in.history stays null when there is none.
-    void begin(const Frame& frame, std::string_view method, TemporalIn& in);
-    // The blend of this frame is complete: fills its border and makes it the history of the next one, which finds it
-    // as `storage` keeps it. What this frame shows is not narrowed.
-    void end(const HistoryStorage& storage, const Exec& exec);
-    size_t bytes() const { return planes_[0].bytes() + planes_[1].bytes(); }
-    int framesSinceReset() const { return frames_; }  // 0 on the first frame
-    const RgbaPlane& latest() const { return planes_[current_]; }
-
-  private:
-    void narrow();
-
-    RgbaPlane planes_[2];
-    size_t current_ = 0;
-    int frames_ = -1;
-    uint32_t frameNumber_ = 0;
-    HistoryStorage storage_;
-    Exec exec_;
-};
-
-// Parameters that several methods share, each declared once.
 namespace temporal {
-ParamSpec unjitterParam(bool def, std::string_view source);
-ParamSpec luminanceParam(std::string_view def, std::string_view source, std::string_view onlyWhen = {});
-ParamSpec dilationParam(std::string_view def, std::string_view source);
-ParamSpec historyFilterParam(std::string_view def, std::string_view source);
-ParamSpec historyClampParam();  // every method with historyFilterParam has it
-ParamSpec neighbourhoodParam(std::string_view def, std::string_view source);
-ParamSpec clipTargetParam(std::string_view def, std::string_view source);
-ParamSpec warmupParam();
-ParamSpec historyBitsParam(Space space);  // eight bits hold display-encoded colours only
-ParamSpec ditherParam();
-ParamSpec outsideParam();
-ParamSpec sharpenParam(std::string_view def, std::string_view source);
-// The two ends of the luminance feedback (conventions 7.8).
-ParamSpec kMinParam(std::string_view def, std::string_view source);
-ParamSpec kMaxParam(std::string_view def, std::string_view source);
-// Thresholds of the rejection by geometry (conventions 7.3): read together by rejectionTest().
-ParamSpec depthToleranceParam(std::string_view onlyWhen = {});
-ParamSpec bothSidesParam(std::string_view onlyWhen = {});
-ParamSpec magnificationParam(std::string_view def, std::string_view source);
-// Where the sample count of the last frame is read: countAtPixel().
-ParamSpec countAtParam(std::string_view source, std::string_view onlyWhen = {});
-void requireOrdered(std::string_view method, const Params& p);  // kmin <= kmax, else UsageError
-
-Dilation dilation(const Params& p);
-HistoryFilter historyFilter(const Params& p);
-Neighbourhood neighbourhood(const Params& p);
-ClipTarget clipTarget(const Params& p);
-HistoryStorage historyStorage(const Params& p);
-Luminance luminance(const Params& p);
-RejectionTest rejectionTest(const Params& p);
-bool countAtPixel(const Params& p);
-
-// Depth is read only to dilate motion by it.
-PassSet dilationPasses(const Params& p);
-
 // The members of TemporalIn that come from the frame alone; `color` in the method's working space.
 TemporalIn frameView(const Frame& frame, const Rgb& color);
 
@@ -88,8 +23,8 @@ TemporalIn frameView(const Frame& frame, const Rgb& color);
 glm::ivec2 unjitteredTexel(const Frame& frame);
 // Makes `in` see the frame so: moves depth and motion, and asks runTemporal() for the colours.
 void unjitter(const Frame& frame, TemporalIn& in);
-// Expectation for a pixel whose surface is that of another texel.
-ExpectedDepth moved(ExpectedDepth expected, glm::ivec2 texel);
+// The same, and what a method reads beside it: the expectation of the texel's depth, and ids unless null.
+void unjitter(const Frame& frame, TemporalIn& in, ExpectedDepth& expected, const uint32_t*& objectId);
 // A whole picture un-jittered, into `out`; for methods that filter the current frame before they blend it.
 void unjitter(const Rgb& in, glm::dvec2 jitterPx, const Exec& exec, Rgb& out);
 
@@ -131,10 +66,6 @@ void runTemporal(const RowKernel<Args>& kernel, const Exec& exec, const Args& ar
         },
         grain);
 }
-
-// Largest weight that history may have in the frame t after a reset: warmup=ramp gives each of the first frames the
-// weight 1/(t+1), as a running mean.
-float feedbackCeiling(const Params& p, int framesSinceReset);
 }  // namespace temporal
 
 // From frame.camera and frame.previousCamera; unknown without both, after a reset, and for other projections.
