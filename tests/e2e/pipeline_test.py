@@ -50,10 +50,6 @@ class Pipeline(ProgramTest):
         self.assertEqual([f["frame"] for f in results["methods"][0]["frames"]], [4, 5, 6])
         self.assertTrue(math.isfinite(results["methods"][0]["pooled"]["psnr"]))
 
-    def test_addon_ships_the_registry(self) -> None:
-        shipped = json.loads((ROOT / "blender_addon/aa_resolve/methods.json").read_text())
-        self.assertEqual(shipped, json.loads(self.aaresolve("list", "--json").stdout), "run `make docs`")
-
     def test_addon_and_program_jitter_alike(self) -> None:
         """Sequences and sub-sample patterns exist in both; the same name means the same places."""
         spec = importlib.util.spec_from_file_location("addon_jitter", ROOT / "blender_addon/aa_resolve/jitter.py")
@@ -74,9 +70,6 @@ class Pipeline(ProgramTest):
                     self.assertAlmostEqual(one, other, 12, f"{name} {index}")
             self.assertEqual(manifest["jitter"]["start"], addon.start_of(name), name)
             self.assertEqual(manifest["subsamples"]["positions"], [list(p) for p in addon.pattern_positions(wanted)])
-
-    def test_docs_are_generated_from_the_registry(self) -> None:
-        self.assertEqual((ROOT / "docs/methods.md").read_text(), self.aaresolve("list", "--markdown").stdout, "run `make docs`")
 
 
 main()
