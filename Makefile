@@ -4,6 +4,9 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 BLENDER ?= blender
 # ON: warnings are errors, as in .ci/run. Said each time, so that a build folder follows.
 WERROR ?= OFF
+# dev: one instruction set, the quickest build; each preset has a folder of its own.
+PRESET ?= release
+BUILD := $(if $(filter release,$(PRESET)),build,build-$(PRESET))
 # A compiler cache is used where there is one.
 LAUNCHER := $(if $(shell command -v ccache 2>/dev/null),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache,)
 
@@ -17,30 +20,30 @@ help:
 	@echo "make reproduce  render the study's scenes, run every method on each, write docs/results (QUICK=1: a short form)"
 	@echo "make fuzz       damaged input through the program, FUZZ_SECONDS=300, SEED=1"
 	@echo "make sanitize   unit and property tests under AddressSanitizer and UndefinedBehaviorSanitizer"
-	@echo "make deps, docs, bits, format, clean"
+	@echo "make deps, docs, bits, format, clean; PRESET=dev: the quickest build, in build-dev/ (CONTRIBUTING.md)"
 
 deps:
 	@.ci/bootstrap
 
 configure: deps
-	@cmake --preset release $(LAUNCHER) -DAA_WERROR=$(WERROR) >build.log 2>&1 || { cat build.log; rm -f build.log; exit 1; }; mv build.log build/configure.log
+	@cmake --preset $(PRESET) $(LAUNCHER) -DAA_WERROR=$(WERROR) >$(BUILD).log 2>&1 || { cat $(BUILD).log; rm -f $(BUILD).log; exit 1; }; mv $(BUILD).log $(BUILD)/configure.log
 
 build: configure
-	@cmake --build --preset release -j $(JOBS)
+	@cmake --build --preset $(PRESET) -j $(JOBS)
 
 program: configure
-	@cmake --build --preset release -j $(JOBS) --target aaresolve
+	@cmake --build --preset $(PRESET) -j $(JOBS) --target aaresolve
 
 demo: program
-	@bash scenes/demo.sh build/aaresolve build/demo
+	@bash scenes/demo.sh $(BUILD)/aaresolve build/demo
 
 test: build
-	@ctest --preset release -j $(JOBS)
+	@ctest --preset $(PRESET) -j $(JOBS)
 
 FUZZ_SECONDS ?= 300
 SEED ?= 1
 fuzz: program
-	@python3 tests/fuzz/fuzz.py build/aaresolve --seconds $(FUZZ_SECONDS) --seed $(SEED) --jobs $(JOBS)
+	@python3 tests/fuzz/fuzz.py $(BUILD)/aaresolve --seconds $(FUZZ_SECONDS) --seed $(SEED) --jobs $(JOBS)
 
 sanitize: deps
 	@cmake --preset sanitize $(LAUNCHER) -DAA_WERROR=$(WERROR) >/dev/null
@@ -48,7 +51,7 @@ sanitize: deps
 	@ctest --preset sanitize -j $(JOBS)
 
 bench: build
-	@build/tests/benchmarks --benchmark_min_time=0.2
+	@$(BUILD)/tests/benchmarks --benchmark_min_time=0.2
 	@$(BLENDER) -b --factory-startup --python-exit-code 9 -P tests/bench/exporter_bench.py
 	@$(BLENDER) -b --factory-startup --python-exit-code 9 -P tests/bench/exporter_bench.py -- --animated
 
@@ -58,21 +61,21 @@ addon:
 
 # Generated: the page of methods and the add-on's copy of the registry, the table of precision and memory.
 docs: program
-	@build/aaresolve list --markdown > docs/methods.md
-	@build/aaresolve list --json > blender_addon/aa_resolve/methods.json
-	@build/aaresolve bench --family temporal --markdown --size 480x270 --frames 8 --repeats 1 --threads 1 > docs/precision.md
+	@$(BUILD)/aaresolve list --markdown > docs/methods.md
+	@$(BUILD)/aaresolve list --json > blender_addon/aa_resolve/methods.json
+	@$(BUILD)/aaresolve bench --family temporal --markdown --size 480x270 --frames 8 --repeats 1 --threads 1 > docs/precision.md
 
 # After a change of a method's pixels that was meant: what every build must give from now on.
 bits: program
-	@python3 tests/e2e/same_bits_test.py build/aaresolve . --update
+	@python3 tests/e2e/same_bits_test.py $(BUILD)/aaresolve . --update
 
 # Resumable: what build/reproduce holds is kept.
 reproduce: program
-	@python3 scenes/reproduce/reproduce.py build/aaresolve build/reproduce docs/results $(if $(QUICK),--quick)
+	@python3 scenes/reproduce/reproduce.py $(BUILD)/aaresolve build/reproduce docs/results $(if $(QUICK),--quick)
 
 format:
 	@git ls-files 'resolver/*.cpp' 'resolver/*.h' 'tests/*.cpp' 'tests/*.h' | xargs clang-format -i
 	@git ls-files '*.py' | xargs black -q -l 100
 
 clean:
-	rm -rf build build-sanitize
+	rm -rf build build-*/
