@@ -10,16 +10,18 @@ BUILD := $(if $(filter release,$(PRESET)),build,build-$(PRESET))
 # A compiler cache is used where there is one.
 LAUNCHER := $(if $(shell command -v ccache 2>/dev/null),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache,)
 
-.PHONY: help deps configure build program demo test fuzz sanitize bench addon docs bits reproduce format clean
+.PHONY: help deps configure build program install demo test fuzz sanitize bench asserts addon docs bits reproduce format clean
 help:
 	@echo "make demo       build, render two scenes in Blender, run the methods, make contact sheets and reports"
 	@echo "make test       build and run every test"
 	@echo "make build      the program, at build/aaresolve"
+	@echo "make install    the program, the add-on's zip and the pages below PREFIX=/usr/local"
 	@echo "make addon      the Blender add-on as one zip, at build/aa_resolve.zip"
 	@echo "make bench      speed of every method, ns per pixel, and of the exporter, CPU seconds"
 	@echo "make reproduce  render the study's scenes, run every method on each, write docs/results (QUICK=1: a short form)"
 	@echo "make fuzz       damaged input through the program, FUZZ_SECONDS=300, SEED=1"
 	@echo "make sanitize   unit and property tests under AddressSanitizer and UndefinedBehaviorSanitizer"
+	@echo "make asserts    unit tests with asserts on"
 	@echo "make deps, docs, bits, format, clean; PRESET=dev: the quickest build, in build-dev/ (CONTRIBUTING.md)"
 
 deps:
@@ -34,11 +36,15 @@ build: configure
 program: configure
 	@cmake --build --preset $(PRESET) -j $(JOBS) --target aaresolve
 
+PREFIX ?= /usr/local
+install: build
+	@cmake --install $(BUILD) --prefix $(PREFIX)
+
 demo: program
 	@bash scenes/demo.sh $(BUILD)/aaresolve build/demo
 
 test: build
-	@ctest --preset $(PRESET) -j $(JOBS)
+	@python3 tests/run_tests.py --preset $(PRESET) -j $(JOBS)
 
 FUZZ_SECONDS ?= 300
 SEED ?= 1
@@ -74,8 +80,13 @@ reproduce: program
 	@python3 scenes/reproduce/reproduce.py $(BUILD)/aaresolve build/reproduce docs/results $(if $(QUICK),--quick)
 
 format:
-	@git ls-files 'resolver/*.cpp' 'resolver/*.h' 'tests/*.cpp' 'tests/*.h' | xargs clang-format -i
-	@git ls-files '*.py' | xargs black -q -l 100
+	@.ci/format
+
+# Unit tests with every assert on, the standard library's too: what release builds leave out.
+asserts: deps
+	@cmake --preset asserts $(LAUNCHER) -DAA_WERROR=$(WERROR) >/dev/null
+	@cmake --build --preset asserts -j $(JOBS) --target unit_tests
+	@build-asserts/tests/unit_tests --gtest_brief=1
 
 clean:
 	rm -rf build build-*/
