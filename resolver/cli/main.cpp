@@ -4,7 +4,6 @@
 #include "cli/cli.h"
 #include "image/error.h"
 
-
 int main(int argc, char** argv) {
     CLI::App app{
         "aaresolve: runs every anti-aliasing method on a shot and measures it against ground truth.\n"

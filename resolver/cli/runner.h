@@ -5,11 +5,11 @@
 
 #include "cli/progress.h"
 #include "image/colour.h"
+#include "image/io.h"
 #include "methods/driver.h"
 #include "report/results.h"
 #include "shot/manifest.h"
 #include "shot/reader.h"
-#include "image/io.h"
 
 namespace aa {
 

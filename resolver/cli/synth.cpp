@@ -7,9 +7,9 @@
 #include "cli/progress.h"
 #include "image/error.h"
 #include "methods/method.h"
-#include "shot/patterns.h"
-#include "shot/manifest.h"
 #include "methods/spec.h"
+#include "shot/manifest.h"
+#include "shot/patterns.h"
 
 namespace aa {
 namespace {

@@ -80,7 +80,9 @@ def stale_docs(root: Path, markdown: str, listed: dict) -> list[str]:
         if f"`{method['id']}`" not in page:
             found.append(f"docs/methods.md: lacks '{method['id']}'; run `make docs`")
     if not found and page != markdown:
-        found.append("docs/methods.md: is not what `aaresolve list --markdown` prints; run `make docs`")
+        found.append(
+            "docs/methods.md: is not what `aaresolve list --markdown` prints; run `make docs`"
+        )
     if json.loads((root / "blender_addon/aa_resolve/methods.json").read_text()) != listed:
         found.append(
             "blender_addon/aa_resolve/methods.json: is not what `aaresolve list --json` prints; run `make docs`"
@@ -141,8 +143,16 @@ class Checklist(ProgramTest):
         markdown, listed = self.listed()
         newest = {"id": "newest", "family": "temporal"}
         for found, file, says in (
-            (unregistered(root, METHODS, DESCRIPTOR), f"{METHODS}/registry.cpp", "spatial/newest.h"),
-            (unregistered(root, "resolver/metrics", METRIC), "resolver/metrics/registry.cpp", "maeMetric()"),
+            (
+                unregistered(root, METHODS, DESCRIPTOR),
+                f"{METHODS}/registry.cpp",
+                "spatial/newest.h",
+            ),
+            (
+                unregistered(root, "resolver/metrics", METRIC),
+                "resolver/metrics/registry.cpp",
+                "maeMetric()",
+            ),
             (lone_kernels(root), f"{METHODS}/spatial/newest.kernel.cpp", "newestKernelsFor"),
             (casts(root), f"{METHODS}/spatial/newest.cpp", "Choice<Box>"),
             (without_test(root), f"{METHODS}/spatial/newest_test.cpp", "missing"),

@@ -32,7 +32,9 @@ class Filter(ProgramTest):
         self.assertIn("cmaa2", single)
         out = self.folder / "run"
         chosen = [word for m in single for word in ("-m", m)]
-        self.aaresolve("run", shot, *chosen, "-o", out, "-q", "--write", "exr,png", "--debug-layers")
+        self.aaresolve(
+            "run", shot, *chosen, "-o", out, "-q", "--write", "exr,png", "--debug-layers"
+        )
         self.aaresolve("filter", "noaa", frame, self.folder / "in.png")
         for method in single:
             with self.subTest(method=method):
@@ -49,13 +51,27 @@ class Filter(ProgramTest):
                 written = (out / method / RUN_FRAME.replace(".exr", ".layers.exr")).exists()
                 self.assertEqual(written, layers.exists())
                 if method in with_layers:
-                    self.assertTrue(written, f"{method} has no debug layers: its debugLayers() returns none")
+                    self.assertTrue(
+                        written, f"{method} has no debug layers: its debugLayers() returns none"
+                    )
                     self.same(layers, out / method / RUN_FRAME.replace(".exr", ".layers.exr"))
 
     def test_blend_space_is_the_files_space(self) -> None:
         """A method told to blend encoded values writes the same picture to PNG and, linearised, to EXR."""
         shot, out = self.folder / "shot", self.folder / "run"
-        self.aaresolve("synth", "clutter", "-o", shot, "--resolution", "90", "60", "--frames", "1", "--jitter", "none")
+        self.aaresolve(
+            "synth",
+            "clutter",
+            "-o",
+            shot,
+            "--resolution",
+            "90",
+            "60",
+            "--frames",
+            "1",
+            "--jitter",
+            "none",
+        )
         spec = "smaa1x:blendSpace=encoded"
         self.aaresolve("run", shot, "-m", spec, "-o", out, "-q", "--write", "exr,png")
         folder = out / "smaa1x_blendSpace=encoded"
@@ -66,13 +82,32 @@ class Filter(ProgramTest):
     def test_methods_of_more_passes_are_refused(self) -> None:
         image = self.folder / "in.png"
         shot = self.folder / "shot"
-        self.aaresolve("synth", "circles", "-o", shot, "--resolution", "32", "32", "--frames", "1", "--jitter", "none")
+        self.aaresolve(
+            "synth",
+            "circles",
+            "-o",
+            shot,
+            "--resolution",
+            "32",
+            "32",
+            "--frames",
+            "1",
+            "--jitter",
+            "none",
+        )
         self.aaresolve("filter", "noaa", shot / "frames" / RUN_FRAME, image)
         refused = [m["id"] for m in self.methods() if m["passes"] != ["color"]]
         self.assertGreater(len(refused), 10)
         for method in refused:
             with self.subTest(method=method):
-                self.refused(2, "filter", method, image, self.folder / "out.png", says=(method, "aaresolve run"))
+                self.refused(
+                    2,
+                    "filter",
+                    method,
+                    image,
+                    self.folder / "out.png",
+                    says=(method, "aaresolve run"),
+                )
         self.refused(2, "filter", "fxaa311", image, self.folder / "out.jpg", says=(".png or .exr",))
 
 
