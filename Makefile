@@ -82,7 +82,8 @@ reproduce: program
 format:
 	@.ci/format
 
-# Unit tests with every assert on, the standard library's too: what release builds leave out.
+# Unit tests with every assert on, the standard library's too: what release builds leave out. About 7 minutes on two
+# cores without a compiler cache, so CI does not wait for it.
 asserts: deps
 	@cmake --preset asserts $(LAUNCHER) -DAA_WERROR=$(WERROR) >/dev/null
 	@cmake --build --preset asserts -j $(JOBS) --target unit_tests
