@@ -80,28 +80,28 @@ struct Lanes {
     Lanes() = default;
     AA_INLINE Lanes(V a) : v(a) {}
     AA_INLINE Lanes(T a) : v(a - V{}) {}
-#define AA_OP(o) \
-    friend AA_INLINE Lanes operator o(Lanes a, Lanes b) { return a.v o b.v; }
-    AA_OP(+)
-    AA_OP(-)
-    AA_OP(*)
-    AA_OP(/)
+    // static_assert: takes the semicolon, without which clang-format loses its way.
+#define AA_OP(o)                                                              \
+    friend AA_INLINE Lanes operator o(Lanes a, Lanes b) { return a.v o b.v; } \
+    static_assert(true)
+    AA_OP(+);
+    AA_OP(-);
+    AA_OP(*);
+    AA_OP(/);
 #undef AA_OP
-        friend AA_INLINE Lanes
-        operator-(Lanes a) {
-        return -a.v;
-    }
-#define AA_CMP(o) \
-    friend AA_INLINE auto operator o(Lanes a, Lanes b) { return a.v o b.v; }
-    AA_CMP(<)
-    AA_CMP(>)
-    AA_CMP(<=)
-    AA_CMP(>=) AA_CMP(==) AA_CMP(!=)
+    friend AA_INLINE Lanes operator-(Lanes a) { return -a.v; }
+#define AA_CMP(o)                                                            \
+    friend AA_INLINE auto operator o(Lanes a, Lanes b) { return a.v o b.v; } \
+    static_assert(true)
+    AA_CMP(<);
+    AA_CMP(>);
+    AA_CMP(<=);
+    AA_CMP(>=);
+    AA_CMP(==);
+    AA_CMP(!=);
 #undef AA_CMP
-        // min(x, NaN) == x and max(x, NaN) == x
-        friend AA_INLINE Lanes min(Lanes a, Lanes b) {
-        return least<T, W>(b.v, a.v);
-    }
+    // min(x, NaN) == x and max(x, NaN) == x
+    friend AA_INLINE Lanes min(Lanes a, Lanes b) { return least<T, W>(b.v, a.v); }
     friend AA_INLINE Lanes max(Lanes a, Lanes b) { return greatest<T, W>(b.v, a.v); }
     friend AA_INLINE Lanes abs(Lanes a) {
 #ifdef __AVX512F__
@@ -325,14 +325,15 @@ struct vec3 {
     template <class R>                                                   \
     AA_INLINE vec3<R> operator o(vec3<R> a, std::type_identity_t<R> b) { \
         return {a.x o b, a.y o b, a.z o b};                              \
-    }
-AA_OP(+)
-AA_OP(-)
-AA_OP(*)
-AA_OP(/)
+    }                                                                    \
+    static_assert(true)
+AA_OP(+);
+AA_OP(-);
+AA_OP(*);
+AA_OP(/);
 #undef AA_OP
-    template <class R>
-    AA_INLINE vec3<R> abs(vec3<R> a) {
+template <class R>
+AA_INLINE vec3<R> abs(vec3<R> a) {
     return {abs(a.x), abs(a.y), abs(a.z)};
 }
 template <class R>

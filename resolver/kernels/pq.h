@@ -75,7 +75,7 @@ AA_INLINE void fillTable(const Fn& f, int octaves, float* table) {
         const double low = powerOfTwo(double(first + octave));
         for (int k = 0; k < parts; k++)
             fitCubic([&](double x) { return f(low * x); }, 1.0 + double(k) / parts, 1.0 / parts,
-                      table + 4 * (octave * parts + k));
+                     table + 4 * (octave * parts + k));
     }
 }
 // The cubic of x's part at x; 2^first <= x < 2^(first + octaves).
@@ -128,8 +128,8 @@ AA_INLINE R pqDecode(const aa::PqTables& t, R encoded) {
         return pqDecode(encoded);
     else {
         const R inside = min(max(R(4.76837158203125e-7f), encoded), R(1.0f));  // 2^-21
-        return select(encoded > R(t.black),
-                      max(R(0.0f), fromTable<P::kDecodeFirst, P::kDecodeParts>(t.decode, inside)), R(0.0f));
+        return select(encoded > R(t.black), max(R(0.0f), fromTable<P::kDecodeFirst, P::kDecodeParts>(t.decode, inside)),
+                      R(0.0f));
     }
 }
 

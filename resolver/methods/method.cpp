@@ -4,9 +4,9 @@
 
 namespace aa {
 
-const MethodDescriptor& findMethod(std::string_view id) {
+const MethodDescriptor& findMethod(std::string_view id, const std::vector<MethodDescriptor>& among) {
     std::vector<std::string_view> known;
-    for (const auto& m : registry()) {
+    for (const auto& m : among) {
         if (m.id == id) return m;
         known.push_back(m.id);
     }

@@ -35,14 +35,18 @@ class Method {
     // Resolves one frame into `out` (same size as the frame, in the method's output space; its border need not be
     // filled). Temporal methods drop their history when frame.reset is set.
     virtual void resolve(const Frame& frame, const Exec& exec, Rgb& out) = 0;
-    virtual size_t stateBytes() const { return 0; }                     // history and scratch kept between frames
-    virtual std::vector<DebugLayer> debugLayers() const { return {}; }  // of the last frame; empty when there are none
-    bool keepDebugLayers = false;                                       // set by the driver before the first frame
+    virtual size_t stateBytes() const { return 0; }  // history and scratch kept between frames
+    // Of the last frame: at least one when keepDebugLayers was set, none otherwise. Only the family `reference` may
+    // have none at all: what a method found (an edge, a weight, a reason) is what `--debug-layers` is asked for.
+    virtual std::vector<DebugLayer> debugLayers() const { return {}; }
+    bool keepDebugLayers = false;  // set by the driver before the first frame
     // Where history was not used, 0 = it was, in the last frame (methods/temporal/temporal_kernels.h, Rejection); null
     // unless the method is temporal and keepRejection was set before the first frame.
     virtual const PlaneF* rejection() const { return nullptr; }
     bool keepRejection = false;
 };
+
+inline constexpr int kAnyReachPx = -1;
 
 struct MethodDescriptor {
     std::string_view id, title, family;  // family: reference, spatial, geometry, temporal
@@ -64,10 +68,12 @@ struct MethodDescriptor {
     std::function<PassSet(const Params&)> morePasses = {};
     // Output space that depends on the parameters (blending encoded or linear); empty: `output`.
     std::function<Space(const Params&)> outputSpace = {};
-    // Largest distance in px at which a pixel may influence another in one frame; 0 = unlimited or not meaningful.
+    // Largest distance in px at which a pixel may influence another in one frame: kAnyReachPx where nothing limits it.
+    // A method of the family `spatial` states it; for others 0 leaves it unsaid.
     int reachPx = 0;
     // Sub-sample patterns (shot/patterns.h) that serve the method, the best first; empty: any.
     std::vector<std::string_view> patterns = {};
+    CodePlace writtenAt = {};  // the file of this descriptor: leave it out, the compiler fills it
 };
 
 // Parameter `space` of the methods that average samples (conventions 4), and what it makes the output.
@@ -76,6 +82,7 @@ Space averagedSpace(const Params& params);
 
 // All methods, in the order of the documentation.
 const std::vector<MethodDescriptor>& registry();
-const MethodDescriptor& findMethod(std::string_view id);  // throws UsageError with a suggestion
+// Throws UsageError with a suggestion.
+const MethodDescriptor& findMethod(std::string_view id, const std::vector<MethodDescriptor>& among = registry());
 
 }  // namespace aa

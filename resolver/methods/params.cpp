@@ -1,10 +1,10 @@
 #include "methods/params.h"
 
 #include <algorithm>
-#include <cassert>
 #include <charconv>
 #include <cmath>
 #include <sstream>
+#include <stdexcept>
 
 #include "image/error.h"
 
@@ -57,8 +57,9 @@ double parseNumber(const std::string& where, const ParamSpec& p, const std::stri
 }  // namespace
 
 Params::Params(std::string_view method, const std::vector<ParamSpec>& table,
-               const std::vector<std::pair<std::string, std::string>>& given)
-    : table_(table) {
+               const std::vector<std::pair<std::string, std::string>>& given, CodePlace writtenAt)
+    : method_(method), table_(table) {
+    checkTable(writtenAt);
     for (const auto& p : table_) values_[std::string(p.name)] = std::string(p.defaultValue);
     for (const auto& [key, text] : given) {
         const std::string where = std::string(method) + ": parameter '" + key + "'";
@@ -105,32 +106,98 @@ Params::Params(std::string_view method, const std::vector<ParamSpec>& table,
     }
 }
 
-const ParamSpec& Params::spec(std::string_view name, [[maybe_unused]] ParamSpec::Type type) const {
-    const auto p = std::find_if(table_.begin(), table_.end(), [&](const auto& s) { return s.name == name; });
-    assert(p != table_.end() && p->type == type);
-    return *p;
+// ---- errors of programming ------------------------------------------------------------------------------------------
+namespace {
+std::string_view name(ParamSpec::Type type) {
+    constexpr std::string_view names[] = {"real", "integer", "choice", "flag"};
+    return names[size_t(type)];
 }
-double Params::real(std::string_view name) const {
-    spec(name, ParamSpec::Type::real);
-    return std::stod(values_.find(name)->second);
+[[noreturn]] void wrong(const std::string& method, std::string_view parameter, CodePlace at, const std::string& what) {
+    throw std::logic_error(at.text() + ": method '" + method + "', parameter '" + std::string(parameter) +
+                           "': " + what);
 }
-int Params::integer(std::string_view name) const {
-    spec(name, ParamSpec::Type::integer);
-    return int(std::stod(values_.find(name)->second));
-}
-bool Params::flag(std::string_view name) const {
-    spec(name, ParamSpec::Type::flag);
-    return values_.find(name)->second == "on";
-}
-const std::string& Params::choice(std::string_view name) const {
-    spec(name, ParamSpec::Type::choice);
-    return values_.find(name)->second;
-}
-size_t Params::choiceIndex(std::string_view name) const {
-    const auto& choices = spec(name, ParamSpec::Type::choice).choices;
-    return size_t(std::find(choices.begin(), choices.end(), choice(name)) - choices.begin());
+}  // namespace
+
+void Params::checkTable(CodePlace writtenAt) const {
+    const auto named = [&](std::string_view name) {
+        return std::find_if(table_.begin(), table_.end(), [&](const auto& s) { return s.name == name; });
+    };
+    for (auto p = table_.begin(); p != table_.end(); ++p) {
+        const auto refuse = [&](const std::string& what) { wrong(method_, p->name, writtenAt, what); };
+        if (named(p->name) != p) refuse("declared twice");
+        if (!p->choices.empty()) {
+            if (std::find(p->choices.begin(), p->choices.end(), p->defaultValue) == p->choices.end())
+                refuse("its default '" + std::string(p->defaultValue) + "' is none of its choices " +
+                       joined(p->choices));
+        } else {
+            try {
+                parseNumber("its default", *p, std::string(p->defaultValue));
+            } catch (const UsageError& e) {
+                refuse(e.what());
+            }
+        }
+        if (p->onlyWhen.empty()) continue;
+        const size_t eq = p->onlyWhen.find('=');
+        const auto other = named(p->onlyWhen.substr(0, eq));
+        if (eq == std::string_view::npos || other == table_.end() || other == p)
+            refuse("onlyWhen '" + std::string(p->onlyWhen) + "' names no other parameter of the table");
+        if (other->choices.empty()) continue;
+        // One of them at least: a condition that methods share may name values that only some of them have.
+        std::istringstream allowed{std::string(p->onlyWhen.substr(eq + 1))};
+        bool possible = false;
+        for (std::string value; std::getline(allowed, value, '|');)
+            possible =
+                possible || std::find(other->choices.begin(), other->choices.end(), value) != other->choices.end();
+        if (!possible)
+            refuse("onlyWhen '" + std::string(p->onlyWhen) + "' names no value that '" + std::string(other->name) +
+                   "' has: " + joined(other->choices));
+    }
 }
 
-bool Params::isGiven(std::string_view name) const { return given_.find(name) != given_.end(); }
+const ParamSpec& Params::spec(std::string_view name, CodePlace at) const {
+    std::vector<std::string_view> known;
+    for (const auto& p : table_) {
+        if (p.name == name) return p;
+        known.push_back(p.name);
+    }
+    wrong(method_, name, at,
+          "read here, but not in the table of the method's descriptor" + didYouMean(name, known) +
+              (known.empty() ? "" : " (known: " + joined(known) + ")"));
+}
+const ParamSpec& Params::spec(std::string_view name, ParamSpec::Type type, CodePlace at) const {
+    const ParamSpec& p = spec(name, at);
+    if (p.type != type)
+        wrong(method_, name, at,
+              "read here as " + std::string(aa::name(type)) + ", declared as " + std::string(aa::name(p.type)));
+    return p;
+}
+void Params::noSuchChoice(std::string_view name, const std::string& text, CodePlace at) const {
+    wrong(method_, name, at, "the table of values used here lacks '" + text + "'; declare the parameter from it");
+}
+
+double Params::real(std::string_view name, CodePlace at) const {
+    spec(name, ParamSpec::Type::real, at);
+    return std::stod(values_.find(name)->second);
+}
+int Params::integer(std::string_view name, CodePlace at) const {
+    spec(name, ParamSpec::Type::integer, at);
+    return int(std::stod(values_.find(name)->second));
+}
+bool Params::flag(std::string_view name, CodePlace at) const {
+    spec(name, ParamSpec::Type::flag, at);
+    return values_.find(name)->second == "on";
+}
+const std::string& Params::choice(std::string_view name, CodePlace at) const {
+    spec(name, ParamSpec::Type::choice, at);
+    return values_.find(name)->second;
+}
+size_t Params::choiceIndex(std::string_view name, CodePlace at) const {
+    const auto& choices = spec(name, ParamSpec::Type::choice, at).choices;
+    return size_t(std::find(choices.begin(), choices.end(), choice(name, at)) - choices.begin());
+}
+bool Params::isGiven(std::string_view name, CodePlace at) const {
+    spec(name, at);
+    return given_.find(name) != given_.end();
+}
 
 }  // namespace aa

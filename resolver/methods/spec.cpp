@@ -23,7 +23,7 @@ std::string withParameters(std::string_view text, std::string_view parameters) {
            std::string(stages);
 }
 
-MethodSpec parseMethod(std::string_view text) {
+MethodSpec parseMethod(std::string_view text, const std::vector<MethodDescriptor>& among) {
     MethodSpec spec;
     spec.text = std::string(text);
     const size_t plus = startOfStage(text);
@@ -34,7 +34,7 @@ MethodSpec parseMethod(std::string_view text) {
     }
     text = text.substr(0, plus);
     const size_t colon = text.find(':');
-    spec.method = &findMethod(text.substr(0, colon));
+    spec.method = &findMethod(text.substr(0, colon), among);
     if (colon != std::string_view::npos) {
         std::string_view rest = text.substr(colon + 1);
         while (!rest.empty()) {

@@ -19,15 +19,16 @@ struct MethodSpec {
     const MethodDescriptor* method = nullptr;
     std::vector<std::pair<std::string, std::string>> given;
     std::vector<StageSpec> stages;
-    Params params() const { return Params(method->id, method->params, given); }
+    Params params() const { return Params(method->id, method->params, given, method->writtenAt); }
     PassSet passes() const;
     Space outputSpace() const;  // of the method; stages keep it
     bool readsEncoded() const;  // the method or a method that one of its stages runs
     std::string folderName() const;
     std::unique_ptr<Method> create(const ShotInfo& shot) const;
 };
-// id[:name=value,...][+stage=value]... Throws UsageError: unknown method or stage, malformed, bad parameter.
-MethodSpec parseMethod(std::string_view text);
+// id[:name=value,...][+stage=value]... Throws UsageError: unknown method or stage, malformed, bad parameter. The spec
+// points into `among`.
+MethodSpec parseMethod(std::string_view text, const std::vector<MethodDescriptor>& among = registry());
 PassSet passesOf(const std::vector<MethodSpec>& methods);
 // Of the methods that read frames of this sampling only.
 PassSet passesOf(const std::vector<MethodSpec>& methods, Sampling sampling);

@@ -128,7 +128,7 @@ AA_INLINE void filterAlongY(const FlipRow<Elem<R>>& centre, int columns, SeenRow
         const R cz = even<R, kCsfReach>(centre.czWide + x, step, kCsfCzWide) * constant<R>(kCzWideShare) +
                      even<R, kCsfReach>(centre.czNarrow + x, step, kCsfCzNarrow) * constant<R>(1 - kCzWideShare);
         const vec3<R> lab = huntLab(vec3<R>(even<R, kNarrowReach>(centre.y + x, step, kCsfY),
-                                             even<R, kNarrowReach>(centre.cx + x, step, kCsfCx), cz));
+                                            even<R, kNarrowReach>(centre.cx + x, step, kCsfCx), cz));
         store(lab.x, seen.lightness + x), store(lab.y, seen.a + x), store(lab.z, seen.b + x);
     }
     for (int x = 0; x < columns; x += N<R>) {

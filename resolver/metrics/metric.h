@@ -1,5 +1,5 @@
-// One row per metric: what `--metrics` names, results hold, tables show and reports explain. A new metric is one pair of
-// files (x.h, x.cpp: its function and its Metric) and one line in metrics/registry.cpp.
+// One row per metric: what `--metrics` names, results hold, tables show and reports explain. A new metric is one pair
+// of files (x.h, x.cpp: its function and its Metric) and one line in metrics/registry.cpp.
 #pragma once
 #include <functional>
 #include <string>

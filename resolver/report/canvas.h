@@ -4,10 +4,10 @@
 #include <memory>
 #include <string>
 
+#include "image/io.h"
 #include "image/plane.h"
 #include "report/colour_map.h"
 #include "report/gallery.h"
-#include "image/io.h"
 
 namespace aa {
 

@@ -25,7 +25,9 @@ READINGS = (
 # What the Oliveros thesis compares, in its own protocol: displayed values, full history, 8-bit images.
 THESIS = f"noaa fxaa1:preset=5 smaa1x:preset=ULTRA uncharted:unjitter=off unchartedNorm:unjitter=off {UNCHARTED} {ABLATIONS} {READINGS}"
 RAMPED = "unchartedNoSharpen:warmup=ramp master:sharpen=none,warmup=ramp"
-RAPTOR = "raptor raptor:lumaDiff=printed raptor:filterDomain=printed,lumaDiff=printed raptor:sharpen=0"
+RAPTOR = (
+    "raptor raptor:lumaDiff=printed raptor:filterDomain=printed,lumaDiff=printed raptor:sharpen=0"
+)
 BOXES = "inside karis salvi falcor donut"  # with `raptor`, `uncharted*` and `master`: history held by a box of colours
 IDENTITY = "accumReject accumReject:objectIds=off accumReject:depthTest=off"
 FILLS = "accumReject+fill=smaa1x accumReject+fill=fxaa311 fsr2n+fill=smaa1x"
@@ -141,7 +143,10 @@ PICTURES = {
         "moving_sphere",
         "noaa smaa1x:preset=ULTRA uncharted unchartedNorm master taaSimplest accumReject accumReject+fill=smaa1x",
     ),
-    "hairball": ("hairball", "noaa mlaa smaa1x:preset=ULTRA rsaa msaa unchartedNorm master accum:samples=16"),
+    "hairball": (
+        "hairball",
+        "noaa mlaa smaa1x:preset=ULTRA rsaa msaa unchartedNorm master accum:samples=16",
+    ),
 }
 
 # On half-planes, where the program has the command `angles`.

@@ -79,7 +79,9 @@ class Run:
         if a == b:
             return Difference(0.0, 0.0, 0.0, False)
         pair, sign = self._pair(a, b)
-        d = Difference(*(number(pair[k]) for k in ("gainDb", "gainLow95", "gainHigh95")), pair["resolved"])
+        d = Difference(
+            *(number(pair[k]) for k in ("gainDb", "gainLow95", "gainHigh95")), pair["resolved"]
+        )
         return d if sign > 0 else -d
 
     def over_time(self, a: str, b: str, key: str) -> Difference | None:
@@ -96,7 +98,9 @@ def across(run_a: Run, a: str, run_b: Run, b: str) -> Difference:
     """PSNR of a over b in two shots of one scene and truth: the same bootstrap, by the runs' tiles."""
     of_a, of_b = (r.methods[m]["tileSquares"] for r, m in ((run_a, a), (run_b, b)))
     assert len(of_a) == len(of_b), "two shots of one scene have the same tiles"
-    in_db = lambda picked: 10 * math.log10(sum(of_b[i] for i in picked) / sum(of_a[i] for i in picked))  # noqa: E731
+    in_db = lambda picked: 10 * math.log10(
+        sum(of_b[i] for i in picked) / sum(of_a[i] for i in picked)
+    )  # noqa: E731
     tiles = range(len(of_a))
     generator = random.Random(1)  # the same figures at every run
     resampled = sorted(in_db(generator.choices(tiles, k=len(tiles))) for _ in range(1000))
@@ -109,7 +113,9 @@ def kendall_tau(first: list[float], second: list[float]) -> float:
     """Agreement of two orders: pairs in the same order less pairs in the other, over all pairs; 1 = the same order."""
     sign = lambda v: (v > 0) - (v < 0)  # noqa: E731
     pairs = [(i, j) for i in range(len(first)) for j in range(i)]
-    return sum(sign(first[i] - first[j]) * sign(second[i] - second[j]) for i, j in pairs) / len(pairs)
+    return sum(sign(first[i] - first[j]) * sign(second[i] - second[j]) for i, j in pairs) / len(
+        pairs
+    )
 
 
 def verdict(difference: Difference | None, better: str = "better", worse: str = "worse") -> str:

@@ -17,6 +17,7 @@ import time
 from pathlib import Path
 
 import studies
+
 from catalogue import (
     ANGLES, HEADROOM_FLAGS, HEADROOM_METHODS, PICTURES, SHOTS, STEP_METHODS, STEPS, THESIS_FLAGS,
 )  # fmt: skip
@@ -29,14 +30,26 @@ def methods_of(shot: Shot, shop: Workshop) -> list[str]:
     return [m for m in shot.methods.split() if shop.serves(m)]
 
 
-def run_methods(folder: Path, what: str, methods: str, shop: Workshop, flags: tuple[str, ...] = ()) -> Run:
+def run_methods(
+    folder: Path, what: str, methods: str, shop: Workshop, flags: tuple[str, ...] = ()
+) -> Run:
     """Methods on a shot, in a protocol of `flags`; repeated only when shot, program or list have changed."""
     out = folder.parent / f"{folder.name}.{what}"
     texts = [m for m in methods.split() if shop.serves(m)]
     newest = max((folder / "shot.json").stat().st_mtime, shop.program.stat().st_mtime)
     results = out / "results.json"
     if not results.exists() or results.stat().st_mtime < newest or list(Run(out).methods) != texts:
-        command: list[object] = [shop.program, "run", folder, "-o", out, "--write", "none", "-q", *flags]
+        command: list[object] = [
+            shop.program,
+            "run",
+            folder,
+            "-o",
+            out,
+            "--write",
+            "none",
+            "-q",
+            *flags,
+        ]
         for m in texts:
             command += ["-m", m]
         shop.run(f"{what}.{folder.name}", command)
@@ -53,7 +66,10 @@ def picture(name: str, shot: Shot, methods: list[str], docs: Path, shop: Worksho
     shop.run(f"sheet.{shot.name}", command)
     shop.run(f"sheet.{shot.name}", [shop.program, "sheet", out, "-o", out / "sheet.png"])
     docs.mkdir(parents=True, exist_ok=True)
-    shop.run(f"sheet.{shot.name}", ["/usr/bin/python3", "-c", _JPEG, out / "sheet.png", docs / f"{name}.jpg"])
+    shop.run(
+        f"sheet.{shot.name}",
+        ["/usr/bin/python3", "-c", _JPEG, out / "sheet.png", docs / f"{name}.jpg"],
+    )
 
 
 # Shrinks to 1280 px wide and takes the best quality below 280 kB.
@@ -75,7 +91,17 @@ for quality in range(90, 20, -5):
 def bench(shop: Workshop, runs: dict[str, Run]) -> Page:
     """Times on one thread: at 1080p on a scene that moves, in the short form on small frames that are there anyway."""
     shot = SHOTS["hard_edges" if shop.quick else "moving_sphere_1080p"]
-    command: list[object] = [shop.program, "bench", "-j", 1, "--json", "--repeats", 3, "--frames", 3]
+    command: list[object] = [
+        shop.program,
+        "bench",
+        "-j",
+        1,
+        "--json",
+        "--repeats",
+        3,
+        "--frames",
+        3,
+    ]
     command += ["--shot", make(SHOTS, shot, shop)]
     for m in methods_of(shot, shop):
         command += ["-m", m]
@@ -96,7 +122,9 @@ def angles(shop: Workshop) -> Page | None:
     return studies.angles_page(json.loads(shop.run("angles", command)))
 
 
-def write_pages(study: studies.Study, speed: Page | None, by_angle: Page | None, docs: Path) -> list[str]:
+def write_pages(
+    study: studies.Study, speed: Page | None, by_angle: Page | None, docs: Path
+) -> list[str]:
     """Every page whose runs are there; returns the index's lines."""
     runs = study.runs
     wanted = [
@@ -146,9 +174,16 @@ def main(argv: list[str]) -> int:
     headroom: dict[str, Run] = {}
     for name, shot in SHOTS.items():
         if f'"{shot.jitter}"' not in sequences:
-            print(f"  shot {name}: left out, the exporter does not know the jitter {shot.jitter}", flush=True)
+            print(
+                f"  shot {name}: left out, the exporter does not know the jitter {shot.jitter}",
+                flush=True,
+            )
             continue
-        if a.only and name not in a.only and SHOTS[name].name not in {SHOTS[o].truth_of for o in a.only}:
+        if (
+            a.only
+            and name not in a.only
+            and SHOTS[name].name not in {SHOTS[o].truth_of for o in a.only}
+        ):
             continue
         if not shot.truth:
             continue
@@ -166,7 +201,13 @@ def main(argv: list[str]) -> int:
     study = studies.Study(runs, thesis, steps, headroom)
     for name, (shot_name, methods) in PICTURES.items():
         if shot_name in runs:
-            picture(name, SHOTS[shot_name], [m for m in methods.split() if m in runs[shot_name]], a.docs, shop)
+            picture(
+                name,
+                SHOTS[shot_name],
+                [m for m in methods.split() if m in runs[shot_name]],
+                a.docs,
+                shop,
+            )
     speed = None if a.no_bench else bench(shop, runs)
     index = write_pages(study, speed, angles(shop), a.docs)
     page = Page("Results")
@@ -186,7 +227,9 @@ def main(argv: list[str]) -> int:
     )
     if runs:
         made = next(iter(runs.values())).data["run"]
-        page.say(f"Made with aaresolve {made['program']} on {made['machine']} ({made['instructionSet']}).")
+        page.say(
+            f"Made with aaresolve {made['program']} on {made['machine']} ({made['instructionSet']})."
+        )
     page.write(a.docs / "README.md")
     print(f"{a.docs / 'README.md'}: {len(index)} pages, {time.monotonic() - started:.0f} s")
     return 0

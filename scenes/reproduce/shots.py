@@ -37,7 +37,9 @@ class Shot:
     passes: str = ""  # of the jittered frames, beyond what the methods read
     truth_of: str = ""  # another shot of the same scene, variant and frames
     truth: bool = True
-    thesis: str = ""  # methods that are run once more in the thesis's protocol (catalogue.THESIS_FLAGS)
+    thesis: str = (
+        ""  # methods that are run once more in the thesis's protocol (catalogue.THESIS_FLAGS)
+    )
     size: tuple[int, int] = (480, 270)
 
 
@@ -91,12 +93,25 @@ def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
         return folder
     frames = shot.quick_frames if shop.quick else shot.frames
     if shot.scene.startswith("synth:"):
-        command = [shop.program, "synth", shot.scene.split(":")[1], "-o", folder, "--frames", frames, "-q"]
+        command = [
+            shop.program,
+            "synth",
+            shot.scene.split(":")[1],
+            "-o",
+            folder,
+            "--frames",
+            frames,
+            "-q",
+        ]
         command += ["--resolution", *shot.size, "--jitter", shot.jitter, "--period", shot.period]
         command += ["--subsamples", shot.pattern] if shot.pattern else []
         shop.run(f"synth.{shot.name}", command)
         return _ready(shot, stamp, wish, started, "exact truth", folder)
-    blend = shop.out / "scenes" / f"{'_'.join([shot.scene, *(v.strip('-') for v in shot.variant)])}.blend"
+    blend = (
+        shop.out
+        / "scenes"
+        / f"{'_'.join([shot.scene, *(v.strip('-') for v in shot.variant)])}.blend"
+    )
     headless = ROOT / "blender_addon/aa_resolve/headless.py"
     shop.run(
         f"scene.{blend.stem}",
@@ -144,7 +159,9 @@ def _identity(shot: Shot, shop: Workshop) -> str:
         sources = [ROOT / f"scenes/{shot.scene}.py", ROOT / "scenes/common.py"]
         sources += sorted((ROOT / "blender_addon/aa_resolve").rglob("*.py"))
         # Of the registry only what decides the passes: a better help text renders nothing anew.
-        registry = json.loads((ROOT / "blender_addon/aa_resolve/methods.json").read_text())["methods"]
+        registry = json.loads((ROOT / "blender_addon/aa_resolve/methods.json").read_text())[
+            "methods"
+        ]
         ids = {m.split(":")[0].split("+")[0] for m in shot.methods.split()}
         digest.update(repr([(m["id"], m["passes"]) for m in registry if m["id"] in ids]).encode())
     for path in sources:
@@ -168,7 +185,9 @@ def _lend_truth(lender: Path, borrower: Path) -> None:
     for entry in manifest["frames"]:
         path = next(iter(truths.values()), None) if source["static"] else truths.get(entry["frame"])
         if path is None:
-            raise SystemExit(f"{lender}: no truth of frame {entry['frame']}, which {borrower} needs")
+            raise SystemExit(
+                f"{lender}: no truth of frame {entry['frame']}, which {borrower} needs"
+            )
         target = borrower / path
         target.parent.mkdir(exist_ok=True)
         target.unlink(missing_ok=True)

@@ -35,9 +35,17 @@ def _ranking(run: Run, over_time: bool = True) -> tuple[list[str], list[list[str
     rows, before = [], None
     for text in run.best_first():
         gain = run.gain(text)
-        step = "" if before is None else ("resolved" if run.gain(before, text).resolved else "not resolved")
+        step = (
+            ""
+            if before is None
+            else ("resolved" if run.gain(before, text).resolved else "not resolved")
+        )
         row = [code(text), f"{run.psnr(text):.2f}"]
-        row += ["", ""] if text == "noaa" else [signed(gain.db), f"{signed(gain.low)} to {signed(gain.high)}"]
+        row += (
+            ["", ""]
+            if text == "noaa"
+            else [signed(gain.db), f"{signed(gain.low)} to {signed(gain.high)}"]
+        )
         row += [step, f"{run.methods[text]['pooled']['ssimLuma']:.5f}"]
         if flicker:
             row.append(_figure(run.temporal(text, "flickerStatic")))
@@ -66,19 +74,39 @@ class Study:
 def headlines(study: Study) -> list[str]:
     """The main questions, each answered over all scenes."""
     runs, thesis = study.runs, study.thesis
-    moving = [n for n in ("moving_sphere", "hairball_rotating", "wires", "synth_moving", "synth_thin_motion") if n in runs]
+    moving = [
+        n
+        for n in (
+            "moving_sphere",
+            "hairball_rotating",
+            "wires",
+            "synth_moving",
+            "synth_thin_motion",
+        )
+        if n in runs
+    ]
     static = [n for n in ("hard_edges", "hairball", "hairball_unlit", "flowers") if n in runs]
     sampled = [n for n in ("hard_edges", "hairball") if n in runs]
     ghost = lambda a, b: lambda r: r.over_time(a, b, "ghost")  # noqa: E731
     gain = lambda a, b: lambda r: r.gain(a, b)  # noqa: E731
-    box = lambda r: min((m for m in BOXES if m in r), key=lambda m: r.temporal(m, "ghostMse"))  # noqa: E731
-    filled = lambda m: lambda r: r.over_time(f"accumReject+fill={m}", "accumReject", "rejected")  # noqa: E731
+    box = lambda r: min(
+        (m for m in BOXES if m in r), key=lambda m: r.temporal(m, "ghostMse")
+    )  # noqa: E731
+    filled = lambda m: lambda r: r.over_time(
+        f"accumReject+fill={m}", "accumReject", "rejected"
+    )  # noqa: E731
     rest = [n for n in static if n in thesis]
     headline = [
         ("Is `master` better than no anti-aliasing (published: yes)?", gain("master", "noaa")),
         ("Is `uncharted`, sharpened as published (published: no)?", gain("uncharted", "noaa")),
-        ("Is `master` better than FXAA (published: yes)?", gain("master", published.METHODS["FXAA"])),
-        ("Is `master` better than SMAA (published: yes)?", gain("master", published.METHODS["SMAA"])),
+        (
+            "Is `master` better than FXAA (published: yes)?",
+            gain("master", published.METHODS["FXAA"]),
+        ),
+        (
+            "Is `master` better than SMAA (published: yes)?",
+            gain("master", published.METHODS["SMAA"]),
+        ),
         ("Is `master` better than `unchartedNorm`?", gain("master", "unchartedNorm")),
         ("Does un-jittering help `master`?", gain("master", "master:unjitter=off")),
     ]
@@ -97,7 +125,9 @@ def headlines(study: Study) -> list[str]:
         ("Is RSAA with 8 sub-samples better than MSAA with 8?", sampled, gain("rsaa", "msaa")),
         ("Is it better than MLAA?", sampled, gain("rsaa", "mlaa")),
     ]  # fmt: skip
-    return answers + [f"{question} {_over_scenes(scenes, runs, ask)}" for question, scenes, ask in asked if scenes]
+    return answers + [
+        f"{question} {_over_scenes(scenes, runs, ask)}" for question, scenes, ask in asked if scenes
+    ]
 
 
 def _over_scenes(scenes: list[str], runs: dict[str, Run], ask) -> str:
@@ -107,7 +137,9 @@ def _over_scenes(scenes: list[str], runs: dict[str, Run], ask) -> str:
         if d is not None:
             answer = "Not resolved" if not d.resolved else "Yes" if d.db > 0 else "No"
             found[answer].append(f"{name} ({signed(d.db)} dB)")
-    return " ".join(f"**{answer}** on {', '.join(where)}." for answer, where in found.items() if where)
+    return " ".join(
+        f"**{answer}** on {', '.join(where)}." for answer, where in found.items() if where
+    )
 
 
 # --- 1: static protocol ---------------------------------------------------------------------------------------------
@@ -126,7 +158,8 @@ def static_page(study: Study) -> Page:
     run, thesis = study.runs["hard_edges"], study.thesis["hard_edges"]
     page = Page("At rest: sixteen frames of hard_edges, two questions")
     page.say(
-        "The protocol of the Oliveros thesis: jittered frames of a scene at rest, the last one is judged.", _setup(run)
+        "The protocol of the Oliveros thesis: jittered frames of a scene at rest, the last one is judged.",
+        _setup(run),
     )
     page.points([THESIS_QUESTION, OUR_QUESTION])
     _, theirs = published.GAINS["hard_edges"]
@@ -194,7 +227,9 @@ def _static_answers(which: str, run: Run) -> list[str]:
     total = run.psnr("master") - run.psnr("uncharted")
     sharpen = run.psnr("unchartedNorm") - run.psnr("uncharted")
     paper = published.SHARPEN
-    paper_share = (paper["unchartedNorm"] - paper["uncharted"]) / (paper["master"] - paper["uncharted"])
+    paper_share = (paper["unchartedNorm"] - paper["uncharted"]) / (
+        paper["master"] - paper["uncharted"]
+    )
     share = (
         f"{100 * sharpen / total:.0f} % ({sharpen:.2f} of {total:.2f} dB)" if total > 0
         else f"all of it and more: the normalised filter alone gains {sharpen:.2f} dB, `master` {total:.2f} dB"
@@ -224,7 +259,8 @@ def _order(run: Run, theirs: dict[str, float]) -> list[str]:
             else:
                 agree += 1
     tau = kendall_tau(
-        [0.0, *(theirs[n] for n in names)], [0.0, *(run.gain(published.METHODS[n]).db for n in names)]
+        [0.0, *(theirs[n] for n in names)],
+        [0.0, *(run.gain(published.METHODS[n]).db for n in names)],
     )
     sentences = [
         f"Kendall's τ of the order, no anti-aliasing among them: {signed(tau)}; "
@@ -274,7 +310,13 @@ def motion_page(runs: dict[str, Run]) -> Page:
         "motion and counts what changes beyond what the truth changes, in 8-bit codes. ± are 95 % intervals over blocks of",
         "consecutive frames; differences are paired frame by frame.",
     )
-    for name in ("moving_sphere", "hairball_rotating", "wires", "synth_moving", "synth_thin_motion"):
+    for name in (
+        "moving_sphere",
+        "hairball_rotating",
+        "wires",
+        "synth_moving",
+        "synth_thin_motion",
+    ):
         if name not in runs:
             continue
         run = runs[name]
@@ -282,7 +324,10 @@ def motion_page(runs: dict[str, Run]) -> Page:
         page.say(_setup(run))
         page.points(_motion_answers(run))
         if name == "moving_sphere":
-            page.picture("moving_sphere.jpg", "Contact sheet of moving_sphere: last frame, magnified details, error maps")
+            page.picture(
+                "moving_sphere.jpg",
+                "Contact sheet of moving_sphere: last frame, magnified details, error maps",
+            )
         page.table(*_motion_table(run))
     return page
 
@@ -336,11 +381,23 @@ def _stale(run: Run, identity: str, box: str) -> str:
 
 
 def _motion_table(run: Run) -> tuple[list[str], list[list[str]]]:
-    head = ["method", "PSNR dB", "over noaa, dB", "flicker ±", "ghost MSE ± (10⁻⁶)", "× noaa", "age 1", "age 4", "age 8"]
+    head = [
+        "method",
+        "PSNR dB",
+        "over noaa, dB",
+        "flicker ±",
+        "ghost MSE ± (10⁻⁶)",
+        "× noaa",
+        "age 1",
+        "age 4",
+        "age 8",
+    ]
     rows = []
     for text in run.best_first():
         fraction = run.temporal(text, "ghostFraction") or []  # empty or zeros: no truth before
-        age = lambda a: signed(fraction[a - 1]).lstrip("+") if len(fraction) >= a else "–"  # noqa: E731
+        age = (
+            lambda a: signed(fraction[a - 1]).lstrip("+") if len(fraction) >= a else "–"
+        )  # noqa: E731
         gain = run.gain(text)
         rows.append(
             [code(text), f"{run.psnr(text):.2f}", "" if text == "noaa" else signed(gain.db) + ("" if gain.resolved else " (not resolved)"),
@@ -377,16 +434,33 @@ def geometry_page(runs: dict[str, Run]) -> Page:
         page.say(_setup(run))
         page.points(_geometry_answers(run, by_s))
         if name == "hairball":
-            page.picture("hairball.jpg", "Contact sheet of the hairball: MLAA, RSAA, MSAA and methods with history")
+            page.picture(
+                "hairball.jpg",
+                "Contact sheet of the hairball: MLAA, RSAA, MSAA and methods with history",
+            )
         methods = sorted({m for r in by_s.values() for m in r.methods if m.split(":")[0] in
                           {"msaa", "csaa", "dmsaa", "sraa", "sbaa", "rsaa", "deaa"}}, key=lambda m: -run.psnr(m) if m in run else 0)  # fmt: skip
         page.say("PSNR gain over `noaa`, dB, by sub-samples per pixel:")
         page.table(
             ["method", *(f"S = {s}" for s in sorted(by_s))],
-            [[code(m), *(signed(by_s[s].gain(m).db) if m in by_s[s] else "–" for s in sorted(by_s))] for m in methods],
+            [
+                [
+                    code(m),
+                    *(signed(by_s[s].gain(m).db) if m in by_s[s] else "–" for s in sorted(by_s)),
+                ]
+                for m in methods
+            ],
         )
-        plain = [m for m in ("mlaa", "smaa1x:preset=ULTRA", "fxaa311:preset=39", "gbaa", "gpaa", "d2e") if m in run]
-        page.say("For comparison, without sub-samples: " + ", ".join(f"{code(m)} {signed(run.gain(m).db)} dB" for m in plain) + ".")
+        plain = [
+            m
+            for m in ("mlaa", "smaa1x:preset=ULTRA", "fxaa311:preset=39", "gbaa", "gpaa", "d2e")
+            if m in run
+        ]
+        page.say(
+            "For comparison, without sub-samples: "
+            + ", ".join(f"{code(m)} {signed(run.gain(m).db)} dB" for m in plain)
+            + "."
+        )
     return page
 
 
@@ -404,11 +478,15 @@ def _geometry_answers(run: Run, by_s: dict[int, Run]) -> list[str]:
     for s in (4, 16):
         if s in by_s:
             answers.append(
-                f"Are 8 sub-samples better than {s}? " + verdict(across(run, "rsaa", by_s[s], "rsaa"))
+                f"Are 8 sub-samples better than {s}? "
+                + verdict(across(run, "rsaa", by_s[s], "rsaa"))
             )
     for s in sorted(by_s):
         if "rsaa" in by_s[s]:
-            answers.append(f"Is RSAA better than MSAA of {s} sub-samples? " + verdict(by_s[s].gain("rsaa", "msaa")))
+            answers.append(
+                f"Is RSAA better than MSAA of {s} sub-samples? "
+                + verdict(by_s[s].gain("rsaa", "msaa"))
+            )
     answers.append("Is RSAA better than MLAA? " + verdict(run.gain("rsaa", "mlaa")))
     answers += _against_the_talk(run, by_s)
     return answers
@@ -428,7 +506,11 @@ def _against_the_talk(run: Run, by_s: dict[int, Run]) -> list[str]:
     ]
     if 4 in by_s:
         answers.append(
-            compare("4 sub-samples instead of 8 change", -published.RSAA4_LOSS, across(by_s[4], "rsaa", run, "rsaa"))
+            compare(
+                "4 sub-samples instead of 8 change",
+                -published.RSAA4_LOSS,
+                across(by_s[4], "rsaa", run, "rsaa"),
+            )
         )
     if "msaa" in run:
         ceiling = run.gain("msaa")
@@ -460,13 +542,17 @@ def angles_page(study: dict) -> Page:
     rows = []
     for m in sorted(study["methods"], key=lambda m: -number(m["pooledGainDb"])):
         gains = [number(g) for g in m["gainDb"]]
-        least, most = min(range(len(gains)), key=gains.__getitem__), max(range(len(gains)), key=gains.__getitem__)
+        least, most = min(range(len(gains)), key=gains.__getitem__), max(
+            range(len(gains)), key=gains.__getitem__
+        )
         rows.append(
             [code(m["text"]), signed(number(m["pooledGainDb"])), f"{signed(gains[least])} at {degrees[least]:.0f}°",
              f"{signed(gains[most])} at {degrees[most]:.0f}°", f"{number(m['mirrorDb']):.3f}", f"{number(m['turnDb']):.3f}",
              m["subsamples"] or "–"]
         )  # fmt: skip
-    page.table(["method", "gain, dB", "least", "most", "mirrored, dB", "turned, dB", "sub-samples"], rows)
+    page.table(
+        ["method", "gain, dB", "least", "most", "mirrored, dB", "turned, dB", "sub-samples"], rows
+    )
     return page
 
 
@@ -479,7 +565,9 @@ def speed_page(rows: list[dict], where: str, size: tuple[int, int]) -> Page:
     shares = [number(r["edgeShare"]) for r in rows if r.get("edgeShare") is not None]
     by_edge = bool(shares)
     if by_edge:
-        page.say(f"{100 * max(shares):.0f} % of the pixels lie at an edge; ns per edge pixel spreads a method's time over these alone.")
+        page.say(
+            f"{100 * max(shares):.0f} % of the pixels lie at an edge; ns per edge pixel spreads a method's time over these alone."
+        )
     page.table(
         ["method", "ns/px", "min", *(["per edge pixel"] if by_edge else []), "ms per frame", "kept, MB", "max error", "rms error"],
         [[code(r["method"]), f"{r['nsPerPixel']:.1f}", f"{r['nsPerPixelMin']:.1f}",
@@ -510,11 +598,24 @@ def published_page(study: Study) -> Page:
             rows.append([shot, which, *(_short(d) for d in gains)])
         notes.append(
             f"**{shot}**, the thesis's question: "
-            + " ".join([*_signs(study.thesis[shot], study.headroom[shot], theirs), *_order(study.thesis[shot], theirs)])
+            + " ".join(
+                [
+                    *_signs(study.thesis[shot], study.headroom[shot], theirs),
+                    *_order(study.thesis[shot], theirs),
+                ]
+            )
         )
         notes.append(f"**{shot}**, ours: " + " ".join(_order(runs[shot], theirs)))
     page.heading("PSNR gain over no anti-aliasing, dB")
-    page.table(["scene", "question", *(f"{n} ({code(published.METHODS[n])})" for n in names), code("unchartedNorm")], rows)
+    page.table(
+        [
+            "scene",
+            "question",
+            *(f"{n} ({code(published.METHODS[n])})" for n in names),
+            code("unchartedNorm"),
+        ],
+        rows,
+    )
     page.say("n. r.: not resolved from no anti-aliasing.")
     page.points(notes)
     page.heading("In motion: how much lower is the error of master than that of uncharted?")
@@ -524,7 +625,14 @@ def published_page(study: Study) -> Page:
             continue
         run = runs[shot]
         db = 10 * math.log10(theirs["Uncharted"] / theirs["Master"])
-        rows.append([f"{title} / {shot}", signed(db), str(run.gain("master", "uncharted")), str(run.gain("master", "unchartedNorm"))])
+        rows.append(
+            [
+                f"{title} / {shot}",
+                signed(db),
+                str(run.gain("master", "uncharted")),
+                str(run.gain("master", "unchartedNorm")),
+            ]
+        )
     page.table(["scene", "published, dB", "ours, dB", "ours, against `unchartedNorm`"], rows)
     if {"hard_edges.t2msaa", "hard_edges.s2", "hard_edges.s4"} <= set(study.thesis):
         page.heading("T2MSAA lies between 2x and 4x MSAA (Linköping thesis)")
@@ -547,8 +655,13 @@ def _signs(run: Run, headroom: Run, theirs: dict[str, float]) -> list[str]:
         sentence = f"{name} has the other sign: {signed(theirs[name])} dB published, {run.gain(text)} here."
         if text in headroom:
             dark = headroom.gain(text)
-            sentence += f" One stop darker, so that its overshoot is not clipped at the ends of the display, it is {dark}" + (
-                ": the published sign. The clipping hides what the sharpening does." if dark.db * theirs[name] > 0 else "."
+            sentence += (
+                f" One stop darker, so that its overshoot is not clipped at the ends of the display, it is {dark}"
+                + (
+                    ": the published sign. The clipping hides what the sharpening does."
+                    if dark.db * theirs[name] > 0
+                    else "."
+                )
             )
         sentences.append(sentence)
     return sentences
@@ -557,8 +670,18 @@ def _signs(run: Run, headroom: Run, theirs: dict[str, float]) -> list[str]:
 def _t2msaa_answers(study: Study) -> list[str]:
     spaces = [
         ("one displayed space (samples, truth and metric)", study.thesis, "t2msaa", "msaa"),
-        ("linear light (samples and truth; the metric encodes)", study.runs, "t2msaa:space=linear", "msaa"),
-        ("encoded samples against a truth in linear light", study.runs, "t2msaa", "msaa:space=encoded"),
+        (
+            "linear light (samples and truth; the metric encodes)",
+            study.runs,
+            "t2msaa:space=linear",
+            "msaa",
+        ),
+        (
+            "encoded samples against a truth in linear light",
+            study.runs,
+            "t2msaa",
+            "msaa:space=encoded",
+        ),
         ("two different spaces: encoded T2MSAA, linear MSAA", study.runs, "t2msaa", "msaa"),
     ]
     answers = []
@@ -574,7 +697,9 @@ def _t2msaa_answers(study: Study) -> list[str]:
 
 def scenes_page(runs: dict[str, Run]) -> Page:
     page = Page("Every method on every static scene")
-    page.say("Sorted by PSNR. `from the row above`: whether the difference exceeds the truth's noise and a bootstrap over tiles.")
+    page.say(
+        "Sorted by PSNR. `from the row above`: whether the difference exceeds the truth's noise and a bootstrap over tiles."
+    )
     for name in ("hard_edges", "hairball", "hairball_unlit", "flowers"):
         if name not in runs:
             continue
@@ -583,7 +708,9 @@ def scenes_page(runs: dict[str, Run]) -> Page:
         if name != "hard_edges":
             page.table(*_ranking(runs[name]))
             continue
-        page.say("All shots of the scene together; other patterns and jitters are other shots with the same truth.")
+        page.say(
+            "All shots of the scene together; other patterns and jitters are other shots with the same truth."
+        )
         rows = []
         for shot, run in runs.items():
             if shot.split(".")[0] == name:

@@ -168,7 +168,10 @@ def test_premultiplied() -> None:
         assert seen.sum() > 500
         row, column = np.nonzero(seen)
         depth = moved[seen].astype(np.float64)
-        offset_x, offset_y = x * projection.focal / 32.0 / depth, y * projection.focal / 18.0 / depth
+        offset_x, offset_y = (
+            x * projection.focal / 32.0 / depth,
+            y * projection.focal / 18.0 / depth,
+        )
         there = projection.unproject(column + 0.5 + offset_x, row + 0.5 + offset_y, depth)
         here = projection.unproject(column + 0.5, row + 0.5, depth) + movement
         assert np.allclose(there, here, atol=1e-5)
@@ -263,7 +266,10 @@ def test_sequences() -> None:
         ],
         "ign": [
             tuple(
-                (52.9829189 * ((0.06711056 * (1 + 5.588238 * n) + 0.00583715 * (y + 5.588238 * n)) % 1))
+                (
+                    52.9829189
+                    * ((0.06711056 * (1 + 5.588238 * n) + 0.00583715 * (y + 5.588238 * n)) % 1)
+                )
                 % 1
                 - 0.5
                 for y in (1, 2)
@@ -275,8 +281,12 @@ def test_sequences() -> None:
         for index, pair in enumerate(points):
             assert np.allclose(jitter.jitter_at(name, index, 16), pair, atol=1e-12), (name, index)
     normal = np.array([jitter.jitter_at("gaussian", index, 4096) for index in range(4096)])
-    assert (np.abs(normal.mean(axis=0)) < 0.015).all() and np.allclose(normal.std(0), 0.25, atol=0.01)
-    for index in range(64):  # quarter points in turn plus the same normal numbers, kept within the pixel
+    assert (np.abs(normal.mean(axis=0)) < 0.015).all() and np.allclose(
+        normal.std(0), 0.25, atol=0.01
+    )
+    for index in range(
+        64
+    ):  # quarter points in turn plus the same normal numbers, kept within the pixel
         place = np.array(lists["quadrant"][index % 4]) + jitter.jitter_at("gaussian", index, 64)
         both = jitter.jitter_at("quadrantGaussian", index, 64)
         assert np.allclose(both, np.clip(place, -0.5, 0.5), atol=1e-12), index

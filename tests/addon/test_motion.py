@@ -264,7 +264,9 @@ def check_instances(scene, label: str, name: str) -> dict:
     return shot
 
 
-def grains(scene: bpy.types.Scene, count: int, first: int, last: int, size: float) -> bpy.types.Object:
+def grains(
+    scene: bpy.types.Scene, count: int, first: int, last: int, size: float
+) -> bpy.types.Object:
     """An upright emitter of cubes that live for ever and fall not, born from frame ``first`` to ``last``."""
     source = t.add_object(scene, "Grain", t.cube_mesh("Grain", 1.0), (0, -40, 0))
     mesh = bpy.data.meshes.new("Emitter")
@@ -438,7 +440,12 @@ def test_jumps_of_the_camera() -> None:
         scene.objects["Car"].location = (0, 0, -6)
         t.key(camera, "location", {1: (0, -8, 1), 11: (300, -8, 1)})
 
-    assert resets(follow) == [True, False, False, False], "what it follows stands still in the picture"
+    assert resets(follow) == [
+        True,
+        False,
+        False,
+        False,
+    ], "what it follows stands still in the picture"
 
 
 def test_new_instances_are_invalid() -> None:

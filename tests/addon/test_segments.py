@@ -85,7 +85,9 @@ def test_kinds_of_edges() -> None:
 
     scene = t.new_scene(64, 36)
     t.add_camera(scene, (0, -8, 0), (0, 0, 0))
-    split = [(x, 0, z) for x in (-1, 0, 0, 1) for z in (-1, 1)]  # as importers leave seams of textures
+    split = [
+        (x, 0, z) for x in (-1, 0, 0, 1) for z in (-1, 1)
+    ]  # as importers leave seams of textures
     t.add_object(scene, "Wall", mesh_of(split, [(0, 2, 3, 1), (4, 6, 7, 5)]))
     assert len(exported()[0]) == 6, "vertices at one place are one"
 
@@ -97,9 +99,7 @@ def test_kinds_of_edges() -> None:
             (math.cos(k * math.tau / sides), math.sin(k * math.tau / sides)) for k in range(sides)
         ]
         points = [(x, y, z) for z in (-1.5, 1.5) for x, y in ring]
-        faces = [
-            (k, (k + 1) % sides, sides + (k + 1) % sides, sides + k) for k in range(sides)
-        ]
+        faces = [(k, (k + 1) % sides, sides + (k + 1) % sides, sides + k) for k in range(sides)]
         mesh = mesh_of(points, faces)  # open at both ends
         mesh.polygons.foreach_set("use_smooth", [smooth] * sides)
         if auto_smooth:
@@ -144,6 +144,7 @@ def test_clipping() -> None:
 
 def test_form_and_order() -> None:
     """4096 entries a line, the rest zeros, beside parts of the picture's size; far to near; the same bytes each time."""
+
     def make():
         scene = t.new_scene(32, 18)
         t.add_camera(scene, (0, -8, 0), (0, 0, 0))
@@ -244,7 +245,9 @@ def gpaa(color: np.ndarray, depth: np.ndarray, segments: np.ndarray) -> np.ndarr
             j = int(np.floor(across))
             x, y = (k, j) if major == 0 else (j, k)
             s = across - (j + 0.5)
-            nx, ny = (x, y + (1 if s >= 0 else -1)) if major == 0 else (x + (1 if s >= 0 else -1), y)
+            nx, ny = (
+                (x, y + (1 if s >= 0 else -1)) if major == 0 else (x + (1 if s >= 0 else -1), y)
+            )
             if not (0 <= x < width and 0 <= y < height and 0 <= nx < width and 0 <= ny < height):
                 continue
             if z > min(depth[y, x], depth[ny, nx]) * 1.01:
@@ -272,7 +275,9 @@ def test_gpaa_comes_closer_to_the_truth() -> None:
     depth = t.read_part(path, "depth")["Z"]
     segments = t.stacked(t.read_part(path, "segments"), NAMES).reshape(-1, 6).astype(np.float64)
     segments = segments[segments[:, 2] > 0]
-    halves = [t.stacked(t.read_part(os.path.join(out, "truth/000001.exr"), h), "R G B") for h in "ab"]
+    halves = [
+        t.stacked(t.read_part(os.path.join(out, "truth/000001.exr"), h), "R G B") for h in "ab"
+    ]
     truth = (halves[0].astype(np.float64) + halves[1]) / 2
 
     def error(picture: np.ndarray) -> float:

@@ -129,7 +129,9 @@ def test_displacement_and_cutouts_reach_the_subsamples() -> None:
             tree.links.new(checker.outputs["Fac"], move.inputs["Height"])
             tree.links.new(move.outputs[0], output.inputs["Displacement"])
         if way == "cut out":
-            clear, mix = tree.nodes.new("ShaderNodeBsdfTransparent"), tree.nodes.new("ShaderNodeMixShader")
+            clear, mix = tree.nodes.new("ShaderNodeBsdfTransparent"), tree.nodes.new(
+                "ShaderNodeMixShader"
+            )
             tree.links.new(checker.outputs["Fac"], mix.inputs[0])
             tree.links.new(clear.outputs[0], mix.inputs[1])
             tree.links.new(output.inputs["Surface"].links[0].from_socket, mix.inputs[2])
@@ -193,6 +195,7 @@ def test_costs_of_every_pass() -> None:
 
 def test_light_as_it_is() -> None:
     """Without noise-free light colour and truth show the scene's own light: soft sun, world, bounces."""
+
     def make():
         scene = t.new_scene(24, 16)
         t.add_camera(scene, (0, -8, 5), (0, 0, 0.5), 60)

@@ -170,7 +170,10 @@ def test_mask() -> None:
 
     scene = scene_with_edges()
     projection = t.Projection(scene.camera, 48, 32)
-    pixels, surface_mask._BAND_PIXELS = surface_mask._BAND_PIXELS, 5 * 48  # six bands and a smaller one
+    pixels, surface_mask._BAND_PIXELS = (
+        surface_mask._BAND_PIXELS,
+        5 * 48,
+    )  # six bands and a smaller one
     try:
         shot, samples, path = exported(
             "--passes", "subsamples,depth,normal,object", "--subsamples", "d3d8"
@@ -310,7 +313,9 @@ def test_passes_with_and_without_a_copy() -> None:
 
     path = os.path.join(t.temporary_folder(), "layers.exr")
     pixels = np.random.default_rng(2).normal(size=(19, 7, 9)).astype(np.float32)
-    channels = [f"L.Combined.{c}" for c in "RGBA"] + [f"L.Vector.s01.{c}" for c in "XYZW"] + ["L.Depth.Z"]
+    channels = (
+        [f"L.Combined.{c}" for c in "RGBA"] + [f"L.Vector.s01.{c}" for c in "XYZW"] + ["L.Depth.Z"]
+    )
     for kind in ("float", "half"):
         for compression in exr.COMPRESSIONS:
             part = exr.Part("", tuple(channels), (kind,) * 9, pixels, compression)
@@ -326,7 +331,10 @@ def test_passes_with_and_without_a_copy() -> None:
                 assert found.dtype == np.float32 and np.array_equal(found, right), (name, kind)
                 plane = layers.planes[name, view][0]
                 in_order = name != "Vector"  # W comes before X in a file
-                assert np.shares_memory(found, plane) == (kind == "float" and in_order), (name, kind)
+                assert np.shares_memory(found, plane) == (kind == "float" and in_order), (
+                    name,
+                    kind,
+                )
 
 
 if __name__ == "__main__":

@@ -25,10 +25,33 @@ class BadInput(ProgramTest):
     def setUp(self) -> None:
         super().setUp()
         self.shot = self.folder / "shot"
-        self.aaresolve("synth", "moving", "-o", self.shot, "--resolution", "48", "32", "--frames", "3", "--for", "noaa,uncharted")
+        self.aaresolve(
+            "synth",
+            "moving",
+            "-o",
+            self.shot,
+            "--resolution",
+            "48",
+            "32",
+            "--frames",
+            "3",
+            "--for",
+            "noaa,uncharted",
+        )
 
     def run_refused(self, code: int, *says: str, method: str = "noaa", **options) -> str:
-        return self.refused(code, "run", self.shot, "-m", method, "-o", self.folder / "out", "-q", says=says, **options)
+        return self.refused(
+            code,
+            "run",
+            self.shot,
+            "-m",
+            method,
+            "-o",
+            self.folder / "out",
+            "-q",
+            says=says,
+            **options,
+        )
 
     def frame(self, number: int) -> Path:
         return self.shot / "frames" / f"{number:06d}.exr"
@@ -62,8 +85,30 @@ class BadInput(ProgramTest):
 
     def test_missing_pass_names_pass_and_method(self) -> None:
         shot = self.folder / "colour_only"
-        self.aaresolve("synth", "moving", "-o", shot, "--resolution", "48", "32", "--frames", "2", "--for", "noaa")
-        self.refused(3, "run", shot, "-m", "uncharted", "-o", self.folder / "o", "-q", says=("uncharted", "depth"))
+        self.aaresolve(
+            "synth",
+            "moving",
+            "-o",
+            shot,
+            "--resolution",
+            "48",
+            "32",
+            "--frames",
+            "2",
+            "--for",
+            "noaa",
+        )
+        self.refused(
+            3,
+            "run",
+            shot,
+            "-m",
+            "uncharted",
+            "-o",
+            self.folder / "o",
+            "-q",
+            says=("uncharted", "depth"),
+        )
 
     def test_manifest_with_wrong_type(self) -> None:
         self.edit_manifest(lambda m: m["frames"][1].update(jitter="none"))
@@ -84,10 +129,37 @@ class BadInput(ProgramTest):
 
     def test_nan_is_counted_or_refused(self) -> None:
         shot = self.folder / "nan"
-        self.aaresolve("synth", "moving", "-o", shot, "--resolution", "48", "32", "--frames", "2", "--for", "noaa", "--inject-nan", "10", "7")
+        self.aaresolve(
+            "synth",
+            "moving",
+            "-o",
+            shot,
+            "--resolution",
+            "48",
+            "32",
+            "--frames",
+            "2",
+            "--for",
+            "noaa",
+            "--inject-nan",
+            "10",
+            "7",
+        )
         done = self.aaresolve("run", shot, "-m", "noaa", "-o", self.folder / "o", "-q")
         self.assertIn("colourNan", done.stdout)
-        self.refused(3, "run", shot, "-m", "noaa", "-o", self.folder / "o", "-q", "--input", "strict", says=("color", "10", "7"))
+        self.refused(
+            3,
+            "run",
+            shot,
+            "-m",
+            "noaa",
+            "-o",
+            self.folder / "o",
+            "-q",
+            "--input",
+            "strict",
+            says=("color", "10", "7"),
+        )
 
     def test_output_folder_not_writable(self) -> None:
         if os.geteuid() == 0:  # root may write anywhere: a file in the way is the same refusal
@@ -145,9 +217,29 @@ class BadInput(ProgramTest):
     def test_usage(self) -> None:
         self.refused(2, "run", self.shot, says=("--method",))
         self.refused(2, "nonsense", says=("nonsense",))
-        self.refused(2, "filter", "uncharted", "a.png", "b.png", says=("needs more than one image",))
-        self.refused(3, "filter", "noaa", self.folder / "none.png", self.folder / "b.png", says=("none.png", "no such file"))
-        self.refused(3, "run", self.shot, "-m", "noaa", "-o", self.folder / "o", "--frames", "99", says=("99",))
+        self.refused(
+            2, "filter", "uncharted", "a.png", "b.png", says=("needs more than one image",)
+        )
+        self.refused(
+            3,
+            "filter",
+            "noaa",
+            self.folder / "none.png",
+            self.folder / "b.png",
+            says=("none.png", "no such file"),
+        )
+        self.refused(
+            3,
+            "run",
+            self.shot,
+            "-m",
+            "noaa",
+            "-o",
+            self.folder / "o",
+            "--frames",
+            "99",
+            says=("99",),
+        )
 
 
 main()

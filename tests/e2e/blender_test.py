@@ -45,10 +45,20 @@ def write_png(path: Path, size: int, pixel) -> None:
     rows = b"".join(b"\0" + b"".join(bytes(pixel(x, y)) for x in range(size)) for y in range(size))
 
     def chunk(kind: bytes, content: bytes) -> bytes:
-        return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
+        return (
+            struct.pack(">I", len(content))
+            + kind
+            + content
+            + struct.pack(">I", zlib.crc32(kind + content))
+        )
 
     header = struct.pack(">IIBBBBB", size, size, 8, 6, 0, 0, 0)
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+    path.write_bytes(
+        b"\x89PNG\r\n\x1a\n"
+        + chunk(b"IHDR", header)
+        + chunk(b"IDAT", zlib.compress(rows))
+        + chunk(b"IEND", b"")
+    )
 
 
 class FromBlender(ProgramTest):
@@ -59,20 +69,48 @@ class FromBlender(ProgramTest):
     def export(self, blend: Path, shot: Path, *options: object) -> None:
         before = hashlib.sha256(blend.read_bytes()).hexdigest()
         self.blender(
-            blend, "--python-exit-code", 9, "-P", ROOT / "blender_addon/aa_resolve/headless.py", "--", "--out", shot, *options
+            blend,
+            "--python-exit-code",
+            9,
+            "-P",
+            ROOT / "blender_addon/aa_resolve/headless.py",
+            "--",
+            "--out",
+            shot,
+            *options,
         )
-        self.assertEqual(before, hashlib.sha256(blend.read_bytes()).hexdigest(), "the user's file was changed")
+        self.assertEqual(
+            before, hashlib.sha256(blend.read_bytes()).hexdigest(), "the user's file was changed"
+        )
 
     def test_foreign_scene(self) -> None:
         """A model of another program, with textures and cut-outs: every pass of it passes every check."""
         (self.folder / "model.obj").write_text(OBJ)
         (self.folder / "model.mtl").write_text(MTL)
-        write_png(self.folder / "bricks.png", 16, lambda x, y: (200, 90 + 60 * ((x // 4 + y // 2) % 2), 60, 255))
-        leaf = lambda x, y: (40, 140, 60, 255 if (x - 16) ** 2 + (y - 16) ** 2 < 150 else 0)  # noqa: E731
+        write_png(
+            self.folder / "bricks.png",
+            16,
+            lambda x, y: (200, 90 + 60 * ((x // 4 + y // 2) % 2), 60, 255),
+        )
+        leaf = lambda x, y: (
+            40,
+            140,
+            60,
+            255 if (x - 16) ** 2 + (y - 16) ** 2 < 150 else 0,
+        )  # noqa: E731
         write_png(self.folder / "leaves.png", 32, leaf)
         blend, shot = self.folder / "scene.blend", self.folder / "shot"
         script = Path(__file__).parent / "foreign_scene.py"
-        self.blender("--factory-startup", "--python-exit-code", 9, "-P", script, "--", self.folder / "model.obj", blend)
+        self.blender(
+            "--factory-startup",
+            "--python-exit-code",
+            9,
+            "-P",
+            script,
+            "--",
+            self.folder / "model.obj",
+            blend,
+        )
         self.export(
             blend, shot, "--frames", "1-3", "--for", "uncharted,rsaa", "--passes", ALL_PASSES, "--resolution", 160, 90,
             "--truth-samples", 16,
@@ -81,15 +119,39 @@ class FromBlender(ProgramTest):
         self.assertEqual(sorted(manifest["objects"].values()), ["fence", "ground", "house"])
         self.assertFalse(manifest["static"])
         self.aaresolve("check", shot)
-        self.aaresolve("run", shot, "-m", "noaa", "-m", "uncharted", "-m", "rsaa", "-o", self.folder / "out", "-q")
+        self.aaresolve(
+            "run",
+            shot,
+            "-m",
+            "noaa",
+            "-m",
+            "uncharted",
+            "-m",
+            "rsaa",
+            "-o",
+            self.folder / "out",
+            "-q",
+        )
 
     def test_scenes_pass_the_check(self) -> None:
         """Fibres, cut-outs, wires with a skeleton: every scene of scenes/ in small, with every pass it can have."""
-        for name, variants in (("hairball", ("--rotating", "--fibres", 200)), ("flowers", ("--sway",)), ("wires", ())):
+        for name, variants in (
+            ("hairball", ("--rotating", "--fibres", 200)),
+            ("flowers", ("--sway",)),
+            ("wires", ()),
+        ):
             with self.subTest(name):
                 blend, shot = self.folder / f"{name}.blend", self.folder / name
                 self.blender(
-                    "--factory-startup", "--python-exit-code", 9, "-P", ROOT / f"scenes/{name}.py", "--", "--out", blend, *variants
+                    "--factory-startup",
+                    "--python-exit-code",
+                    9,
+                    "-P",
+                    ROOT / f"scenes/{name}.py",
+                    "--",
+                    "--out",
+                    blend,
+                    *variants,
                 )
                 self.export(
                     blend, shot, "--frames", "1-2", "--for", "uncharted", "--passes", ALL_PASSES, "--resolution", 96, 54,
@@ -100,9 +162,19 @@ class FromBlender(ProgramTest):
     def test_export_and_compare(self) -> None:
         """The panel's button: export, run the methods, contact sheet in the image editor's place, report."""
         blend, shot = self.folder / "scene.blend", self.folder / "shot"
-        self.blender("--factory-startup", "--python-exit-code", 9, "-P", ROOT / "scenes/moving_sphere.py", "--", "--out", blend)
+        self.blender(
+            "--factory-startup",
+            "--python-exit-code",
+            9,
+            "-P",
+            ROOT / "scenes/moving_sphere.py",
+            "--",
+            "--out",
+            blend,
+        )
         script = self.folder / "compare.py"
-        script.write_text(f"""
+        script.write_text(
+            f"""
 import sys, bpy
 sys.path.insert(0, {str(ROOT / "blender_addon")!r})
 import aa_resolve
@@ -119,14 +191,26 @@ sheet = [image for image in bpy.data.images if image.name.startswith("sheet")]
 assert sheet and sheet[0].size[0] > 96, list(bpy.data.images)
 assert bpy.ops.aa_resolve.open_report.poll()
 aa_resolve.unregister()
-""")
+"""
+        )
         self.blender(blend, "--python-exit-code", 9, "-P", script)
         results = json.loads((self.folder / "shot_results/results.json").read_text())
-        self.assertEqual([m["text"] for m in results["methods"]], ["noaa", "fxaa311", "taaSimplest"])
+        self.assertEqual(
+            [m["text"] for m in results["methods"]], ["noaa", "fxaa311", "taaSimplest"]
+        )
 
     def test_hard_edges(self) -> None:
         blend, shot, out = self.folder / "scene.blend", self.folder / "shot", self.folder / "out"
-        self.blender("--factory-startup", "--python-exit-code", 9, "-P", ROOT / "scenes/hard_edges.py", "--", "--out", blend)
+        self.blender(
+            "--factory-startup",
+            "--python-exit-code",
+            9,
+            "-P",
+            ROOT / "scenes/hard_edges.py",
+            "--",
+            "--out",
+            blend,
+        )
         before = hashlib.sha256(blend.read_bytes()).hexdigest()
         methods = ["noaa", "fxaa311", "uncharted", "unchartedNorm", "accum"]
         self.blender(
@@ -134,7 +218,9 @@ aa_resolve.unregister()
             "--out", shot, "--for", ",".join(methods), "--passes", "normal,object", "--resolution", 240, 136,
             "--frames", "1-16", "--truth-samples", 16,
         )  # fmt: skip
-        self.assertEqual(before, hashlib.sha256(blend.read_bytes()).hexdigest(), "the user's file was changed")
+        self.assertEqual(
+            before, hashlib.sha256(blend.read_bytes()).hexdigest(), "the user's file was changed"
+        )
         self.aaresolve("check", shot)
         self.aaresolve("run", shot, *[word for m in methods for word in ("-m", m)], "-o", out, "-q")
         results = json.loads((out / "results.json").read_text())

@@ -65,7 +65,9 @@ def parts_of(path: Path) -> dict[str, bytes]:
             offset += 4 if version & MULTI_PART else 0
             y, size = struct.unpack_from("<ii", data, offset)
             lines = min(step, bottom + 1 - y)
-            rows[y] = _decoded(data[offset + 8 : offset + 8 + size], lines * (right + 1 - left) * pixel_bytes)
+            rows[y] = _decoded(
+                data[offset + 8 : offset + 8 + size], lines * (right + 1 - left) * pixel_bytes
+            )
         at += 8 * ((bottom - top) // step + 1)
         name = header["name"].decode() if "name" in header else ""
         parts[name] = b"".join(rows[y] for y in sorted(rows))

@@ -21,7 +21,9 @@ def parts(path: str) -> dict[str, np.ndarray]:
     while file.seek_subimage(index, 0):
         spec = file.spec()
         kind = "uint32" if spec.format == oiio.TypeDesc("uint") else "float"
-        found[spec.getattribute("oiio:subimagename")] = file.read_image(index, 0, 0, spec.nchannels, kind)
+        found[spec.getattribute("oiio:subimagename")] = file.read_image(
+            index, 0, 0, spec.nchannels, kind
+        )
         index += 1
     return found
 

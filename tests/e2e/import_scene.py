@@ -56,13 +56,27 @@ for frame in range(0, 6):
     cube.keyframe_insert("location", frame=frame)
 scene.frame_start, scene.frame_end = 1, 3
 scene.render.engine = "CYCLES"
-scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 96, 54, 100
+scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = (
+    96,
+    54,
+    100,
+)
 scene.cycles.use_denoising = False
 scene.cycles.use_adaptive_sampling = False
 scene.cycles.light_sampling_threshold = 0
 scene.cycles.max_bounces = 0
 layer = bpy.context.view_layer
-for switch in ("z", "normal", "vector", "object_index", "diffuse_color", "glossy_color", "transmission_color", "emit", "environment"):
+for switch in (
+    "z",
+    "normal",
+    "vector",
+    "object_index",
+    "diffuse_color",
+    "glossy_color",
+    "transmission_color",
+    "emit",
+    "environment",
+):
     setattr(layer, f"use_pass_{switch}", True)
 layer.use_pass_cryptomatte_object = True
 layer.cycles.denoising_store_passes = True

@@ -15,7 +15,9 @@ class Import(ProgramTest):
         return done.stdout
 
     def test_equals_the_export(self) -> None:
-        blend, native, exported, imported = (self.folder / n for n in ("scene.blend", "native", "exported", "imported"))
+        blend, native, exported, imported = (
+            self.folder / n for n in ("scene.blend", "native", "exported", "imported")
+        )
         here = Path(__file__).parent
         headless = ("--factory-startup", "--python-exit-code", 9, "-P")
         self.blender(*headless, here / "import_scene.py", "--", blend, native)
@@ -26,8 +28,14 @@ class Import(ProgramTest):
         )  # fmt: skip
 
         # A plain import: everything but what only the matrices tell.
-        plain = json.loads(self.aaresolve("import", native / "frames", "-o", self.folder / "plain", "-q", "--json").stdout)
-        self.assertEqual(plain["passes"], ["color", "albedo", "depth", "normal", "object", "motion"])
+        plain = json.loads(
+            self.aaresolve(
+                "import", native / "frames", "-o", self.folder / "plain", "-q", "--json"
+            ).stdout
+        )
+        self.assertEqual(
+            plain["passes"], ["color", "albedo", "depth", "normal", "object", "motion"]
+        )
         self.assertEqual(plain["warnings"], [])
         self.assertFalse(plain["static"])
         self.aaresolve("check", self.folder / "plain", "-q")
@@ -48,7 +56,9 @@ class Import(ProgramTest):
         said = self.blender(*headless, here / "import_compare.py", "--", exported, imported)
         apart = json.loads([line for line in said.splitlines() if line.startswith("{")][-1])
         self.assertGreater(apart["fastest"], 1, "nothing moved, so nothing was compared")
-        self.assertGreater(apart["background"], 0.3, "the sky did not move, so its motion was not compared")
+        self.assertGreater(
+            apart["background"], 0.3, "the sky did not move, so its motion was not compared"
+        )
         self.assertLess(apart["motion"], 1e-3)
         self.assertLess(apart["depth"], 1e-5)
         self.assertLess(apart["normal"], 1e-4)
@@ -62,7 +72,9 @@ class Import(ProgramTest):
 
         # And it can be used.
         out = self.folder / "out"
-        self.aaresolve("run", imported, "-m", "noaa", "-m", "fxaa311", "-m", "unchartedNorm", "-o", out, "-q")
+        self.aaresolve(
+            "run", imported, "-m", "noaa", "-m", "fxaa311", "-m", "unchartedNorm", "-o", out, "-q"
+        )
         results = json.loads((out / "results.json").read_text())
         self.assertTrue(all(m["pooled"]["psnr"] > 10 for m in results["methods"]))
 
@@ -71,14 +83,25 @@ class Import(ProgramTest):
             "import", native / "frames", "-o", imported, "--camera", exported / "shot.json",
             "--truth", native / "a", native / "b", "-q", "--json").stdout)  # fmt: skip
         self.assertEqual((again["imported"], again["kept"]), (0, 3))
-        self.aaresolve("import", native / "frames", "-o", self.folder / "crypto", "--ids", "cryptomatte", "-q")
+        self.aaresolve(
+            "import", native / "frames", "-o", self.folder / "crypto", "--ids", "cryptomatte", "-q"
+        )
         names = json.loads((self.folder / "crypto/shot.json").read_text())["objects"].values()
         self.assertEqual(sorted(names), ["Cube", "Plane", "Sphere"])
         self.aaresolve("check", self.folder / "crypto", "-q")
 
         # What is not ours stays as it is.
         self.refused(2, "import", native / "frames", "-o", exported, says=("holds no import",))
-        self.refused(2, "import", native / "frames", "-o", imported, "--view-layer", "Nope", says=("'ViewLayer'", "--view-layer"))
+        self.refused(
+            2,
+            "import",
+            native / "frames",
+            "-o",
+            imported,
+            "--view-layer",
+            "Nope",
+            says=("'ViewLayer'", "--view-layer"),
+        )
         self.refused(3, "import", self.folder, "-o", self.folder / "none", says=("holds no EXR",))
 
 

@@ -12,20 +12,37 @@ from program import ROOT, ProgramTest, main
 class Masks(ProgramTest):
     def blender(self, *arguments: object) -> None:
         # Blender's Python finds its modules by the python3 of PATH: another one of the same version would mislead it.
-        path = ":".join(p for p in os.environ["PATH"].split(":") if not os.path.exists(os.path.join(p, "python3")) or p == "/usr/bin")
+        path = ":".join(
+            p
+            for p in os.environ["PATH"].split(":")
+            if not os.path.exists(os.path.join(p, "python3")) or p == "/usr/bin"
+        )
         command = ["blender", "-b", *map(str, arguments)]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=600, env={**os.environ, "PATH": path})
+        done = subprocess.run(
+            command, capture_output=True, text=True, timeout=600, env={**os.environ, "PATH": path}
+        )
         self.assertEqual(done.returncode, 0, done.stdout[-2000:] + done.stderr[-2000:])
 
     def pictures(self, shot, method: str) -> list[bytes]:
         out = self.folder / re.sub(r"\W", "_", f"{shot.name}_{method}")
-        self.aaresolve("run", shot, "-m", method, "-o", out, "-q", "--write", "exr", "--write-frames", "all")
+        self.aaresolve(
+            "run", shot, "-m", method, "-o", out, "-q", "--write", "exr", "--write-frames", "all"
+        )
         return [p.read_bytes() for p in sorted(out.rglob("*.exr")) if p.parent != out]
 
     def test_computed_masks_equal_the_pass(self) -> None:
         """Wires, railings and a skeleton at 64 x 36: most edge pixels hold several surfaces."""
         blend = self.folder / "scene.blend"
-        self.blender("--factory-startup", "--python-exit-code", 9, "-P", ROOT / "scenes/wires.py", "--", "--out", blend)
+        self.blender(
+            "--factory-startup",
+            "--python-exit-code",
+            9,
+            "-P",
+            ROOT / "scenes/wires.py",
+            "--",
+            "--out",
+            blend,
+        )
         for pattern in ("d3d4", "d3d8"):
             shot = self.folder / pattern
             self.blender(
@@ -37,7 +54,11 @@ class Masks(ProgramTest):
             for tuning in ("off", "on"):
                 computed = self.pictures(shot, f"rsaa:mask=geometry,tuning={tuning}")
                 self.assertNotEqual(computed, plain)
-                self.assertEqual(computed, self.pictures(shot, f"rsaa:mask=pass,tuning={tuning}"), f"{pattern} {tuning}")
+                self.assertEqual(
+                    computed,
+                    self.pictures(shot, f"rsaa:mask=pass,tuning={tuning}"),
+                    f"{pattern} {tuning}",
+                )
 
 
 main()

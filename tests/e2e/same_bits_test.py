@@ -22,7 +22,11 @@ SIZE = ("--resolution", "96", "54", "--frames", "4")
 # Shot: scene and sub-sample pattern. Together they serve every method.
 SHOTS = {"half_planes": "d3d2", "moving": "d3d4", "two_planes": "d3d8"}
 # What a shot does not serve: csaa has 4 slots; a disc has no straight edges; accum is for static shots.
-NOT_SERVED = {"half_planes": {"csaa"}, "moving": {"accum", "gbaa", "gpaa", "d2e"}, "two_planes": set()}
+NOT_SERVED = {
+    "half_planes": {"csaa"},
+    "moving": {"accum", "gbaa", "gpaa", "d2e"},
+    "two_planes": set(),
+}
 # Variants that run code of their own; each method also runs with its defaults.
 VARIANTS = [
     "accum:space=encoded",
@@ -49,16 +53,30 @@ class SameBits(ProgramTest):
         bits = {}
         for scene, pattern in SHOTS.items():
             shot, out = self.folder / scene, self.folder / f"{scene}.out"
-            self.aaresolve("synth", scene, "-o", shot, "-q", *SIZE, "--subsamples", pattern, "--subsample-color")
+            self.aaresolve(
+                "synth",
+                scene,
+                "-o",
+                shot,
+                "-q",
+                *SIZE,
+                "--subsamples",
+                pattern,
+                "--subsample-color",
+            )
             served = [m["id"] for m in methods if pattern in m.get("patterns", [pattern])]
             served = [m for m in served if m not in NOT_SERVED[scene]]
             specs = served + [v for v in VARIANTS if v.split(":")[0] in served]
             chosen = [word for spec in specs for word in ("-m", spec)]
-            self.aaresolve("run", shot, *chosen, "-o", out, "-q", "--write", "exr", "--write-frames", "all")
+            self.aaresolve(
+                "run", shot, *chosen, "-o", out, "-q", "--write", "exr", "--write-frames", "all"
+            )
             here = bits[scene] = {}
             for folder in sorted(f for f in shot.iterdir() if f.is_dir()):
                 last = exr_pixels.parts_of(max(folder.glob("*.exr")))
-                here.update({f"input {folder.name}/{part}": digest(last[part]) for part in sorted(last)})
+                here.update(
+                    {f"input {folder.name}/{part}": digest(last[part]) for part in sorted(last)}
+                )
             for spec in specs:
                 frames = sorted((out / spec.replace(":", "_")).glob("*.exr"))
                 self.assertEqual(len(frames), 4, spec)
@@ -80,7 +98,9 @@ class SameBits(ProgramTest):
         ]
         advice = "if a method was meant to change, `make bits`; otherwise this build computes something else"
         if differ:
-            self.fail("other bits than in same_bits.json:\n  " + "\n  ".join(differ) + f"\n{advice}")
+            self.fail(
+                "other bits than in same_bits.json:\n  " + "\n  ".join(differ) + f"\n{advice}"
+            )
 
 
 UPDATE = "--update" in sys.argv

@@ -9,16 +9,26 @@ def _attribute(name: str, kind: str, value: bytes) -> bytes:
     return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
 
 
-def write(path, width: int, height: int, channels: dict[str, list[float]], texts: dict[str, str]) -> None:
+def write(
+    path, width: int, height: int, channels: dict[str, list[float]], texts: dict[str, str]
+) -> None:
     """Float channels of width * height values each."""
     names = sorted(channels)
     listed = b"".join(n.encode() + b"\0" + struct.pack("<iiii", 2, 0, 1, 1) for n in names) + b"\0"
     window = struct.pack("<iiii", 0, 0, width - 1, height - 1)
     header = struct.pack("<II", 20000630, 2)
-    header += _attribute("channels", "chlist", listed) + _attribute("compression", "compression", b"\0")
-    header += _attribute("dataWindow", "box2i", window) + _attribute("displayWindow", "box2i", window)
-    header += _attribute("lineOrder", "lineOrder", b"\0") + _attribute("pixelAspectRatio", "float", struct.pack("<f", 1))
-    header += _attribute("screenWindowCenter", "v2f", struct.pack("<ff", 0, 0)) + _attribute("screenWindowWidth", "float", struct.pack("<f", 1))
+    header += _attribute("channels", "chlist", listed) + _attribute(
+        "compression", "compression", b"\0"
+    )
+    header += _attribute("dataWindow", "box2i", window) + _attribute(
+        "displayWindow", "box2i", window
+    )
+    header += _attribute("lineOrder", "lineOrder", b"\0") + _attribute(
+        "pixelAspectRatio", "float", struct.pack("<f", 1)
+    )
+    header += _attribute("screenWindowCenter", "v2f", struct.pack("<ff", 0, 0)) + _attribute(
+        "screenWindowWidth", "float", struct.pack("<f", 1)
+    )
     for key, value in texts.items():
         header += _attribute(key, "string", value.encode())
     header += b"\0"
@@ -28,5 +38,7 @@ def write(path, width: int, height: int, channels: dict[str, list[float]], texts
     with open(path, "wb") as file:
         file.write(header + offsets)
         for y in range(height):
-            row = b"".join(struct.pack(f"<{width}f", *channels[n][y * width : (y + 1) * width]) for n in names)
+            row = b"".join(
+                struct.pack(f"<{width}f", *channels[n][y * width : (y + 1) * width]) for n in names
+            )
             file.write(struct.pack("<ii", y, row_bytes) + row)

@@ -25,7 +25,15 @@ import exr
 import mutate
 
 HEADER_BYTES = 700
-METHODS = ["noaa", "fxaa311:preset=12", "smaa1x:preset=HIGH", "uncharted", "taaSimplest", "rsaa:S=2", "unchartedNorm+fill=fxaa311"]
+METHODS = [
+    "noaa",
+    "fxaa311:preset=12",
+    "smaa1x:preset=HIGH",
+    "uncharted",
+    "taaSimplest",
+    "rsaa:S=2",
+    "unchartedNorm+fill=fxaa311",
+]
 # A run needs some memory even for small pictures; a damaged size must not take the machine's.
 MEMORY_BYTES = 4 << 30
 FILE_BYTES = 64 << 20
@@ -37,16 +45,60 @@ class Corpus:
     def __init__(self, program: Path, folder: Path) -> None:
         self.program, self.folder = program, folder
         size = ["--resolution", "24", "16", "--frames", "2", "-q"]
-        self._call("synth", "two_planes", "-o", folder / "shot", "--subsamples", "d3d2", "--subsample-color", *size)
-        self._call("run", folder / "shot", "-m", "noaa", "-m", "taaSimplest", "-o", folder / "run", "-q", "--write", "exr,png")
+        self._call(
+            "synth",
+            "two_planes",
+            "-o",
+            folder / "shot",
+            "--subsamples",
+            "d3d2",
+            "--subsample-color",
+            *size,
+        )
+        self._call(
+            "run",
+            folder / "shot",
+            "-m",
+            "noaa",
+            "-m",
+            "taaSimplest",
+            "-o",
+            folder / "run",
+            "-q",
+            "--write",
+            "exr,png",
+        )
         values = [0.01 * i for i in range(24 * 16)]
-        names = ["Combined.R", "Combined.G", "Combined.B", "Combined.A", "Depth.Z", "Vector.X", "Vector.Y", "Vector.Z", "Vector.W"]
-        names += ["Normal.X", "Normal.Y", "Normal.Z", "Denoising Albedo.R", "Denoising Albedo.G", "Denoising Albedo.B"]
+        names = [
+            "Combined.R",
+            "Combined.G",
+            "Combined.B",
+            "Combined.A",
+            "Depth.Z",
+            "Vector.X",
+            "Vector.Y",
+            "Vector.Z",
+            "Vector.W",
+        ]
+        names += [
+            "Normal.X",
+            "Normal.Y",
+            "Normal.Z",
+            "Denoising Albedo.R",
+            "Denoising Albedo.G",
+            "Denoising Albedo.B",
+        ]
         channels = {f"ViewLayer.{n}": values for n in names}
         channels["ViewLayer.IndexOB.X"] = [float(i % 3) for i in range(24 * 16)]
         (folder / "native").mkdir()
         for frame in (1, 2):
-            exr.write(folder / "native" / f"{frame:04d}.exr", 24, 16, channels, {"Frame": str(frame), "cycles.ViewLayer.samples": "1"})
+            exr.write(
+                folder / "native" / f"{frame:04d}.exr",
+                24,
+                16,
+                channels,
+                {"Frame": str(frame), "cycles.ViewLayer.samples": "1"},
+            )
         shutil.copy(folder / "shot/shot.json", folder / "notes.json")
 
     def _call(self, *arguments) -> None:
@@ -61,7 +113,17 @@ class Case:
         self.number, self.folder, self.corpus = number, folder, corpus
         self.allowed = {0, 2, 3}
         self.arguments: list[str] = []
-        kinds = [self.manifest, self.manifest, self.frame, self.frame, self.frame, self.truth, self.image, self.native, self.native]
+        kinds = [
+            self.manifest,
+            self.manifest,
+            self.frame,
+            self.frame,
+            self.frame,
+            self.truth,
+            self.image,
+            self.native,
+            self.native,
+        ]
         kinds += [self.notes, self.results, self.method, self.compare]
         kinds[number % len(kinds)]()
 
@@ -79,19 +141,40 @@ class Case:
             self.arguments = ["check", str(shot), "-q", "-j", "1"]
         else:
             chosen = self.rng.sample(METHODS, 2)
-            self.arguments = ["run", str(shot), "-m", chosen[0], "-m", chosen[1], "-o", str(self.folder / "out"), "-q", "-j", "1"]
+            self.arguments = [
+                "run",
+                str(shot),
+                "-m",
+                chosen[0],
+                "-m",
+                chosen[1],
+                "-o",
+                str(self.folder / "out"),
+                "-q",
+                "-j",
+                "1",
+            ]
             if self.rng.random() < 0.3:
                 self.arguments += ["--input", "strict"]
 
     def manifest(self) -> None:
         shot = self._copy("shot")
         path = shot / "shot.json"
-        path.write_text(mutate.mutate_json(self.rng, path.read_text()), encoding="utf-8", errors="surrogateescape")
+        path.write_text(
+            mutate.mutate_json(self.rng, path.read_text()),
+            encoding="utf-8",
+            errors="surrogateescape",
+        )
         self._read_shot(shot)
 
     def frame(self) -> None:
         shot = self._copy("shot")
-        self._damage(self.rng.choice(sorted((shot / "frames").iterdir()) + sorted((shot / "centre").iterdir())), 3000)
+        self._damage(
+            self.rng.choice(
+                sorted((shot / "frames").iterdir()) + sorted((shot / "centre").iterdir())
+            ),
+            3000,
+        )
         self._read_shot(shot)
 
     def truth(self) -> None:
@@ -118,29 +201,79 @@ class Case:
         self._damage(self._copy("native") / "0002.exr", 1600)
         if self.rng.random() < 0.5:
             self._damage(self.folder / "native" / "0001.exr", 1600)
-        self.arguments = ["import", str(self.folder / "native"), "-o", str(self.folder / "shot"), "-q", "-j", "1"]
+        self.arguments = [
+            "import",
+            str(self.folder / "native"),
+            "-o",
+            str(self.folder / "shot"),
+            "-q",
+            "-j",
+            "1",
+        ]
         if self.rng.random() < 0.3:
-            self.arguments += ["--truth", str(self.folder / "native"), str(self.corpus.folder / "native")]
+            self.arguments += [
+                "--truth",
+                str(self.folder / "native"),
+                str(self.corpus.folder / "native"),
+            ]
 
     def notes(self) -> None:
         path = self._copy("notes.json")
-        path.write_text(mutate.mutate_json(self.rng, path.read_text()), encoding="utf-8", errors="surrogateescape")
+        path.write_text(
+            mutate.mutate_json(self.rng, path.read_text()),
+            encoding="utf-8",
+            errors="surrogateescape",
+        )
         native = self.corpus.folder / "native"
-        self.arguments = ["import", str(native), "-o", str(self.folder / "shot"), "-q", "--jitter", str(path), "--camera", str(path)]
+        self.arguments = [
+            "import",
+            str(native),
+            "-o",
+            str(self.folder / "shot"),
+            "-q",
+            "--jitter",
+            str(path),
+            "--camera",
+            str(path),
+        ]
 
     def results(self) -> None:
         run = self._copy("run")
         path = run / "results.json"
-        path.write_text(mutate.mutate_json(self.rng, path.read_text()), encoding="utf-8", errors="surrogateescape")
+        path.write_text(
+            mutate.mutate_json(self.rng, path.read_text()),
+            encoding="utf-8",
+            errors="surrogateescape",
+        )
         command = self.rng.choice(["report", "sheet"])
-        self.arguments = [command, str(run), "-o", str(self.folder / f"out.{'html' if command == 'report' else 'png'}")]
+        self.arguments = [
+            command,
+            str(run),
+            "-o",
+            str(self.folder / f"out.{'html' if command == 'report' else 'png'}"),
+        ]
 
     def method(self) -> None:
-        self.arguments = ["plan", mutate.mutate_text(self.rng, self.rng.choice(METHODS)).replace("\0", "")]
+        self.arguments = [
+            "plan",
+            mutate.mutate_text(self.rng, self.rng.choice(METHODS)).replace("\0", ""),
+        ]
         if self.rng.random() < 0.4:
             varied = mutate.mutate_text(self.rng, "kmin=0.5,0.9")
             shot = str(self.corpus.folder / "shot")
-            self.arguments = ["sweep", shot, "-m", "uncharted", "--vary", varied, "-o", str(self.folder / "out"), "-q", "-j", "1"]
+            self.arguments = [
+                "sweep",
+                shot,
+                "-m",
+                "uncharted",
+                "--vary",
+                varied,
+                "-o",
+                str(self.folder / "out"),
+                "-q",
+                "-j",
+                "1",
+            ]
 
 
 def limit(memory: bool) -> None:
@@ -154,7 +287,11 @@ def fault(case: Case, program: Path, timeout: float, memory: bool) -> str:
     """What is wrong with the program's answer; empty when nothing is."""
     try:
         done = subprocess.run(
-            [str(program), *case.arguments], capture_output=True, timeout=timeout, preexec_fn=lambda: limit(memory), stdin=subprocess.DEVNULL
+            [str(program), *case.arguments],
+            capture_output=True,
+            timeout=timeout,
+            preexec_fn=lambda: limit(memory),
+            stdin=subprocess.DEVNULL,
         )
     except subprocess.TimeoutExpired:
         return f"no end within {timeout:.0f} s"
@@ -170,16 +307,24 @@ def fault(case: Case, program: Path, timeout: float, memory: bool) -> str:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("program", type=Path)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--runs", type=int, help="number of cases")
     parser.add_argument("--seconds", type=float, help="instead of --runs: until then")
     parser.add_argument("--case", type=int, help="this case only; its files stay")
-    parser.add_argument("--keep", type=Path, default=Path("build/fuzz"), help="where failing inputs go")
-    parser.add_argument("--timeout", type=float, default=60, help="seconds until a case counts as hanging")
+    parser.add_argument(
+        "--keep", type=Path, default=Path("build/fuzz"), help="where failing inputs go"
+    )
+    parser.add_argument(
+        "--timeout", type=float, default=60, help="seconds until a case counts as hanging"
+    )
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--no-memory-limit", action="store_true", help="for programs built with sanitisers")
+    parser.add_argument(
+        "--no-memory-limit", action="store_true", help="for programs built with sanitisers"
+    )
     o = parser.parse_args()
     program = o.program.resolve()
     numbers = iter([o.case]) if o.case is not None else iter(range(o.runs if o.runs else 10**9))
@@ -205,7 +350,9 @@ def main() -> int:
                 with lock:
                     count += 1
                     if wrong:
-                        failures.append(f"case {number} (seed {o.seed}): aaresolve {' '.join(case.arguments)}\n    {wrong}")
+                        failures.append(
+                            f"case {number} (seed {o.seed}): aaresolve {' '.join(case.arguments)}\n    {wrong}"
+                        )
                         print(failures[-1], flush=True)
                     if wrong or o.case is not None:
                         kept = o.keep / f"seed{o.seed}_case{number}"
@@ -218,7 +365,10 @@ def main() -> int:
             thread.start()
         for thread in threads:
             thread.join()
-    print(f"{count} cases, {len(failures)} failures (seed {o.seed})" + (f"; inputs in {o.keep}" if failures else ""))
+    print(
+        f"{count} cases, {len(failures)} failures (seed {o.seed})"
+        + (f"; inputs in {o.keep}" if failures else "")
+    )
     return 1 if failures else 0
 
 

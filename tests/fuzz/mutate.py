@@ -6,7 +6,20 @@ import json
 import random
 import struct
 
-_INTEGERS = [0, 1, 2, 255, 256, 0x7FFF, 0xFFFF, 0x10000, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF, 0x40000000]
+_INTEGERS = [
+    0,
+    1,
+    2,
+    255,
+    256,
+    0x7FFF,
+    0xFFFF,
+    0x10000,
+    0x7FFFFFFF,
+    0x80000000,
+    0xFFFFFFFF,
+    0x40000000,
+]
 _VALUES = [
     None, True, False, 0, 1, -1, 16384, 16385, 2**31 - 1, 2**31, -(2**31) - 1, 2**63, 2**64, 1e308, -1e308, 1e-320, 0.5, -0.5, 0.51,
     "", "x", "none", "../../etc/passwd", "/dev/zero", "frames", "a" * 5000, "\x00", "\ud800".encode("utf-8", "surrogatepass").decode("latin-1"),
@@ -47,7 +60,13 @@ def mutate_bytes(rng: random.Random, data: bytes, header: int = 0) -> bytes:
 
 def _places(node, path=()):
     yield path
-    items = node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ()
+    items = (
+        node.items()
+        if isinstance(node, dict)
+        else enumerate(node)
+        if isinstance(node, list)
+        else ()
+    )
     for key, value in items:
         yield from _places(value, (*path, key))
 
@@ -78,9 +97,23 @@ def mutate_json(rng: random.Random, text: str) -> str:
         elif kind == 1 and isinstance(parent, list):
             parent.insert(key, parent[key])
         elif kind == 2 and isinstance(parent, dict):
-            parent[rng.choice(["", "frame", "jitter", "id", key + "2", "x" * 300])] = parent.pop(key)
-        elif kind == 3 and isinstance(parent[key], (int, float)) and not isinstance(parent[key], bool):
-            parent[key] = rng.choice([-parent[key], parent[key] + 1, parent[key] * 1e6, float(parent[key]), parent[key] * 0.5])
+            parent[rng.choice(["", "frame", "jitter", "id", key + "2", "x" * 300])] = parent.pop(
+                key
+            )
+        elif (
+            kind == 3
+            and isinstance(parent[key], (int, float))
+            and not isinstance(parent[key], bool)
+        ):
+            parent[key] = rng.choice(
+                [
+                    -parent[key],
+                    parent[key] + 1,
+                    parent[key] * 1e6,
+                    float(parent[key]),
+                    parent[key] * 0.5,
+                ]
+            )
         else:
             parent[key] = rng.choice(_VALUES)
         if not isinstance(document, (dict, list)) or not document:
@@ -93,7 +126,25 @@ def mutate_json(rng: random.Random, text: str) -> str:
 
 def mutate_text(rng: random.Random, text: str) -> str:
     """A method as a hasty user would write it."""
-    tokens = [":", ",", "=", "+", "==", "nan", "inf", "-1", "1e999", "0x10", "", " ", "\u00e4", "taaSimplest", "sharpen", "fill", "9" * 40]
+    tokens = [
+        ":",
+        ",",
+        "=",
+        "+",
+        "==",
+        "nan",
+        "inf",
+        "-1",
+        "1e999",
+        "0x10",
+        "",
+        " ",
+        "\u00e4",
+        "taaSimplest",
+        "sharpen",
+        "fill",
+        "9" * 40,
+    ]
     for _ in range(rng.choice([1, 1, 2, 4])):
         at = rng.randrange(len(text) + 1)
         if rng.random() < 0.3:

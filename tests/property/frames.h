@@ -6,6 +6,7 @@
 
 #include "image/error.h"
 #include "methods/driver.h"
+#include "methods/methods_under_test.h"
 
 namespace aa::testing {
 
@@ -177,7 +178,7 @@ inline std::string condition(const MethodDescriptor& method, const ParamSpec& pa
 // Every method at its defaults, and once with every value of every choice and flag.
 inline std::vector<std::string> allSpecs() {
     std::vector<std::string> specs;
-    for (const auto& m : registry()) {
+    for (const auto& m : methodsUnderTest()) {
         specs.emplace_back(m.id);
         for (const auto& p : m.params)
             for (const auto& value : p.choices) {
@@ -185,7 +186,7 @@ inline std::vector<std::string> allSpecs() {
                 const std::string text =
                     std::string(m.id) + ":" + condition(m, p) + std::string(p.name) + "=" + std::string(value);
                 try {
-                    parseMethod(text);
+                    specUnderTest(text);
                     specs.push_back(text);
                 } catch (const UsageError&) {
                 }
@@ -195,13 +196,17 @@ inline std::vector<std::string> allSpecs() {
     return specs;
 }
 
+// "resolver/methods/spatial/x.cpp:40", for messages: the file to touch.
+inline std::string fileOf(const std::string& text) { return specUnderTest(text).method->writtenAt.text(); }
+
 // A method with the number of sub-samples that it accepts.
 struct Subject {
     RunningMethod running;
     int samples;
 };
-inline Subject makeSubject(const std::string& text, int w, int h) {
-    const MethodSpec spec = parseMethod(text);
+inline Subject makeSubject(const std::string& text, int w, int h,
+                           const std::vector<MethodDescriptor>& among = methodsUnderTest()) {
+    const MethodSpec spec = parseMethod(text, among);
     std::string why;
     for (int samples : {8, 4, 2, 16, kQuincunx}) try {
             return {RunningMethod(spec, {.width = w,

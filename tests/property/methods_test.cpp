@@ -3,7 +3,7 @@
 
 #include "frames.h"
 #include "methods/method.h"
-#include "methods/spec.h"
+#include "methods/methods_under_test.h"
 
 namespace aa::testing {
 namespace {
@@ -17,7 +17,7 @@ bool allFinite(const Rgb& image) {
                 if (!std::isfinite(p.at(x, y))) return false;
     return true;
 }
-const MethodDescriptor& method(const std::string& text) { return *parseMethod(text).method; }
+const MethodDescriptor& method(const std::string& text) { return *specUnderTest(text).method; }
 
 TEST_P(EveryMethod, ConstantStaysConstant) {
     // Codes lie beside the constant, and chance sets neighbours apart: a clip to a flat box leaves of that what it
@@ -31,7 +31,7 @@ TEST_P(EveryMethod, ConstantStaysConstant) {
                 s, renderFrame(constantScene({v, v * 0.5f, v * 0.25f}), 40, 24, n, halton(n), {0.3, -0.6}, s.samples));
             Rgb expected(40, 24);
             for (size_t c = 0; c < 3; c++) expected.c[c] = PlaneF(40, 24, v * (c == 0 ? 1.0f : c == 1 ? 0.5f : 0.25f));
-            if (parseMethod(GetParam()).outputSpace() == Space::encoded) {
+            if (specUnderTest(GetParam()).outputSpace() == Space::encoded) {
                 const Rgb linear = expected;
                 encode(linear, {}, {}, expected);
             }
@@ -51,12 +51,13 @@ TEST(Unjitter, ARestingRampIsShownWhereItIs) {
         return {glm::vec3(float(0.2 + 0.006 * x + 0.004 * y)), 5.0f, {0, 0, 1}, 1};
     };
     size_t count = 0;
-    for (const auto& m : registry()) {
+    for (const auto& m : methodsUnderTest()) {
         const auto has = [&](std::string_view name) {
             return std::any_of(m.params.begin(), m.params.end(), [&](const auto& p) { return p.name == name; });
         };
         if (!m.temporal) continue;
-        ASSERT_TRUE(has("unjitter") || has("unjitterColor") || m.id == "accum") << m.id;
+        ASSERT_TRUE(has("unjitter") || has("unjitterColor") || m.id == "accum")
+            << m.writtenAt.text() << ": temporal, but without temporal::unjitterParam() in .params";
         if (!has("unjitter")) continue;
         count++;
         std::string text = std::string(m.id) + ":unjitter=on";
@@ -162,7 +163,7 @@ TEST_P(EveryMethod, LanesAgreeWithDouble) {
 // conventions 12: a blend stays within what it blends; a checkerboard, noise, lone bright and dark pixels. Filters with
 // negative lobes and sharpening may leave it.
 TEST_P(EveryMethod, BlendsStayWithinTheirInput) {
-    const MethodSpec spec = parseMethod(GetParam());
+    const MethodSpec spec = specUnderTest(GetParam());
     if (spec.method->temporal) GTEST_SKIP() << "the torture set of the temporal methods bounds them";
     for (const char* overshooting : {"mitchell", "catmullRom", "cubic", "sinc", "lanczos"})
         if (GetParam().find(overshooting) != std::string::npos) GTEST_SKIP() << "negative lobes";

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "frames.h"
-#include "methods/spec.h"
+#include "methods/methods_under_test.h"
 
 namespace aa::testing {
 namespace {
@@ -11,10 +11,10 @@ namespace {
 std::vector<std::string> spatialSpecs() {
     std::vector<std::string> specs;
     for (const auto& text : allSpecs())
-        if (!parseMethod(text).method->temporal && parseMethod(text).method->id != "accum") specs.push_back(text);
+        if (!specUnderTest(text).method->temporal && specUnderTest(text).method->id != "accum") specs.push_back(text);
     return specs;
 }
-int reachOf(const std::string& text) { return parseMethod(text).method->reachPx; }
+int reachOf(const std::string& text) { return specUnderTest(text).method->reachPx; }
 std::string testName(const ::testing::TestParamInfo<std::string>& info) {
     std::string s = info.param;
     for (char& c : s)
@@ -66,7 +66,8 @@ class Reach : public ::testing::TestWithParam<std::string> {};
 TEST_P(Reach, NoPixelIsInfluencedFromFartherAway) {
     const int reach = reachOf(GetParam());
     if (reach <= 0) GTEST_SKIP() << "no limit stated";
-    EXPECT_LE(influencePx(GetParam(), reach + 20), reach);
+    EXPECT_LE(influencePx(GetParam(), reach + 20), reach)
+        << fileOf(GetParam()) << ": .reachPx is smaller than the distance from which a pixel is influenced";
 }
 
 // Shapes in the middle of a flat picture. Returns the largest distance from an edge (a pixel that differs from one of
@@ -108,7 +109,7 @@ int changePx(const std::string& text, int looked) {
         for (int x = size - 1; x >= 0; x--)
             for (const auto& [i, j] : {std::pair{1, 0}, {1, 1}, {0, 1}, {-1, 1}}) relax(x, y, i, j);
     Rgb expected;
-    if (parseMethod(text).outputSpace() == Space::encoded)
+    if (specUnderTest(text).outputSpace() == Space::encoded)
         encode(f.colorLinear, {}, {}, expected);
     else
         expected = f.colorLinear;
@@ -121,10 +122,11 @@ int changePx(const std::string& text, int looked) {
     return farthest;
 }
 TEST_P(Reach, NothingChangesFartherFromAnEdge) {
-    const bool mlaa = parseMethod(GetParam()).method->id == "mlaa";  // lines of any length, but only beside them
+    const bool mlaa = specUnderTest(GetParam()).method->id == "mlaa";  // lines of any length, but only beside them
     const int reach = mlaa ? 1 : reachOf(GetParam());
     if (reach <= 0) GTEST_SKIP() << "no reach stated";
-    EXPECT_LE(changePx(GetParam(), reach), reach);
+    EXPECT_LE(changePx(GetParam(), reach), reach)
+        << fileOf(GetParam()) << ": .reachPx is smaller than the distance from an edge at which pixels change";
 }
 INSTANTIATE_TEST_SUITE_P(Methods, Reach, ::testing::ValuesIn(spatialSpecs()), testName);
 

@@ -6,12 +6,13 @@
 namespace aa {
 namespace {
 
+constexpr Choice<DmsaaVector> kVectors[] = {
+    {"perS", DmsaaVector::perS}, {"perD", DmsaaVector::perD}, {"ideal", DmsaaVector::ideal}};
+
 class Dmsaa : public Method {
   public:
     explicit Dmsaa(const Params& p)
-        : vector_(DmsaaVector(p.choiceIndex("vecMode"))),
-          depthThreshold_(p.realf("depthThreshold")),
-          gain_(p.realf("gain")) {}
+        : vector_(p.chosen("vecMode", kVectors)), depthThreshold_(p.realf("depthThreshold")), gain_(p.realf("gain")) {}
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         const GeometryViews geometry(frame, {}, "dmsaa");
@@ -55,7 +56,7 @@ MethodDescriptor dmsaaDescriptor() {
         .summary = "Fetches the colour beside the pixel centre, toward the sub-samples whose depth differs.",
         .source = "[Pettineo 2010] as told in [Reshetov 2012, slide 16]",
         .passes = Pass::color | Pass::depth | Pass::subsamples,
-        .params = {choiceParam("vecMode", "perS", {"perS", "perD", "ideal"},
+        .params = {choiceParam("vecMode", "perS", kVectors,
                                "shift: sum of the differing offsets by S, by their number, or as long as their share",
                                "decisions 31"),
                    realParam("depthThreshold", "0.02", 0.0001, 10, "least depth difference, relative to the nearer",

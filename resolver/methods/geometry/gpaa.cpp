@@ -65,6 +65,7 @@ class Gpaa : public Method {
     }
     size_t stateBytes() const override { return shiftXPx_.bytes() + shiftYPx_.bytes() + rows_.bytes(); }
     std::vector<DebugLayer> debugLayers() const override {
+        if (!keepDebugLayers) return {};
         return {{"offsetXPx", {shiftXPx_}}, {"offsetYPx", {shiftYPx_}}};
     }
 

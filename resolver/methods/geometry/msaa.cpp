@@ -48,7 +48,7 @@ class MsaaMethod : public Method {
           order_(positionsPx.size()) {
         const auto position = [&](int k) { return positionsPx[size_t(slotsFirst_[size_t(k)])]; };
         if (p.choice("filter") != "box") {
-            ResolveShape shape{.filter = ResolveFilter(p.choiceIndex("filter")), .diameterPx = p.real("diameter")};
+            ResolveShape shape{.filter = chosenFilter(p), .diameterPx = p.real("diameter")};
             taps_ = resolveTaps(withOwnDiameter(shape), positionsPx, id);
             for (auto& tap : taps_)
                 tap.sample = int(std::find(slotsFirst_.begin(), slotsFirst_.end(), tap.sample) - slotsFirst_.begin());

@@ -19,7 +19,7 @@ struct Msaa {
                 const auto otherObject = idsDiffer<R>(g.objectId + o, g.sample[k].objectId + o);
                 if (!a.byGeometry) return otherObject;
                 return either(otherObject, negate(sameSurface(a.rule, centrePoint<R>(g, o), samplePoint<R>(g, k, o),
-                                                               toSample(g, columns<R>(x), y, k))));
+                                                              toSample(g, columns<R>(x), y, k))));
             });
     }
 

@@ -13,13 +13,17 @@ namespace {
 
 constexpr double kMaskPassFloor = 0.2;  // decisions 32; blender_addon/aa_resolve/subsamples.py
 
+constexpr Choice<Dissimilarity> kMeasures[] = {
+    {"sadp", Dissimilarity::sadp}, {"depth", Dissimilarity::depth}, {"normal", Dissimilarity::normal}};
+constexpr Choice<RsaaTraining> kTrainings[] = {{"all", RsaaTraining::all}, {"halfPlanes", RsaaTraining::halfPlanes}};
+
 struct Options {
     Dissimilarity measure;
     float floor;
     bool adaptive, tuning, tuneAdaptive, quadrant, ids, maskPass;
     RsaaTraining training;
     explicit Options(const Params& p)
-        : measure(Dissimilarity(p.choiceIndex("measure"))),
+        : measure(p.chosen("measure", kMeasures)),
           floor(p.realf(measure == Dissimilarity::sadp    ? "sadpFloor"
                         : measure == Dissimilarity::depth ? "depthFloor"
                                                           : "normalFloor")),
@@ -29,7 +33,7 @@ struct Options {
           quadrant(p.choice("neighbours") == "quadrant"),
           ids(p.flag("ids")),
           maskPass(p.choice("mask") == "pass" || (p.choice("mask") == "auto" && asTheMaskPass(p))),
-          training(RsaaTraining(p.choiceIndex("training"))) {}
+          training(p.chosen("training", kTrainings)) {}
     // Whether computing the masks would give the mask pass, which was made by the defaults.
     bool asTheMaskPass(const Params& p) const {
         return measure == Dissimilarity::sadp && p.real("sadpFloor") == kMaskPassFloor && adaptive && ids;
@@ -122,7 +126,7 @@ MethodDescriptor rsaaDescriptor() {
             "surfaces.",
         .source = "[Reshetov 2012]",
         .passes = Pass::color | Pass::subsamples,
-        .params = {choiceParam("measure", "sadp", {"sadp", "depth", "normal"}, "dissimilarity of two geometry samples",
+        .params = {choiceParam("measure", "sadp", kMeasures, "dissimilarity of two geometry samples",
                                "[Reshetov 2012, slides 24-27]"),
                    realParam("sadpFloor", "0.2", 0.001, 2, "below this SADP everything is one surface", "decisions 32",
                              "measure=sadp"),
@@ -146,8 +150,7 @@ MethodDescriptor rsaaDescriptor() {
                                "ours"),
                    flagParam("ids", true, "sub-samples on another object are different whatever their geometry",
                              "ours: the shot's mask pass does so"),
-                   choiceParam("training", "all", {"all", "halfPlanes"}, "what the offsets were learned from",
-                               "decisions 33")},
+                   choiceParam("training", "all", kTrainings, "what the offsets were learned from", "decisions 33")},
         .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
             requireSubSamples(shot.subSamplePositionsPx, "rsaa", size_t(kRsaaMaxSamples));
             return std::make_unique<RsaaMethod>(Options(p), shot.subSamplePositionsPx);

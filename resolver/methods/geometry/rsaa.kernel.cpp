@@ -169,7 +169,8 @@ struct Rsaa {
             const int qx = clampIndex(x + n.at[i][0], a.width), qy = clampIndex(y + n.at[i][1], a.height);
             if (g.objectId && g.objectId[long(qy) * a.stride + qx] != sampleObject) continue;
             const Outside to = outside(k, x, y, qx, qy);
-            if (!surfacesMayDiffer<measure>(to.neighbour, to.own, to.way, limit) || to.dissimilarity() < limit) return true;
+            if (!surfacesMayDiffer<measure>(to.neighbour, to.own, to.way, limit) || to.dissimilarity() < limit)
+                return true;
         }
         return false;
     }

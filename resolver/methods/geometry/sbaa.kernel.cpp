@@ -118,7 +118,7 @@ struct Sbaa {
         mark<R>(
             g, x0, y, marks, [&](int k, int x, long o) __attribute__((always_inline)) {
                 const auto apart = negate(sameSurface(a.merge, centrePoint<R>(g, o), samplePoint<R>(g, k, o),
-                                                       toSample(g, columns<R>(x), y, k)));
+                                                      toSample(g, columns<R>(x), y, k)));
                 return a.ids ? either(apart, idsDiffer<R>(g.objectId + o, g.sample[k].objectId + o)) : apart;
             });
     }

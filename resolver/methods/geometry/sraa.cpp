@@ -10,13 +10,15 @@ namespace {
 
 constexpr double kLog2E = 1.4426950408889634;
 
+constexpr Choice<SraaIds> kIds[] = {{"off", SraaIds::off}, {"depth", SraaIds::depth}, {"always", SraaIds::always}};
+
 class Sraa : public Method {
   public:
     explicit Sraa(const Params& p)
         : radius_(p.integer("radius")),
           max_(p.choice("metric") == "max"),
           plainDepth_(p.choice("distance") == "depth"),
-          ids_(SraaIds(p.choiceIndex("ids"))),
+          ids_(p.chosen("ids", kIds)),
           sigmaX_(p.real("sigmaX")),
           sigmaZ_(p.real("sigmaZ")),
           sigmaN_(p.real("sigmaN")),
@@ -76,8 +78,7 @@ MethodDescriptor sraaDescriptor() {
                    realParam("sigmaN", "0.25", 0.001, 10, "of 1 - cosine", "decisions 43", "metric=product"),
                    realParam("sharpness", "50", 0.1, 10000, "T of the max metric", "public ports; decisions 43",
                              "metric=max"),
-                   choiceParam("ids", "off", {"off", "depth", "always"},
-                               "other objects share nothing: those at another depth, or all",
+                   choiceParam("ids", "off", kIds, "other objects share nothing: those at another depth, or all",
                                "[Chajdas 2011]; depth and always are ours")},
         .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
             requireSubSamples(shot.subSamplePositionsPx, "sraa", 64);

@@ -99,11 +99,21 @@ std::vector<ResolveTap> resolveTaps(const ResolveShape& shape, const std::vector
     return taps;
 }
 
+constexpr Choice<ResolveFilter> kFilters[] = {{"box", ResolveFilter::box},
+                                              {"tent", ResolveFilter::tent},
+                                              {"gaussian", ResolveFilter::gaussian},
+                                              {"smoothstep", ResolveFilter::smoothstep},
+                                              {"bspline", ResolveFilter::bspline},
+                                              {"mitchell", ResolveFilter::mitchell},
+                                              {"catmullRom", ResolveFilter::catmullRom},
+                                              {"cubic", ResolveFilter::cubic},
+                                              {"blackmanHarris", ResolveFilter::blackmanHarris},
+                                              {"sinc", ResolveFilter::sinc},
+                                              {"lanczos", ResolveFilter::lanczos},
+                                              {"quincunx", ResolveFilter::quincunx}};
+ResolveFilter chosenFilter(const Params& p) { return p.chosen("filter", kFilters); }
 ParamSpec filterParam(std::string_view source) {
-    return choiceParam("filter", "box",
-                       {"box", "tent", "gaussian", "smoothstep", "bspline", "mitchell", "catmullRom", "cubic",
-                        "blackmanHarris", "sinc", "lanczos", "quincunx"},
-                       "shape of the filter; quincunx needs its own pattern", source);
+    return choiceParam("filter", "box", kFilters, "shape of the filter; quincunx needs its own pattern", source);
 }
 
 ResolveShape withOwnDiameter(ResolveShape shape) {
@@ -119,7 +129,7 @@ class Resolve : public Method {
   public:
     Resolve(const Params& p, const ShotInfo& shot) {
         ResolveShape shape;
-        shape.filter = ResolveFilter(p.choiceIndex("filter"));
+        shape.filter = chosenFilter(p);
         shape.sigma = p.real("sigma");
         shape.b = p.real("b");
         shape.c = p.real("c");

@@ -38,6 +38,7 @@ std::vector<ResolveTap> resolveTaps(const ResolveShape& shape, const std::vector
                                     std::string_view reader = "resolve");
 // The choice of a filter, and the shape with its own diameter (box 1, lanczos 2 lobes, others 2) where that is 0.
 ParamSpec filterParam(std::string_view source);
+ResolveFilter chosenFilter(const Params& p);
 ResolveShape withOwnDiameter(ResolveShape shape);
 
 MethodDescriptor resolveDescriptor();

@@ -7,11 +7,14 @@
 namespace aa {
 namespace {
 
+// Thresholds of CMAA2 v2.3; custom has a parameter of its own.
+constexpr Choice<float> kPresets[] = {
+    {"LOW", 0.15f}, {"MEDIUM", 0.10f}, {"HIGH", 0.07f}, {"ULTRA", 0.05f}, {"custom", 0}};
+
 class Cmaa2 : public Method {
   public:
     explicit Cmaa2(const Params& p) : linear_(p.choice("blendSpace") == "linear") {
-        const float presets[] = {0.15f, 0.10f, 0.07f, 0.05f};  // LOW to ULTRA, CMAA2 v2.3
-        threshold_ = p.choice("preset") == "custom" ? p.realf("threshold") : presets[p.choiceIndex("preset")];
+        threshold_ = p.choice("preset") == "custom" ? p.realf("threshold") : p.chosen("preset", kPresets);
         const bool sharp = p.flag("sharp");
         localContrast_ = sharp ? 0.15f : 0.10f;
         blend_.simpleBlur = sharp ? 0.07 : 0.10;
@@ -124,7 +127,7 @@ MethodDescriptor cmaa2Descriptor() {
             .passes = Pass::color,
             .input = Space::encoded,
             .output = Space::linear,
-            .params = {choiceParam("preset", "HIGH", {"LOW", "MEDIUM", "HIGH", "ULTRA", "custom"},
+            .params = {choiceParam("preset", "HIGH", kPresets,
                                    "luma difference that makes an edge: 0.15, 0.10, 0.07, 0.05", "[Strugar 2018]"),
                        realParam("threshold", "0.07", 0.0009765625, 1, "luma difference that makes an edge",
                                  "[Strugar 2018]", "preset=custom"),

@@ -31,8 +31,8 @@ __attribute__((flatten)) void cmaa2EdgeRows(const Cmaa2EdgeArgs& a, int y0, int 
                 max(max(bottomStep<R>(l - s, s), bottom), max(bottomStep<R>(l + 1 - s, s), bottomStep<R>(l + 1, s)));
             const R besideBottom =
                 max(max(rightStep<R>(l - 1), right), max(rightStep<R>(l + s - 1), rightStep<R>(l + s)));
-            storeMaskBytes<R>(right - contrast * besideRight > threshold,
-                                bottom - contrast * besideBottom > threshold, edges);
+            storeMaskBytes<R>(right - contrast * besideRight > threshold, bottom - contrast * besideBottom > threshold,
+                              edges);
         }
 }
 template <class R>
@@ -139,7 +139,7 @@ AA_INLINE ZShape zShape(const Cmaa2BlendArgs& a, const uint8_t* e) {
     }
     if (e[0] & kCmaaTop) {
         const ZScore score = zScore(turned(edgesOf<double>(e[0])), turned(edgesOf<double>(e[s])),
-                                     turned(edgesOf<double>(e[-s])), turned(edgesOf<double>(e[-2 * s])));
+                                    turned(edgesOf<double>(e[-s])), turned(edgesOf<double>(e[-2 * s])));
         const double vertical = max(score.inverted, score.normal);
         if (vertical > best) {
             best = vertical;
@@ -230,7 +230,7 @@ __attribute__((flatten)) void cmaa2BlendColumns(const Cmaa2BlendArgs& a, int x0,
         for (int k = a.columnStart[x]; k < a.columnStart[x + 1]; k++) {
             const int y = a.columnRows[k];
             blendLine<Elem<R>>(a, zShape(a, a.edges + long(y) * a.edgeStride + x), long(y) * a.stride + x,
-                                a.stored + long(y) * a.width + x);
+                               a.stored + long(y) * a.width + x);
         }
 }
 template <class R>

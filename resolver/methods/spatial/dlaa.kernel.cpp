@@ -35,8 +35,7 @@ __attribute__((flatten)) void edgeRows(const DlaaEdgeArgs& a, int y0, int y1) {
             for (int i = 0; i < 8; i += N<R>) {
                 const long o = long(y) * a.stride + x + i;
                 const vec3<R> c = colourAt<R>(a.in, o);
-                const vec3<R> alongX = secondDifference(a.in, o, 1, c),
-                              alongY = secondDifference(a.in, o, a.stride, c);
+                const vec3<R> alongX = secondDifference(a.in, o, 1, c), alongY = secondDifference(a.in, o, a.stride, c);
                 const R strength = saturate(luma709(abs(alongX + alongY)) * four);  // 8-bit storage clamped it
                 store(strength, a.edge + o);
                 store(luma709(c), a.luma + o);

@@ -4,22 +4,23 @@
 namespace aa {
 namespace {
 
+struct Fxaa1Preset {
+    float threshold, thresholdMin;
+    int steps, acceleration;
+    double cap;
+    bool cross;
+};
+// [Lottes 2009]. Presets above 3 only lengthen the search.
+constexpr Choice<Fxaa1Preset> kFxaa1Presets[] = {
+    {"0", {1.f / 4, 1.f / 12, 2, 4, 2.0 / 3, true}},   {"1", {1.f / 8, 1.f / 16, 4, 3, 3.0 / 4, false}},
+    {"2", {1.f / 8, 1.f / 24, 8, 2, 3.0 / 4, false}},  {"3", {1.f / 8, 1.f / 24, 16, 1, 3.0 / 4, false}},
+    {"4", {1.f / 8, 1.f / 24, 24, 1, 3.0 / 4, false}}, {"5", {1.f / 8, 1.f / 24, 32, 1, 3.0 / 4, false}},
+};
+
 class Fxaa1 : public FxaaMethod {
   public:
     explicit Fxaa1(const Params& p) {
-        struct Preset {
-            float threshold, thresholdMin;
-            int steps, acceleration;
-            double cap;
-            bool cross;
-        };
-        // [Lottes 2009]. Presets above 3 only lengthen the search.
-        static const Preset presets[] = {
-            {1.f / 4, 1.f / 12, 2, 4, 2.0 / 3, true},   {1.f / 8, 1.f / 16, 4, 3, 3.0 / 4, false},
-            {1.f / 8, 1.f / 24, 8, 2, 3.0 / 4, false},  {1.f / 8, 1.f / 24, 16, 1, 3.0 / 4, false},
-            {1.f / 8, 1.f / 24, 24, 1, 3.0 / 4, false}, {1.f / 8, 1.f / 24, 32, 1, 3.0 / 4, false},
-        };
-        const Preset& preset = presets[p.choiceIndex("preset")];
+        const Fxaa1Preset& preset = p.chosen("preset", kFxaa1Presets);
         args_.edgeThreshold = preset.threshold;
         args_.edgeThresholdMin = preset.thresholdMin;
         args_.steps = preset.steps;
@@ -96,8 +97,8 @@ MethodDescriptor fxaa1Descriptor() {
         .passes = Pass::color,
         .input = Space::encoded,
         .output = Space::encoded,
-        .params = {choiceParam("preset", "3", {"0", "1", "2", "3", "4", "5"},
-                               "thresholds and search length; above 3 only longer", "[Lottes 2009]")},
+        .params = {choiceParam("preset", "3", kFxaa1Presets, "thresholds and search length; above 3 only longer",
+                               "[Lottes 2009]")},
         .create = [](const Params& p, const ShotInfo&) { return std::make_unique<Fxaa1>(p); },
         .reachPx = 36};  // preset 5 reads 32 px along the edge and its neighbours
 }

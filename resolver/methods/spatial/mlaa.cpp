@@ -7,11 +7,15 @@
 namespace aa {
 namespace {
 
+constexpr Choice<MlaaRule> kRules[] = {
+    {"maxdiff", MlaaRule::maxdiff}, {"msb4", MlaaRule::msb4}, {"luma", MlaaRule::luma}};
+constexpr Choice<MlaaHeights> kHeights[] = {{"half", MlaaHeights::half}, {"colour", MlaaHeights::colour}};
+
 class Mlaa : public Method {
   public:
     explicit Mlaa(const Params& p)
-        : rule_(MlaaRule(p.choiceIndex("edges"))),
-          heights_(MlaaHeights(p.choiceIndex("heights"))),
+        : rule_(p.chosen("edges", kRules)),
+          heights_(p.chosen("heights", kHeights)),
           simultaneous_(p.flag("simultaneous")),
           areas_(9 * kMlaaTabled * kMlaaTabled * 2) {
         Exec exec;
@@ -110,18 +114,19 @@ MethodDescriptor mlaaDescriptor() {
         .passes = Pass::color,
         .input = Space::encoded,
         .output = Space::encoded,
-        .params = {choiceParam("edges", "maxdiff", {"maxdiff", "msb4", "luma"},
+        .params = {choiceParam("edges", "maxdiff", kRules,
                                "difference that separates pixels: a channel by 1/16, the 4 highest bits of a channel, "
                                "or luma by 0.1",
                                "decisions 42; msb4: [Reshetov 2009]"),
-                   choiceParam("heights", "half", {"half", "colour"},
+                   choiceParam("heights", "half", kHeights,
                                "where the silhouette meets an edge that crosses a line's end: its middle, or where the "
                                "blended colours of both sides agree",
                                "colour: [Reshetov 2009]; half is ours"),
                    flagParam("simultaneous", false,
                              "vertical lines blend the original colours too, not what horizontal lines left",
                              "[Reshetov 2009]; on is ours")},
-        .create = [](const Params& p, const ShotInfo&) { return std::make_unique<Mlaa>(p); }};
+        .create = [](const Params& p, const ShotInfo&) { return std::make_unique<Mlaa>(p); },
+        .reachPx = kAnyReachPx};  // lines of any length
 }
 
 }  // namespace aa

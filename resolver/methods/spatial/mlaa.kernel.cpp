@@ -82,7 +82,7 @@ AA_INLINE MlaaLine lineThrough(const MlaaBlendArgs& a, const MlaaAxis& axis, int
             // Up: the row before the line, and what lies behind it is one row farther up.
             const long row = (end > 0 ? long(q) - 1 : long(q)) * axis.acrossStep;
             const T share = meetingHeight<T>(a.in, own * axis.alongStep + row, beyond * axis.alongStep + row,
-                                              end > 0 ? -axis.acrossStep : axis.acrossStep);
+                                             end > 0 ? -axis.acrossStep : axis.acrossStep);
             end = float(end > 0 ? share : -share);
         };
         choose(left, first, first - 1), choose(right, last, last + 1);
@@ -116,7 +116,7 @@ void mlaaAreaRows(const MlaaAreaArgs& a, int from, int to) {
 // keeps it.
 template <class T>
 AA_INLINE void writeWeights(const MlaaBlendArgs& a, const MlaaAxis& axis, const MlaaLine& line, int p, long pixel,
-                             float* weights) {
+                            float* weights) {
     const int leftPx = p - line.first, rightPx = line.last - p;
     if (std::is_same_v<T, float> && a.heights == MlaaHeights::half && leftPx < kMlaaTabled && rightPx < kMlaaTabled) {
         auto side = [](float height) { return height > 0 ? 1 : height < 0 ? 2 : 0; };

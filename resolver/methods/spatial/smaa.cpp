@@ -6,6 +6,10 @@
 namespace aa {
 
 namespace {
+constexpr Choice<SmaaEdges> kEdges[] = {
+    {"luma", SmaaEdges::luma}, {"colour", SmaaEdges::colour}, {"depth", SmaaEdges::depth}};
+constexpr Choice<SmaaPredication> kPredications[] = {
+    {"off", SmaaPredication::off}, {"depth", SmaaPredication::depth}, {"object", SmaaPredication::object}};
 struct Preset {
     std::string_view name;
     float threshold;
@@ -26,8 +30,8 @@ Preset chosen(const Params& p) {
 
 Smaa::Smaa(const Params& p) : published_(p.choice("areas") == "table") {
     const Preset preset = chosen(p);
-    edge_.kind = SmaaEdges(p.choiceIndex("edges"));
-    edge_.predication = SmaaPredication(p.choiceIndex("predication"));
+    edge_.kind = p.chosen("edges", kEdges);
+    edge_.predication = p.chosen("predication", kPredications);
     edge_.consistent = p.choice("colourContrast") == "consistent";
     edge_.threshold = edge_.kind == SmaaEdges::depth ? p.realf("depthThreshold") : preset.threshold;
     edge_.localContrast = p.realf("localContrast");
@@ -191,7 +195,7 @@ std::vector<ParamSpec> smaaParams() {
                  "preset=custom"),
         realParam("cornerRounding", "25", -1, 100, "how much sharp corners are rounded, percent; -1 off",
                   "[Jimenez 2012, v2.8]", "preset=custom"),
-        choiceParam("edges", "luma", {"luma", "colour", "depth"}, "what makes an edge", "[Jimenez 2012, v2.8]"),
+        choiceParam("edges", "luma", kEdges, "what makes an edge", "[Jimenez 2012, v2.8]"),
         realParam("depthThreshold", "0.01", 0.0009765625, 1, "relative depth difference that makes an edge",
                   "ours: the shader compares device depth", "edges=depth"),
         realParam("localContrast", "2", 1, 1000, "an edge goes where a neighbouring edge is this many times as strong",
@@ -199,7 +203,7 @@ std::vector<ParamSpec> smaaParams() {
         choiceParam("colourContrast", "reference", {"reference", "consistent"},
                     "second neighbour of colour edges: against the centre as in the shader, or against the first",
                     "decisions 39", "edges=colour"),
-        choiceParam("predication", "off", {"off", "depth", "object"}, "raise the threshold where this pass has no edge",
+        choiceParam("predication", "off", kPredications, "raise the threshold where this pass has no edge",
                     "[Jimenez 2012, v2.8]", "edges=luma|colour"),
         realParam("predicationThreshold", "0.01", 0, 1, "relative depth difference that is an edge of that pass",
                   "[Jimenez 2012, v2.8]", "predication=depth"),

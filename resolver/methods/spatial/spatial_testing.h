@@ -3,7 +3,7 @@
 #include <random>
 
 #include "methods/method.h"
-#include "methods/spec.h"
+#include "methods/methods_under_test.h"
 
 namespace aa::testing {
 
@@ -67,7 +67,7 @@ inline Exec execOf(Precision precision, Isa isa = bestIsa()) {
 }
 // The output of a freshly created method, in its output space.
 inline Rgb resolveOnce(std::string_view spec, const Frame& frame, const Exec& exec = {}) {
-    const auto method = parseMethod(spec).create({.width = frame.width, .height = frame.height, .isStatic = true});
+    const auto method = specUnderTest(spec).create({.width = frame.width, .height = frame.height, .isStatic = true});
     Rgb out(frame.width, frame.height);
     method->resolve(frame, exec, out);
     return out;

@@ -6,9 +6,12 @@
 namespace aa {
 namespace {
 
+constexpr Choice<DepthTest> kDepthTests[] = {
+    {"window", DepthTest::window}, {"point", DepthTest::point}, {"off", DepthTest::off}};
+
 class AccumReject : public Method {
   public:
-    explicit AccumReject(const Params& params) : params_(params), test_(DepthTest(params.choiceIndex("depthTest"))) {}
+    explicit AccumReject(const Params& params) : params_(params), test_(params.chosen("depthTest", kDepthTests)) {}
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         const Params& p = params_;
@@ -73,7 +76,7 @@ MethodDescriptor accumRejectDescriptor() {
         .source = "after [Nehab 2007] and [Stejmar n.d., 3.6.2]; decisions 51",
         .passes = Pass::color | Pass::depth | Pass::motion,
         .temporal = true,
-        .params = {choiceParam("depthTest", "window", {"window", "point", "off"},
+        .params = {choiceParam("depthTest", "window", kDepthTests,
                                "previous depth compared: interpolated point, but farthest of 3x3 for a pixel at rest "
                                "(window); the point alone; none",
                                "conventions 7.3; window: jitter moves silhouettes at rest"),

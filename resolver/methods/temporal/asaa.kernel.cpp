@@ -91,7 +91,7 @@ AA_INLINE void asaaPixel(const AsaaArgs& a, int x, int y) {
         const R dx = q.wholeX + q.fracX, dy = q.wholeY + q.fracY;
         addTent(p, in.stride, dx + R(T(a.phiX - buffer.phiX)), dy + R(T(a.phiY - buffer.phiY)), rx, ry, valid, b);
         addTent(p, in.stride, dx - R(T(buffer.phiX)), dy - R(T(buffer.phiY)), min(rx + rx, most), min(ry + ry, most),
-                 valid, f);
+                valid, f);
     }
     const auto hasB = b.weight > R(T(1e-6)), hasF = f.weight > R(T(1e-6));
     const auto hit = both(anyValid, either(hasB, hasF));

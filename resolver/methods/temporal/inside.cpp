@@ -6,6 +6,11 @@
 namespace aa {
 namespace {
 
+constexpr Choice<InsideNeighbourhood> kNeighbourhoods[] = {{"rounded", InsideNeighbourhood::rounded},
+                                                           {"3x3", InsideNeighbourhood::box3x3},
+                                                           {"plus", InsideNeighbourhood::plus},
+                                                           {"4tapVarying", InsideNeighbourhood::fourTapVarying}};
+
 class Inside : public Method {
   public:
     explicit Inside(const Params& params) : params_(params) {}
@@ -15,7 +20,7 @@ class Inside : public Method {
         InsideArgs args{temporal::frameView(frame, frame.colorEncoded),
                         p.realf("kmin"),
                         p.realf("kmax"),
-                        InsideNeighbourhood(p.choiceIndex("neighbourhood")),
+                        p.chosen("neighbourhood", kNeighbourhoods),
                         temporal::clipTarget(p),
                         p.flag("unjitterColor"),
                         p.flag("unjitterNeighbourhood"),
@@ -57,7 +62,7 @@ MethodDescriptor insideDescriptor() {
         .output = Space::encoded,
         .temporal = true,
         .params = {temporal::kMinParam("0.88", "[Pedersen 2016]"), temporal::kMaxParam("0.97", "[Pedersen 2016]"),
-                   choiceParam("neighbourhood", "rounded", {"rounded", "3x3", "plus", "4tapVarying"},
+                   choiceParam("neighbourhood", "rounded", kNeighbourhoods,
                                "window of the colour box; 4tapVarying: bilinear taps, tighter under motion",
                                "[Pedersen 2016]"),
                    flagParam("unjitterColor", true, "fetch the current colour at the pixel centre", "[Pedersen 2016]"),

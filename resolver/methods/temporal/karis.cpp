@@ -11,6 +11,14 @@ namespace {
 
 constexpr int kRowsPerCall = 32;  // each converts two rows of its neighbours again
 
+constexpr Choice<BoxKind> kBoxes[] = {
+    {"minmax", BoxKind::minmax}, {"variance", BoxKind::variance}, {"intersection", BoxKind::intersection}};
+constexpr Choice<HistoryConstraint> kConstraints[] = {{"clipFiltered", HistoryConstraint::clipFiltered},
+                                                      {"clipMean", HistoryConstraint::clipMean},
+                                                      {"clamp", HistoryConstraint::clamp}};
+constexpr Choice<AntiFlicker> kAntiFlickers[] = {
+    {"none", AntiFlicker::none}, {"karis", AntiFlicker::karis}, {"falcor", AntiFlicker::falcor}};
+
 class Karis : public Method {
   public:
     Karis(std::string_view id, const Params& params, bool pq) : id_(id), params_(params), pq_(pq) {}
@@ -32,11 +40,11 @@ class Karis : public Method {
         args.hdr4 = p.choice("toneWeight") == "hdr4";
         args.ycocg = p.flag("ycocg");
         args.inverseLuminance = p.flag("inverseLuminance");
-        args.box = BoxKind(p.choiceIndex("box"));
-        args.constraint = HistoryConstraint(p.choiceIndex("constraint"));
+        args.box = p.chosen("box", kBoxes);
+        args.constraint = p.chosen("constraint", kConstraints);
         args.neighbourhood = temporal::neighbourhood(p);
         args.gamma = p.realf("gamma");
-        args.antiFlicker = AntiFlicker(p.choiceIndex("antiFlicker"));
+        args.antiFlicker = p.chosen("antiFlicker", kAntiFlickers);
         for (int j = -1; j <= 1; j++)
             for (int i = -1; i <= 1; i++) {
                 const double dx = i + double(args.in.jitterXPx), dy = j + double(args.in.jitterYPx);
@@ -93,15 +101,14 @@ MethodDescriptor descriptor(const Preset& d) {
                                    "weights within that filter: equal, 1/(1+Y), 4/(4+Y)", "decisions 45",
                                    "filter=blackmanHarris"),
                        flag("ycocg", d.ycocg, "colour box in YCoCg instead of RGB", d.source),
-                       choiceParam("box", d.box, {"minmax", "variance", "intersection"},
-                                   "colour box: bounds, mean -+ gamma sigma, both", d.source),
+                       choiceParam("box", d.box, kBoxes, "colour box: bounds, mean -+ gamma sigma, both", d.source),
                        realParam("gamma", "1", 0, 8, "half width of the variance box in standard deviations",
                                  "[Salvi 2016]: 0.75 to 1.25", "box=variance|intersection"),
                        neighbourhood,
-                       choiceParam("constraint", d.constraint, {"clipFiltered", "clipMean", "clamp"},
+                       choiceParam("constraint", d.constraint, kConstraints,
                                    "history to the box: clipped toward the current colour or the mean, or clamped",
                                    d.source),
-                       choiceParam("antiFlicker", d.antiFlicker, {"none", "karis", "falcor"}, "rule that adapts alpha",
+                       choiceParam("antiFlicker", d.antiFlicker, kAntiFlickers, "rule that adapts alpha",
                                    "Unreal Engine 4's public shader; [Falcor 2022]"),
                        flag("inverseLuminance", d.inverseLuminance, "blend with weights 1/(1+Y)", d.source),
                        temporal::unjitterParam(false, "conventions 7.0; not in the source"),

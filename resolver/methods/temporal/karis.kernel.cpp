@@ -110,10 +110,9 @@ AA_INLINE void karisPixel(const KarisArgs& a, YCoCg ycocg, Pq pq, const KarisWin
     const Reprojection<R> q = reproject(in, motion, x, y);
     const vec3<R> past = fetchHistory(in, x, y, q);
     const vec3<R> history = ycocg ? toYcocg(past) : past;
-    const vec3<R> held =
-        a.constraint == HistoryConstraint::clamp
-            ? clamp3(history, box.lo, box.hi)
-            : clipToward(box, a.constraint == HistoryConstraint::clipMean ? m.mean : current, history);
+    const vec3<R> held = a.constraint == HistoryConstraint::clamp
+                             ? clamp3(history, box.lo, box.hi)
+                             : clipToward(box, a.constraint == HistoryConstraint::clipMean ? m.mean : current, history);
 
     // 4. weight of the current colour
     R alpha(T(a.alpha));

@@ -11,9 +11,12 @@ namespace {
 
 constexpr int kRowsPerCall = 64;  // each computes nine rows of its neighbours again, partly
 
+constexpr Choice<DepthUnit> kDepthUnits[] = {
+    {"normalised", DepthUnit::normalised}, {"zfar", DepthUnit::zfar}, {"world", DepthUnit::world}};
+
 class Master : public Method {
   public:
-    explicit Master(const Params& params) : params_(params), sharpen_(SharpenKernel(params.choiceIndex("sharpen"))) {}
+    explicit Master(const Params& params) : params_(params), sharpen_(temporal::sharpenKernel(params)) {}
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         const Params& p = params_;
@@ -37,7 +40,7 @@ class Master : public Method {
         m.albedoEncoded = view(frame.albedoEncoded);
         m.previousDepth = depth_.previous().row(0), m.keptDepth = depth_.next().row(0);
         m.weightAlbedo = p.realf("wU"), m.weightLit = p.realf("wL");
-        m.depthUnit = DepthUnit(p.choiceIndex("depthUnit"));
+        m.depthUnit = p.chosen("depthUnit", kDepthUnits);
         m.luminance = temporal::luminance(p);
         m.temporalSobel = p.flag("sobelTemporal");
         m.samePixelDepth = p.choice("pastDepth") == "samePixel";
@@ -152,7 +155,7 @@ MethodDescriptor masterDescriptor() {
                        "sobel=on"),
              realParam("wL", "0.7", 0, 10, "weight of the lit colour's Sobel magnitude", "[Oliveros 2018, eq 4.9]",
                        "sobel=on"),
-             choiceParam("depthUnit", "normalised", {"normalised", "zfar", "world"},
+             choiceParam("depthUnit", "normalised", kDepthUnits,
                          "unit of all depths here: 2z/(z+far) in 0..1, z/far in 0..1, scene units",
                          "[Oliveros 2018, program]; decisions 8, 9"),
              realParam("depthThreshold", "0.002", 0, 1e6, "least depth difference that is an edge, in depthUnit",

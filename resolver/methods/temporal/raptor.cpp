@@ -22,7 +22,19 @@ double blackmanHarris(double x) {
     const double t = std::numbers::pi * x;
     return 0.35875 + 0.48829 * std::cos(t) + 0.14128 * std::cos(2 * t) + 0.01168 * std::cos(3 * t);
 }
+constexpr Choice<RaptorConstraint> kConstraints[] = {{"none", RaptorConstraint::none},
+                                                     {"clamp", RaptorConstraint::clamp},
+                                                     {"clip", RaptorConstraint::clip},
+                                                     {"varianceClip", RaptorConstraint::varianceClip},
+                                                     {"varianceClipClamp", RaptorConstraint::varianceClipClamp}};
+constexpr Choice<LuminanceDifference> kLuminanceDifferences[] = {{"off", LuminanceDifference::off},
+                                                                 {"corrected", LuminanceDifference::corrected},
+                                                                 {"printed", LuminanceDifference::printed}};
 enum class CurrentFilter { none, mitchell, blackmanHarris, catmullRom };
+constexpr Choice<CurrentFilter> kCurrentFilters[] = {{"none", CurrentFilter::none},
+                                                     {"mitchell", CurrentFilter::mitchell},
+                                                     {"blackmanHarris", CurrentFilter::blackmanHarris},
+                                                     {"catmullRom", CurrentFilter::catmullRom}};
 double filterWeight(CurrentFilter filter, bool printed, double dx, double dy, glm::dvec2 jitterPx) {
     // printed: distance of the pixels, doubled; fixed: distance of the sample from the pixel centre, radius 1.5 px.
     const double distance = printed ? std::hypot(dx, dy) : std::hypot(dx + jitterPx.x, dy + jitterPx.y);
@@ -58,11 +70,11 @@ class Raptor : public Method {
         args.in.filter = temporal::historyFilter(p);
         for (int j = -1; j <= 1; j++)
             for (int i = -1; i <= 1; i++)
-                args.filter[(j + 1) * 3 + i + 1] = float(filterWeight(CurrentFilter(p.choiceIndex("currentFilter")),
+                args.filter[(j + 1) * 3 + i + 1] = float(filterWeight(p.chosen("currentFilter", kCurrentFilters),
                                                                       p.choice("filterDomain") == "printed", i, j,
                                                                       {args.in.jitterXPx, args.in.jitterYPx}));
-        args.constraint = RaptorConstraint(p.choiceIndex("constraint"));
-        args.luminanceDifference = LuminanceDifference(p.choiceIndex("lumaDiff"));
+        args.constraint = p.chosen("constraint", kConstraints);
+        args.luminanceDifference = p.chosen("lumaDiff", kLuminanceDifferences);
         args.temporalFiltering = p.flag("temporalFiltering");
         args.luminanceWeights = p.flag(p.choice("lumaDiff") == "off" ? "inverseLuminance" : "lumaDiffWeights");
         args.clampCurrent = p.flag("currentClamp");
@@ -104,13 +116,12 @@ MethodDescriptor raptorDescriptor() {
                    temporal::dilationParam("closest3x3", "[Castorina 2023]"),
                    temporal::historyFilterParam("catmullRom", "[Castorina 2023]"),
                    temporal::historyClampParam(),
-                   choiceParam("constraint", "varianceClipClamp",
-                               {"none", "clamp", "clip", "varianceClip", "varianceClipClamp"},
+                   choiceParam("constraint", "varianceClipClamp", kConstraints,
                                "how history is held to the 3x3 window's colours", "[Castorina 2023]"),
                    realParam("gamma", "1", 0, 8, "half width of the variance box in standard deviations",
                              "[Castorina 2023]", "constraint=varianceClip|varianceClipClamp"),
-                   choiceParam("currentFilter", "mitchell", {"none", "mitchell", "blackmanHarris", "catmullRom"},
-                               "filter of the current colour over 3x3", "[Castorina 2023]"),
+                   choiceParam("currentFilter", "mitchell", kCurrentFilters, "filter of the current colour over 3x3",
+                               "[Castorina 2023]"),
                    choiceParam("filterDomain", "fixed", {"fixed", "printed"},
                                "distance under that filter: of the sample from the pixel centre, radius 1.5 px; or as "
                                "printed",
@@ -127,7 +138,7 @@ MethodDescriptor raptorDescriptor() {
                                "decisions 29", "temporalFiltering=on"),
                    flagParam("inverseLuminance", true, "weights 1/(1+L) of compressed colours", "[Castorina 2023]",
                              "lumaDiff=off"),
-                   choiceParam("lumaDiff", "corrected", {"off", "corrected", "printed"},
+                   choiceParam("lumaDiff", "corrected", kLuminanceDifferences,
                                "weight from the luminance difference; printed has history and current exchanged",
                                "decisions 25"),
                    flagParam("lumaDiffWeights", true,

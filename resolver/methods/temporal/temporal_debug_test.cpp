@@ -33,7 +33,7 @@ std::map<std::string, DebugLayer> layersOf(RunningMethod& m, int frames) {
 
 TEST(TemporalDebug, EveryMethodShowsItsIntermediates) {
     int seen = 0;
-    for (const auto& d : registry()) {
+    for (const auto& d : methodsUnderTest()) {
         if (d.family != "temporal" || d.id.starts_with("smaa")) continue;  // those keep no constrained history
         RunningMethod m = running(std::string(d.id), kW, kH);
         const auto layers = layersOf(m, 3);
@@ -66,7 +66,7 @@ TEST(TemporalDebug, EveryMethodShowsItsIntermediates) {
 // The warm-up gives each of the first frames after a reset the same weight at most, in every method that offers it.
 TEST(TemporalDebug, RampHoldsTheFeedbackOfEveryMethod) {
     int seen = 0;
-    for (const auto& d : registry()) {
+    for (const auto& d : methodsUnderTest()) {
         const bool offered =
             std::any_of(d.params.begin(), d.params.end(), [](const auto& p) { return p.name == "warmup"; });
         if (!offered) continue;

@@ -3,23 +3,46 @@
 #include "image/error.h"
 
 namespace aa::temporal {
+namespace {
+constexpr Choice<Luminance> kLuminances[] = {{"quarter", Luminance::quarter},
+                                             {"bt709", Luminance::bt709},
+                                             {"bt601", Luminance::bt601},
+                                             {"inside", Luminance::inside}};
+constexpr Choice<Dilation> kDilations[] = {{"closest3x3", Dilation::closest3x3},
+                                           {"closestX", Dilation::closestX},
+                                           {"longest3x3", Dilation::longest3x3},
+                                           {"none", Dilation::none}};
+constexpr Choice<HistoryFilter> kHistoryFilters[] = {{"bilinear", HistoryFilter::bilinear},
+                                                     {"catmullRom", HistoryFilter::catmullRom},
+                                                     {"catmullRom5", HistoryFilter::catmullRom5}};
+constexpr Choice<Neighbourhood> kNeighbourhoods[] = {
+    {"rounded", Neighbourhood::rounded}, {"3x3", Neighbourhood::box3x3}, {"plus", Neighbourhood::plus}};
+constexpr Choice<ClipTarget> kClipTargets[] = {{"aabbCentre", ClipTarget::aabbCentre},
+                                               {"mean", ClipTarget::mean},
+                                               {"current", ClipTarget::current},
+                                               {"clamp", ClipTarget::clamp}};
+constexpr Choice<HistoryFormat> kHistoryBits[] = {
+    {"32f", HistoryFormat::float32}, {"16f", HistoryFormat::half}, {"8", HistoryFormat::byte}};
+constexpr Choice<SharpenKernel> kSharpenKernels[] = {
+    {"none", SharpenKernel::none}, {"xu", SharpenKernel::xu}, {"norm", SharpenKernel::norm}};
+}  // namespace
 
 ParamSpec unjitterParam(bool def, std::string_view source) {
     return flagParam("unjitter", def, "read the current frame at the pixel centre less the jitter, bilinear", source);
 }
 ParamSpec luminanceParam(std::string_view def, std::string_view source, std::string_view onlyWhen) {
-    return choiceParam("luminance", def, {"quarter", "bt709", "bt601", "inside"},
+    return choiceParam("luminance", def, kLuminances,
                        "luminance of displayed colours: weights 1/4 1/2 1/4, BT.709, BT.601, 0.22 0.707 0.071", source,
                        onlyWhen);
 }
 ParamSpec dilationParam(std::string_view def, std::string_view source) {
     return choiceParam(
-        "dilation", def, {"closest3x3", "closestX", "longest3x3", "none"},
+        "dilation", def, kDilations,
         "whose motion a pixel takes: nearest to the camera in 3x3, of centre and diagonals, longest, own", source);
 }
 ParamSpec historyFilterParam(std::string_view def, std::string_view source) {
-    return choiceParam("history", def, {"bilinear", "catmullRom", "catmullRom5"},
-                       "filter that reads the history: 2x2, 4x4, 4x4 without corners", source);
+    return choiceParam("history", def, kHistoryFilters, "filter that reads the history: 2x2, 4x4, 4x4 without corners",
+                       source);
 }
 ParamSpec historyClampParam() {
     return flagParam("historyClamp", true,
@@ -27,11 +50,11 @@ ParamSpec historyClampParam() {
                      "conventions 9", "history=catmullRom|catmullRom5");
 }
 ParamSpec neighbourhoodParam(std::string_view def, std::string_view source) {
-    return choiceParam("neighbourhood", def, {"rounded", "3x3", "plus"},
+    return choiceParam("neighbourhood", def, kNeighbourhoods,
                        "window of the colour box: mean of 3x3 and plus, 3x3, plus", source);
 }
 ParamSpec clipTargetParam(std::string_view def, std::string_view source) {
-    return choiceParam("clipTarget", def, {"aabbCentre", "mean", "current", "clamp"},
+    return choiceParam("clipTarget", def, kClipTargets,
                        "point toward which history is clipped; clamp: per channel instead", source);
 }
 ParamSpec warmupParam() {
@@ -42,8 +65,9 @@ ParamSpec warmupParam() {
 ParamSpec historyBitsParam(Space space) {
     const std::string_view help =
         "how colours are kept between frames: float, or rounded to binary16 or to 8 bits as on a graphics processor";
-    if (space == Space::encoded) return choiceParam("historyBits", "32f", {"32f", "16f", "8"}, help, "conventions 8");
-    return choiceParam("historyBits", "32f", {"32f", "16f"}, help, "conventions 8");
+    ParamSpec bits = choiceParam("historyBits", "32f", kHistoryBits, help, "conventions 8");
+    if (space == Space::linear) std::erase(bits.choices, "8");
+    return bits;
 }
 ParamSpec ditherParam() {
     return flagParam("dither", false, "round up or down by chance, so that a slow history does not stall",
@@ -55,7 +79,7 @@ ParamSpec outsideParam() {
                        "ours; [Pedersen 2016] has clamp");
 }
 ParamSpec sharpenParam(std::string_view def, std::string_view source) {
-    return choiceParam("sharpen", def, {"none", "xu", "norm"},
+    return choiceParam("sharpen", def, kSharpenKernels,
                        "sharpening of the output, never fed back: plus-shaped kernel with neighbours -1 or -1/4",
                        source);
 }
@@ -91,18 +115,17 @@ void requireOrdered(std::string_view method, const Params& p) {
                          " and kmax=" + p.all().find("kmax")->second);
 }
 
-Dilation dilation(const Params& p) { return Dilation(p.choiceIndex("dilation")); }
+Dilation dilation(const Params& p) { return p.chosen("dilation", kDilations); }
 HistoryFilter historyFilter(const Params& p) {
-    const auto filter = HistoryFilter(p.choiceIndex("history"));
+    const HistoryFilter filter = p.chosen("history", kHistoryFilters);
     if (p.flag("historyClamp")) return filter;
     return filter == HistoryFilter::catmullRom ? HistoryFilter::catmullRomFree : HistoryFilter::catmullRom5Free;
 }
-Neighbourhood neighbourhood(const Params& p) { return Neighbourhood(p.choiceIndex("neighbourhood")); }
-ClipTarget clipTarget(const Params& p) { return ClipTarget(p.choiceIndex("clipTarget")); }
-Luminance luminance(const Params& p) { return Luminance(p.choiceIndex("luminance")); }
-HistoryStorage historyStorage(const Params& p) {
-    return {HistoryFormat(p.choiceIndex("historyBits")), p.flag("dither")};
-}
+Neighbourhood neighbourhood(const Params& p) { return p.chosen("neighbourhood", kNeighbourhoods); }
+ClipTarget clipTarget(const Params& p) { return p.chosen("clipTarget", kClipTargets); }
+Luminance luminance(const Params& p) { return p.chosen("luminance", kLuminances); }
+SharpenKernel sharpenKernel(const Params& p) { return p.chosen("sharpen", kSharpenKernels); }
+HistoryStorage historyStorage(const Params& p) { return {p.chosen("historyBits", kHistoryBits), p.flag("dither")}; }
 RejectionTest rejectionTest(const Params& p) {
     const std::string& scale = p.choice("magnification");
     return {p.realf("depthTolerance"), scale == "off" ? 0.0f : std::stof(scale), p.flag("bothSides")};

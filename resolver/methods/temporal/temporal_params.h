@@ -37,6 +37,7 @@ Neighbourhood neighbourhood(const Params& p);
 ClipTarget clipTarget(const Params& p);
 HistoryStorage historyStorage(const Params& p);
 Luminance luminance(const Params& p);
+SharpenKernel sharpenKernel(const Params& p);
 RejectionTest rejectionTest(const Params& p);
 bool countAtPixel(const Params& p);
 

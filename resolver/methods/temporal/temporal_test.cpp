@@ -213,16 +213,16 @@ TEST(Temporal, SizeChangeWithoutResetIsAnError) {
 TEST(Temporal, KMinAboveKMaxIsAUsageError) { EXPECT_THROW(running("uncharted:kmin=0.9,kmax=0.5", 8, 8), UsageError); }
 
 TEST(Temporal, NothingDivergesOverTenThousandFrames) {
-    for (const auto& method : registry()) {
+    for (const auto& method : methodsUnderTest()) {
         if (method.family != "temporal") continue;
         const int w = 19, h = 11;
         const auto positionsPx = patternPositionsPx(method.id == "smaa4x" ? "d3d4" : "d3d2");
-        RunningMethod m(parseMethod(method.id), {.width = w,
-                                                 .height = h,
-                                                 .jitterPeriod = 16,
-                                                 .isStatic = false,
-                                                 .frameCount = 16,
-                                                 .subSamplePositionsPx = positionsPx});
+        RunningMethod m(specUnderTest(method.id), {.width = w,
+                                                   .height = h,
+                                                   .jitterPeriod = 16,
+                                                   .isStatic = false,
+                                                   .frameCount = 16,
+                                                   .subSamplePositionsPx = positionsPx});
         std::vector<Frame> frames;
         for (int n = 0; n < 8; n++) {
             frames.push_back(temporalFrame(n, w, h, noisePicture(unsigned(n)), {0.37 * (n % 3), -0.21 * (n % 5)}));

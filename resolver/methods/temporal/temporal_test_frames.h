@@ -5,6 +5,7 @@
 #include <random>
 
 #include "methods/driver.h"
+#include "methods/methods_under_test.h"
 
 namespace aa::testing {
 
@@ -36,12 +37,12 @@ inline Picture noisePicture(unsigned seed) {
     };
 }
 inline RunningMethod running(const std::string& text, int w, int h, bool isStatic = false) {
-    return RunningMethod(parseMethod(text), {.width = w,
-                                             .height = h,
-                                             .jitterPeriod = 16,
-                                             .isStatic = isStatic,
-                                             .frameCount = 16,
-                                             .subSamplePositionsPx = {{0.25, 0.25}, {-0.25, -0.25}}});
+    return RunningMethod(specUnderTest(text), {.width = w,
+                                               .height = h,
+                                               .jitterPeriod = 16,
+                                               .isStatic = isStatic,
+                                               .frameCount = 16,
+                                               .subSamplePositionsPx = {{0.25, 0.25}, {-0.25, -0.25}}});
 }
 
 }  // namespace aa::testing

@@ -15,12 +15,12 @@ class Torture : public ::testing::TestWithParam<std::string> {
     std::vector<glm::dvec2> positionsPx = patternPositionsPx(GetParam() == "smaa4x" ? "d3d4" : "d3d2");
 
     RunningMethod method(const std::string& options = "") const {
-        return RunningMethod(parseMethod(GetParam() + options), {.width = kW,
-                                                                 .height = kH,
-                                                                 .jitterPeriod = 16,
-                                                                 .isStatic = false,
-                                                                 .frameCount = 16,
-                                                                 .subSamplePositionsPx = positionsPx});
+        return RunningMethod(specUnderTest(GetParam() + options), {.width = kW,
+                                                                   .height = kH,
+                                                                   .jitterPeriod = 16,
+                                                                   .isStatic = false,
+                                                                   .frameCount = 16,
+                                                                   .subSamplePositionsPx = positionsPx});
     }
     Frame frame(int n, const Picture& picture, glm::dvec2 motionPx = {0, 0}) const {
         Frame f = temporalFrame(n, kW, kH, picture, motionPx);
@@ -28,7 +28,7 @@ class Torture : public ::testing::TestWithParam<std::string> {
         f.subSamples.assign(positionsPx.size(), {f.depthView, Rgb(kW, kH), f.objectId, f.colorLinear});
         return f;
     }
-    bool encoded() const { return parseMethod(GetParam()).outputSpace() == Space::encoded; }
+    bool encoded() const { return specUnderTest(GetParam()).outputSpace() == Space::encoded; }
 };
 
 bool allFinite(const Rgb& image) {
@@ -140,7 +140,7 @@ TEST_P(Torture, ThousandStaticFramesDoNotDrift) {
 
 std::vector<std::string> temporalMethods() {
     std::vector<std::string> ids;
-    for (const auto& m : registry())
+    for (const auto& m : methodsUnderTest())
         if (m.family == "temporal") ids.emplace_back(m.id);
     return ids;
 }

@@ -8,8 +8,7 @@ namespace {
 
 class Uncharted : public Method {
   public:
-    explicit Uncharted(const Params& params)
-        : params_(params), sharpen_(SharpenKernel(params.choiceIndex("sharpen"))) {}
+    explicit Uncharted(const Params& params) : params_(params), sharpen_(temporal::sharpenKernel(params)) {}
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         UnchartedArgs args{temporal::frameView(frame, frame.colorEncoded),

@@ -23,9 +23,8 @@ AA_INLINE void unchartedPixel(const UnchartedArgs& a, int x, int y) {
     const vec3<R> clipped = constrain(box, a.clipTarget, meanOf(window, a.neighbourhood), current, history);
 
     // 3. blend
-    const R k =
-        min(luminanceFeedback(luminance(current, a.luminance), luminance(clipped, a.luminance), a.kMin, a.kMax),
-            R(Elem<R>(in.feedbackCeiling)));
+    const R k = min(luminanceFeedback(luminance(current, a.luminance), luminance(clipped, a.luminance), a.kMin, a.kMax),
+                    R(Elem<R>(in.feedbackCeiling)));
     const vec3<R> mixed = select(q.inside, blend(current, clipped, k), current);
 
     storeBlend(in, x, y, sanitised(mixed, current, history), R(Elem<R>(1)));

@@ -9,8 +9,8 @@
 
 #include "shot/check/check.h"
 #include "shot/jitter.h"
-#include "shot/writer.h"
 #include "shot/manifest.h"
+#include "shot/writer.h"
 
 namespace aa {
 namespace {

@@ -4,8 +4,8 @@
 // same, so there the scale is found where the camera moves (the parallax of resting surfaces), in the sub-samples, or
 // by the frame's `depth_bounds`, the range that the producer knows from the objects' geometry.
 #pragma once
-#include "shot/manifest.h"
 #include "shot/check/check.h"
+#include "shot/manifest.h"
 
 namespace aa {
 

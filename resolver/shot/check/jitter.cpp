@@ -1,7 +1,5 @@
 #include "shot/check/jitter.h"
 
-#include "shot/manifest.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +8,8 @@
 #include <glm/mat2x2.hpp>
 #include <glm/matrix.hpp>
 #include <numbers>
+
+#include "shot/manifest.h"
 
 namespace aa {
 using glm::dvec2;

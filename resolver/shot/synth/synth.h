@@ -13,8 +13,8 @@
 
 #include "shot/frame.h"
 #include "shot/jitter.h"
-#include "shot/synth/coverage.h"
 #include "shot/manifest.h"
+#include "shot/synth/coverage.h"
 
 namespace aa {
 
