@@ -6,6 +6,7 @@
 #include "image/error.h"
 #include "methods/asymmetry.h"
 #include "methods/stage.h"
+#include "shot/pass_table.h"
 
 namespace aa {
 namespace {
@@ -153,8 +154,28 @@ nlohmann::ordered_json describe(const MethodDescriptor& m) {
     return j;
 }
 
+nlohmann::ordered_json describe(const PassInfo& p) {
+    const auto channels = [](const std::vector<ChannelGroup>& groups) {
+        nlohmann::ordered_json all = nlohmann::ordered_json::array();
+        for (const auto& g : groups)
+            for (const auto& c : g.channels) all.push_back({{"name", c}, {"type", g.isUint ? "uint" : "float"}});
+        return all;
+    };
+    nlohmann::ordered_json j = {{"name", p.name},
+                                {"part", p.part},
+                                {"meaning", p.meaning},
+                                {"perSubSample", p.perSubSample},
+                                {"channels", channels(p.groups)}};
+    if (!p.shared.empty()) j["shared"] = channels(p.shared);
+    if (p.isList) j["list"] = true;
+    j["bytesPerPixel"] = p.bytesPerPixel();
+    return j;
+}
+
 nlohmann::ordered_json describeRegistry() {
-    nlohmann::ordered_json all = {{"version", AA_VERSION}, {"methods", nlohmann::ordered_json::array()}};
+    nlohmann::ordered_json all = {{"version", AA_VERSION}, {"passes", nlohmann::ordered_json::array()}};
+    for (const auto& p : allPasses()) all["passes"].push_back(describe(p));
+    all["methods"] = nlohmann::ordered_json::array();
     for (const auto& m : registry()) all["methods"].push_back(describe(m));
     for (const auto& s : stages()) all["stages"].push_back(describe(s));
     return all;

@@ -1,23 +1,8 @@
 #include "shot/pass.h"
 
-namespace aa {
+#include "shot/pass_table.h"
 
-const std::vector<PassInfo>& allPasses() {
-    static const std::vector<PassInfo> table = {
-        {Pass::color, "color", "color", "linear scene-referred colour, point-sampled at centre + jitter"},
-        {Pass::albedo, "albedo", "albedo", "unlit scene colour, linear"},
-        {Pass::depth, "depth", "depth", "planar view-space z > 0; background 1e10"},
-        {Pass::normal, "normal", "normal", "world-space unit normal; 0 on background"},
-        {Pass::object, "object", "object", "id per object and per instance; 0 = background"},
-        {Pass::motion, "motion", "motion", "current - previous position, px, y down, un-jittered"},
-        {Pass::subsamples, "subsamples", "subsamples", "geometry at each sub-sample and the similarity mask"},
-        {Pass::subsampleColor, "subsampleColor", "subsamples", "shaded colour at each sub-sample, linear"},
-        {Pass::edges, "edges", "edges", "signed axis distances to the visible triangle's nearest edge, px"},
-        {Pass::segments, "segments", "segments",
-         "list of the geometry's projected edges: ends in px of the un-jittered picture, and their depth"},
-    };
-    return table;
-}
+namespace aa {
 
 std::string_view name(Pass pass) {
     for (const auto& p : allPasses())

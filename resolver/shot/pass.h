@@ -47,13 +47,6 @@ struct PassSet {
 };
 inline PassSet operator|(Pass a, Pass b) { return PassSet(a) | PassSet(b); }
 
-struct PassInfo {
-    Pass pass;
-    std::string_view name;  // on the command line, in JSON and in the add-on
-    std::string_view part;  // part of the EXR that holds it
-    std::string_view meaning;
-};
-const std::vector<PassInfo>& allPasses();
 std::string_view name(Pass pass);
 std::vector<std::string_view> names(PassSet set);
 std::optional<Pass> passByName(std::string_view name);

@@ -2,6 +2,7 @@
 
 #include "image/error.h"
 #include "image/exr.h"
+#include "shot/pass_table.h"
 #include "shot/sanitise.h"
 #include "shot/segments.h"
 
@@ -21,85 +22,73 @@ class FrameDecoder {
           counts_(counts) {}
 
     void decode(PassSet wanted) {
-        if (wanted.has(Pass::color)) colour("color", {"R", "G", "B"}, frame_.colorLinear);
-        if (wanted.has(Pass::albedo)) colour("albedo", {"albedo.R", "albedo.G", "albedo.B"}, frame_.albedoLinear);
-        if (wanted.has(Pass::depth)) depth();
-        if (wanted.has(Pass::normal)) normal();
-        if (wanted.has(Pass::object)) objectIds();
-        if (wanted.has(Pass::motion)) motion();
-        if (wanted.has(Pass::subsamples) || wanted.has(Pass::subsampleColor)) subSamples(wanted);
-        if (wanted.has(Pass::edges)) edges();
-        if (wanted.has(Pass::segments)) segments();
+        for (const auto& info : allPasses()) {
+            if (!wanted.has(info.pass)) continue;
+            if (info.isList)
+                segments();
+            else if (info.perSubSample)
+                subSamples(wanted, info.part);
+            else
+                picture(info);
+        }
     }
 
   private:
-    const ExrPart& part(const char* name) {
+    const ExrPart& part(std::string_view name) {
         const ExrPart* p = file_.find(name);
-        if (!p) throw InputError(where() + " has no part '" + name + "'; export the shot again with this pass");
+        if (!p)
+            throw InputError(where() + " has no part '" + std::string(name) +
+                             "'; export the shot again with this pass");
         if (p->width != manifest_.width || p->height != manifest_.height)
-            throw InputError(where() + ", part '" + name + "': expected " + size(manifest_.width, manifest_.height) +
-                             " pixels (shot.json), found " + size(p->width, p->height) + "; export the frame again");
+            throw InputError(where() + ", part '" + std::string(name) + "': expected " +
+                             size(manifest_.width, manifest_.height) + " pixels (shot.json), found " +
+                             size(p->width, p->height) + "; export the frame again");
         return *p;
     }
     static std::string size(int w, int h) { return std::to_string(w) + "x" + std::to_string(h); }
     std::string where() const { return file_.path().string() + ": frame " + std::to_string(entry_.frame); }
-    PlaneName planeName(const char* part, std::vector<std::string> channels) const {
-        return {where() + ", part '" + part + "'", std::move(channels)};
+    PlaneName planeName(std::string_view part, std::vector<std::string> channels) const {
+        return {where() + ", part '" + std::string(part) + "'", std::move(channels)};
     }
 
-    void colour(const char* partName, const std::vector<std::string>& channels, Rgb& to) {
-        std::vector<ChannelTarget> t = {{channels[0], &to.c[0]}, {channels[1], &to.c[1]}, {channels[2], &to.c[2]}};
-        file_.read(part(partName), t);
-        finishColour(partName, t, to);
+    // A group of channels that is to be read, and where it goes.
+    struct Wanted {
+        const ChannelGroup* group;
+        size_t first;  // of its targets
+    };
+    static void want(const ChannelGroup& group, const std::vector<PlaneRef>& planes, const std::string& prefix,
+                     std::vector<ChannelTarget>& targets, std::vector<Wanted>& wanted) {
+        wanted.push_back({&group, targets.size()});
+        for (size_t i = 0; i < planes.size(); i++)
+            targets.push_back({prefix + std::string(group.channels[i]), planes[i]});
     }
-    void finishColour(const char* partName, std::span<const ChannelTarget> t, Rgb& colour) {
-        sanitiseColour(colour, t[0].stored == ChannelType::half, policy_,
-                       planeName(partName, {t[0].channel, t[1].channel, t[2].channel}), counts_);
-        colour.fillBorder();
-    }
-    void finishDepth(const char* partName, const std::string& channel, PlaneF& plane) {
-        sanitiseDepth(plane, policy_, planeName(partName, {channel}), counts_);
-        plane.fillBorder();
-    }
-    void finishNormal(const char* partName, std::span<const ChannelTarget> t, Rgb& normals) {
-        sanitiseNormal(normals, policy_, planeName(partName, {t[0].channel, t[1].channel, t[2].channel}), counts_);
-        normals.fillBorder();
-    }
-    void depth() {
-        std::vector<ChannelTarget> t = {{"Z", &frame_.depthView}};
-        file_.read(part("depth"), t);
-        finishDepth("depth", "Z", frame_.depthView);
-    }
-    void normal() {
-        Rgb& n = frame_.normalWorld;
-        std::vector<ChannelTarget> t = {{"N.X", &n.c[0]}, {"N.Y", &n.c[1]}, {"N.Z", &n.c[2]}};
-        file_.read(part("normal"), t);
-        finishNormal("normal", t, n);
-    }
-    void objectIds() {
-        std::vector<ChannelTarget> t = {{"id", &frame_.objectId}};
-        file_.read(part("object"), t);
-        frame_.objectId.fillBorder();
-    }
-    void motion() {
-        if (manifest_.isStatic && !file_.find("motion")) {
-            frame_.motionXPx = PlaneF(manifest_.width, manifest_.height);
-            frame_.motionYPx = PlaneF(manifest_.width, manifest_.height);
-            return;
+    // One read of a part, then the repairs, group by group.
+    void read(std::string_view partName, std::vector<ChannelTarget>& targets, const std::vector<Wanted>& wanted) {
+        file_.read(part(partName), targets);
+        for (const Wanted& w : wanted) {
+            const std::span<const ChannelTarget> own(targets.data() + w.first, w.group->channels.size());
+            std::vector<PlaneRef> planes;
+            std::vector<std::string> names;
+            for (const ChannelTarget& t : own) planes.push_back(t.plane), names.push_back(t.channel);
+            if (w.group->sanitise)
+                w.group->sanitise(planes, own[0].stored == ChannelType::half, policy_, planeName(partName, names),
+                                  counts_);
+            for (const PlaneRef& p : planes) std::visit([](auto* plane) { plane->fillBorder(); }, p);
         }
-        std::vector<ChannelTarget> t = {{"motion.X", &frame_.motionXPx}, {"motion.Y", &frame_.motionYPx}};
-        file_.read(part("motion"), t);
-        sanitiseMotion(frame_.motionXPx, frame_.motionYPx, policy_, planeName("motion", {"motion.X", "motion.Y"}),
-                       counts_);
-        frame_.motionXPx.fillBorder();
-        frame_.motionYPx.fillBorder();
     }
-    void edges() {
-        std::vector<ChannelTarget> t = {{"edge.X", &frame_.edgeXPx}, {"edge.Y", &frame_.edgeYPx}};
-        file_.read(part("edges"), t);
-        sanitiseEdges(frame_.edgeXPx, frame_.edgeYPx, policy_, planeName("edges", {"edge.X", "edge.Y"}), counts_);
-        frame_.edgeXPx.fillBorder();
-        frame_.edgeYPx.fillBorder();
+    void picture(const PassInfo& info) {
+        std::vector<ChannelTarget> targets;
+        std::vector<Wanted> wanted;
+        for (const ChannelGroup& group : info.groups) {
+            const std::vector<PlaneRef> planes = group.ofFrame(frame_);
+            if (info.zeroWhereStatic && manifest_.isStatic && !file_.find(info.part)) {
+                for (const PlaneRef& p : planes)
+                    std::visit([&]<class P>(P* plane) { *plane = P(manifest_.width, manifest_.height); }, p);
+                return;
+            }
+            want(group, planes, "", targets, wanted);
+        }
+        read(info.part, targets, wanted);
     }
     // A list: its part has a size of its own.
     void segments() {
@@ -116,9 +105,9 @@ class FrameDecoder {
         file_.read(*list, t);
         frame_.segments = unpackSegments(planes, policy_, name, counts_);
     }
-    // One read for all sub-samples: the part's channels share their compressed blocks.
-    void subSamples(PassSet wanted) {
-        const bool geometry = wanted.has(Pass::subsamples), colours = wanted.has(Pass::subsampleColor);
+    // One read for everything at the sub-samples: the part's channels share their compressed blocks.
+    void subSamples(PassSet wanted, std::string_view partName) {
+        if (!frame_.subSamples.empty()) return;  // another pass of the part has read it
         const size_t count = manifest_.subsamplePositionsPx.size();
         if (count == 0)
             throw InputError((manifest_.folder / "shot.json").string() +
@@ -126,37 +115,20 @@ class FrameDecoder {
                              "the shot again with sub-samples");
         frame_.subSamplePositionsPx = manifest_.subsamplePositionsPx;
         frame_.subSamples.resize(count);
-        std::vector<ChannelTarget> t;
-        if (geometry) t.push_back({"mask", &frame_.subSampleMask});
-        for (size_t k = 0; k < count; k++) {
-            SubSample& s = frame_.subSamples[k];
-            if (geometry) {
-                t.push_back({subSampleChannel(k, "Z"), &s.depthView});
-                t.push_back({subSampleChannel(k, "N.X"), &s.normalWorld.c[0]});
-                t.push_back({subSampleChannel(k, "N.Y"), &s.normalWorld.c[1]});
-                t.push_back({subSampleChannel(k, "N.Z"), &s.normalWorld.c[2]});
-                t.push_back({subSampleChannel(k, "id"), &s.objectId});
-            }
-            if (colours)
-                for (size_t c = 0; c < 3; c++)
-                    t.push_back({subSampleChannel(k, std::string_view("RGB").substr(c, 1)), &s.colorLinear.c[c]});
-        }
-        file_.read(part("subsamples"), t);
-        frame_.subSampleMask.fillBorder();
-        std::span<const ChannelTarget> rest(t);
-        if (geometry) rest = rest.subspan(1);
-        for (SubSample& s : frame_.subSamples) {
-            if (geometry) {
-                finishDepth("subsamples", rest[0].channel, s.depthView);
-                finishNormal("subsamples", rest.subspan(1, 3), s.normalWorld);
-                s.objectId.fillBorder();
-                rest = rest.subspan(5);
-            }
-            if (colours) {
-                finishColour("subsamples", rest.first(3), s.colorLinear);
-                rest = rest.subspan(3);
-            }
-        }
+        std::vector<ChannelTarget> targets;
+        std::vector<Wanted> groups;
+        const auto ofPart = [&](const PassInfo& p) {
+            return p.perSubSample && p.part == partName && wanted.has(p.pass);
+        };
+        for (const auto& info : allPasses())
+            if (ofPart(info))
+                for (const ChannelGroup& g : info.shared) want(g, g.ofFrame(frame_), "", targets, groups);
+        for (size_t k = 0; k < count; k++)
+            for (const auto& info : allPasses())
+                if (ofPart(info))
+                    for (const ChannelGroup& g : info.groups)
+                        want(g, g.ofSubSample(frame_.subSamples[k]), subSampleChannel(k, ""), targets, groups);
+        read(partName, targets, groups);
     }
 
     const Manifest& manifest_;
@@ -179,11 +151,11 @@ PassSet ShotReader::offered(Sampling sampling) const {
     for (const auto& info : allPasses()) {
         const ExrPart* part = file.find(info.part);
         if (!part) continue;
-        if (info.pass == Pass::subsamples && !part->find("s00.Z")) continue;
-        if (info.pass == Pass::subsampleColor && !part->find("s00.R")) continue;
+        if (info.perSubSample && !part->find(subSampleChannel(0, info.groups[0].channels[0]))) continue;
         r |= info.pass;
     }
-    if (manifest_.isStatic) r |= Pass::motion;
+    for (const auto& info : allPasses())
+        if (info.zeroWhereStatic && manifest_.isStatic) r |= info.pass;
     return r;
 }
 

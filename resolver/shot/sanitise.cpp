@@ -132,14 +132,37 @@ std::map<std::string, uint64_t> counted(const SanitiseCounts& counts) {
     return named;
 }
 
-void sanitiseColour(Rgb& colour, bool storedAsHalf, InputPolicy policy, const PlaneName& name, SanitiseCounts& counts) {
+namespace {
+using Planes = std::span<const std::variant<PlaneF*, PlaneU*>>;
+PlaneF& real(Planes planes, size_t i) { return *std::get<PlaneF*>(planes[i]); }
+}  // namespace
+
+void sanitiseColourPlanes(Planes planes, bool storedAsHalf, InputPolicy policy, const PlaneName& name,
+                          SanitiseCounts& counts) {
     if (policy == InputPolicy::raw) return;
     if (policy == InputPolicy::strict)
-        rejectBad({&colour.c[0], &colour.c[1], &colour.c[2]}, name, "a finite number",
+        rejectBad({&real(planes, 0), &real(planes, 1), &real(planes, 2)}, name, "a finite number",
                   [](float v) { return !finite(v); });
-    for (auto& plane : colour.c)
-        if (any(plane, [](float v) { return uint32_t(!finite(v)) | uint32_t(v < 0); }))
-            sanitiseChannel(plane, storedAsHalf ? 65504.0f : 1e30f, counts);
+    for (size_t c = 0; c < 3; c++)
+        if (any(real(planes, c), [](float v) { return uint32_t(!finite(v)) | uint32_t(v < 0); }))
+            sanitiseChannel(real(planes, c), storedAsHalf ? 65504.0f : 1e30f, counts);
+}
+void sanitiseDepthPlanes(Planes planes, bool, InputPolicy policy, const PlaneName& name, SanitiseCounts& counts) {
+    sanitiseDepth(real(planes, 0), policy, name, counts);
+}
+void sanitiseNormalPlanes(Planes planes, bool, InputPolicy policy, const PlaneName& name, SanitiseCounts& counts) {
+    sanitiseVectors({&real(planes, 0), &real(planes, 1), &real(planes, 2)}, 0.0f, policy, name, counts.normal);
+}
+void sanitiseMotionPlanes(Planes planes, bool, InputPolicy policy, const PlaneName& name, SanitiseCounts& counts) {
+    sanitiseMotion(real(planes, 0), real(planes, 1), policy, name, counts);
+}
+void sanitiseEdgesPlanes(Planes planes, bool, InputPolicy policy, const PlaneName& name, SanitiseCounts& counts) {
+    sanitiseEdges(real(planes, 0), real(planes, 1), policy, name, counts);
+}
+
+void sanitiseColour(Rgb& colour, bool storedAsHalf, InputPolicy policy, const PlaneName& name, SanitiseCounts& counts) {
+    const std::variant<PlaneF*, PlaneU*> planes[] = {&colour.c[0], &colour.c[1], &colour.c[2]};
+    sanitiseColourPlanes(planes, storedAsHalf, policy, name, counts);
 }
 
 void sanitiseDepth(PlaneF& depth, InputPolicy policy, const PlaneName& name, SanitiseCounts& counts) {

@@ -1,6 +1,8 @@
 // The input sanitiser (conventions 8): what a shot's planes may hold before any method sees them.
 #pragma once
+#include <span>
 #include <string>
+#include <variant>
 
 #include "shot/reader.h"
 
@@ -25,5 +27,19 @@ void sanitiseMotion(PlaneF& motionXPx, PlaneF& motionYPx, InputPolicy policy, co
                     SanitiseCounts& counts);
 // Not finite -> (0.5, 0.5): no edge cuts this pixel (conventions 3).
 void sanitiseEdges(PlaneF& edgeXPx, PlaneF& edgeYPx, InputPolicy policy, const PlaneName& name, SanitiseCounts& counts);
+
+// The same on the planes of one group of channels of a pass (shot/pass_table.h), in the order of the channels.
+using Sanitise = void (*)(std::span<const std::variant<PlaneF*, PlaneU*>> planes, bool storedAsHalf, InputPolicy policy,
+                          const PlaneName& name, SanitiseCounts& counts);
+void sanitiseColourPlanes(std::span<const std::variant<PlaneF*, PlaneU*>> planes, bool storedAsHalf, InputPolicy policy,
+                          const PlaneName& name, SanitiseCounts& counts);
+void sanitiseDepthPlanes(std::span<const std::variant<PlaneF*, PlaneU*>> planes, bool storedAsHalf, InputPolicy policy,
+                         const PlaneName& name, SanitiseCounts& counts);
+void sanitiseNormalPlanes(std::span<const std::variant<PlaneF*, PlaneU*>> planes, bool storedAsHalf, InputPolicy policy,
+                          const PlaneName& name, SanitiseCounts& counts);
+void sanitiseMotionPlanes(std::span<const std::variant<PlaneF*, PlaneU*>> planes, bool storedAsHalf, InputPolicy policy,
+                          const PlaneName& name, SanitiseCounts& counts);
+void sanitiseEdgesPlanes(std::span<const std::variant<PlaneF*, PlaneU*>> planes, bool storedAsHalf, InputPolicy policy,
+                         const PlaneName& name, SanitiseCounts& counts);
 
 }  // namespace aa

@@ -1,56 +1,53 @@
 #include "shot/writer.h"
 
+#include <algorithm>
+
 #include "image/exr.h"
+#include "shot/pass_table.h"
 #include "shot/segments.h"
 
 namespace aa {
 namespace {
-PartSource rgbPart(const char* name, const Rgb& c, const std::string& r, const std::string& g, const std::string& b) {
-    return {name, {{r, &c.c[0]}, {g, &c.c[1]}, {b, &c.c[2]}}};
-}
-PartSource subSamplePart(const Frame& frame) {
-    PartSource part{"subsamples", {}};
-    if (frame.passes.has(Pass::subsamples)) part.channels.push_back({"mask", &frame.subSampleMask});
-    for (size_t k = 0; k < frame.subSamples.size(); k++) {
-        const SubSample& s = frame.subSamples[k];
-        if (frame.passes.has(Pass::subsamples)) {
-            part.channels.push_back({subSampleChannel(k, "Z"), &s.depthView});
-            for (size_t c = 0; c < 3; c++)
-                part.channels.push_back({subSampleChannel(k, std::string("N.") + "XYZ"[c]), &s.normalWorld.c[c]});
-            part.channels.push_back({subSampleChannel(k, "id"), &s.objectId});
-        }
-        if (frame.passes.has(Pass::subsampleColor))
-            for (size_t c = 0; c < 3; c++)
-                part.channels.push_back({subSampleChannel(k, std::string(1, "RGB"[c])), &s.colorLinear.c[c]});
-    }
-    return part;
+void add(PartSource& part, const ChannelGroup& group, const std::vector<PlaneRef>& planes, const std::string& prefix) {
+    for (size_t i = 0; i < planes.size(); i++)
+        std::visit(
+            [&](auto* plane) {
+                part.channels.push_back({prefix + std::string(group.channels[i]), plane});
+            },
+            planes[i]);
 }
 }  // namespace
 
-void writeFrame(const std::filesystem::path& file, const Frame& frame, bool motionPart) {
+void writeFrame(const std::filesystem::path& file, const Frame& written, bool motionPart) {
+    Frame& frame = const_cast<Frame&>(written);  // the table's planes are for the reader, too; none is changed here
+    const SegmentPlanes segments = frame.passes.has(Pass::segments) ? packSegments(frame.segments) : SegmentPlanes{};
     std::vector<PartSource> parts;
-    const auto has = [&](Pass p) { return frame.passes.has(p); };
-    if (has(Pass::color)) parts.push_back(rgbPart("color", frame.colorLinear, "R", "G", "B"));
-    if (has(Pass::albedo)) parts.push_back(rgbPart("albedo", frame.albedoLinear, "albedo.R", "albedo.G", "albedo.B"));
-    if (has(Pass::depth)) parts.push_back({"depth", {{"Z", &frame.depthView}}});
-    if (has(Pass::normal)) parts.push_back(rgbPart("normal", frame.normalWorld, "N.X", "N.Y", "N.Z"));
-    if (has(Pass::object)) parts.push_back({"object", {{"id", &frame.objectId}}});
-    if (has(Pass::motion) && motionPart)
-        parts.push_back({"motion", {{"motion.X", &frame.motionXPx}, {"motion.Y", &frame.motionYPx}}});
-    if (has(Pass::subsamples) || has(Pass::subsampleColor)) parts.push_back(subSamplePart(frame));
-    const SegmentPlanes segments = has(Pass::segments) ? packSegments(frame.segments) : SegmentPlanes{};
-    if (has(Pass::edges)) parts.push_back({"edges", {{"edge.X", &frame.edgeXPx}, {"edge.Y", &frame.edgeYPx}}});
-    if (has(Pass::segments)) {
-        PartSource part{"segments", {}};
-        for (size_t c = 0; c < segments.size(); c++)
-            part.channels.push_back({std::string(kSegmentChannels[c]), &segments[c]});
-        parts.push_back(std::move(part));
+    for (const auto& info : allPasses()) {
+        if (!frame.passes.has(info.pass) || (info.zeroWhereStatic && !motionPart)) continue;
+        auto part = std::find_if(parts.begin(), parts.end(), [&](const auto& p) { return p.name == info.part; });
+        if (part == parts.end()) part = parts.insert(parts.end(), PartSource{std::string(info.part), {}});
+        for (const auto& g : info.shared) add(*part, g, g.ofFrame(frame), "");
+        for (const auto& g : info.groups) {
+            if (info.isList) {
+                for (size_t c = 0; c < segments.size(); c++)
+                    part->channels.push_back({std::string(g.channels[c]), &segments[c]});
+            } else if (info.perSubSample) {
+                for (size_t k = 0; k < frame.subSamples.size(); k++)
+                    add(*part, g, g.ofSubSample(frame.subSamples[k]), subSampleChannel(k, ""));
+            } else {
+                add(*part, g, g.ofFrame(frame), "");
+            }
+        }
     }
     writeParts(file, parts);
 }
 
+namespace {
+PartSource half(const char* name, const Rgb& c) { return {name, {{"R", &c.c[0]}, {"G", &c.c[1]}, {"B", &c.c[2]}}}; }
+}  // namespace
+
 void writeTruth(const std::filesystem::path& file, const Truth& truth) {
-    writeParts(file, {rgbPart("a", truth.a, "R", "G", "B"), rgbPart("b", truth.b, "R", "G", "B")});
+    writeParts(file, {half("a", truth.a), half("b", truth.b)});
 }
 
 }  // namespace aa

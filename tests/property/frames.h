@@ -7,6 +7,7 @@
 #include "image/error.h"
 #include "methods/driver.h"
 #include "methods/methods_under_test.h"
+#include "shot/pass_table.h"
 
 namespace aa::testing {
 

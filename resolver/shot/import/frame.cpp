@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "image/error.h"
+#include "shot/pass_table.h"
 #include "shot/import/blender_motion.h"
 
 namespace aa {

@@ -11,6 +11,7 @@
 #include <glm/matrix.hpp>
 
 #include "image/error.h"
+#include "shot/pass_table.h"
 #include "image/io.h"
 #include "shot/check/check.h"
 #include "shot/import/blender_exr.h"
