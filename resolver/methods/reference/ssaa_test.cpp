@@ -33,7 +33,7 @@ Rgb resolved(const Frame& f, const Exec& exec = {}) {
     shot.width = f.width, shot.height = f.height;
     shot.subSamplePositionsPx = f.subSamplePositionsPx;
     Rgb out(f.width, f.height, -1);
-    ssaaDescriptor().create(Params("ssaa", {}, {}), shot)->resolve(f, exec, out);
+    ssaaDescriptor().create(Params("ssaa", ssaaDescriptor().params, {}), shot)->resolve(f, exec, out);
     return out;
 }
 float noise(size_t k, int x, int y, size_t c) {
@@ -94,7 +94,7 @@ TEST(Ssaa, EveryInstructionSetAndPrecisionGivesTheSameBits) {
 }
 
 TEST(Ssaa, ShotWithoutSubSamplesIsAnInputError) {
-    EXPECT_THROW(ssaaDescriptor().create(Params("ssaa", {}, {}), {}), InputError);
+    EXPECT_THROW(ssaaDescriptor().create(Params("ssaa", ssaaDescriptor().params, {}), {}), InputError);
 }
 
 }  // namespace
