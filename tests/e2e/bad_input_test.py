@@ -16,9 +16,26 @@ from program import PROGRAM, ProgramTest, main
 
 def write_tiff(path: Path, width: int, height: int, codes: bytes) -> None:
     """Grey, 8 bits, not compressed: a picture that is neither PNG nor EXR."""
-    entries = [(256, width), (257, height), (258, 8), (259, 1), (262, 1), (273, 8), (277, 1), (278, height), (279, len(codes))]
+    entries = [
+        (256, width),
+        (257, height),
+        (258, 8),
+        (259, 1),
+        (262, 1),
+        (273, 8),
+        (277, 1),
+        (278, height),
+        (279, len(codes)),
+    ]
     listed = b"".join(struct.pack("<HHII", tag, 4, 1, value) for tag, value in entries)
-    path.write_bytes(b"II*\0" + struct.pack("<I", 8 + len(codes)) + codes + struct.pack("<H", len(entries)) + listed + bytes(4))
+    path.write_bytes(
+        b"II*\0"
+        + struct.pack("<I", 8 + len(codes))
+        + codes
+        + struct.pack("<H", len(entries))
+        + listed
+        + bytes(4)
+    )
 
 
 class BadInput(ProgramTest):
@@ -188,7 +205,9 @@ class BadInput(ProgramTest):
         write_tiff(tiff, 24, 20, bytes(i % 251 for i in range(24 * 20)))
         self.aaresolve("filter", "noaa", tiff, png)
         expected = png.read_bytes()
-        loaded = subprocess.run([PROGRAM], env={"LD_TRACE_LOADED_OBJECTS": "1"}, capture_output=True, text=True)
+        loaded = subprocess.run(
+            [PROGRAM], env={"LD_TRACE_LOADED_OBJECTS": "1"}, capture_output=True, text=True
+        )
         self.assertIn("OpenEXR", loaded.stdout)
         self.assertNotIn("OpenImageIO", loaded.stdout)
         alone = self.folder / "alone" / "bin" / PROGRAM.name
@@ -197,11 +216,22 @@ class BadInput(ProgramTest):
         command = [alone, "filter", "noaa", tiff, png]
         refused = subprocess.run(command, capture_output=True, text=True)
         self.assertEqual(refused.returncode, 3)
-        for words in ("in.tif", "TIFF file", "aaresolve_formats.so", "OpenImageIO", "AARESOLVE_FORMATS"):
+        for words in (
+            "in.tif",
+            "TIFF file",
+            "aaresolve_formats.so",
+            "OpenImageIO",
+            "AARESOLVE_FORMATS",
+        ):
             self.assertIn(words, refused.stderr)
         self.assertEqual(refused.stderr.count("\n"), 1)
         module = PROGRAM.parent / "aaresolve_formats.so"
-        subprocess.run(command, check=True, env={**os.environ, "AARESOLVE_FORMATS": str(module)}, capture_output=True)
+        subprocess.run(
+            command,
+            check=True,
+            env={**os.environ, "AARESOLVE_FORMATS": str(module)},
+            capture_output=True,
+        )
         self.assertEqual(png.read_bytes(), expected)
         installed = self.folder / "alone" / "lib" / "aaresolve" / module.name
         installed.parent.mkdir(parents=True)

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "image/error.h"
-#include "shot/pass_table.h"
 #include "shot/import/blender_motion.h"
+#include "shot/pass_table.h"
 
 namespace aa {
 namespace {

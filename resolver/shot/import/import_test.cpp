@@ -11,7 +11,6 @@
 #include <glm/matrix.hpp>
 
 #include "image/error.h"
-#include "shot/pass_table.h"
 #include "image/io.h"
 #include "shot/check/check.h"
 #include "shot/import/blender_exr.h"
@@ -19,6 +18,7 @@
 #include "shot/import/folder.h"
 #include "shot/import/frame.h"
 #include "shot/import/pitfalls.h"
+#include "shot/pass_table.h"
 #include "shot/reader.h"
 #include "shot/synth/synth.h"
 
