@@ -11,6 +11,7 @@
 #include "report/colour_map.h"
 #include "report/sheet.h"
 #include "report/web/web_files.h"
+#include "shot/pass_table.h"
 
 namespace aa {
 namespace {
@@ -114,6 +115,19 @@ std::string reportHtml(const RunResults& run, const std::vector<Pictures>& pictu
         data["errorColours"].push_back(
             {int(std::lround(255 * c[0])), int(std::lround(255 * c[1])), int(std::lround(255 * c[2]))});
     }
+    data["figures"] = json::array();
+    for (const Figure* f : figuresIn(run))
+        if (!f->ofSquares)  // those have columns of their own
+            data["figures"].push_back({{"name", f->name},
+                                       {"title", f->title},
+                                       {"better", f->higherIsBetter ? "high" : "low"},
+                                       {"form", f->form == FigureForm::similarity ? "similarity"
+                                                : f->form == FigureForm::decibels ? "decibels"
+                                                                                  : "significant"}});
+    data["passBytes"] = json::object();
+    for (const PassInfo& p : allPasses())  // colour is there without any method
+        if (p.pass != Pass::color)
+            data["passBytes"][std::string(p.name)] = bytesPerPixel(p.pass, size_t(run.subSamples));
     data["pictures"] = json::array();
     size_t bytes = 0, last = 0;
     for (const Pictures& p : pictures) {

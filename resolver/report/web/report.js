@@ -1,7 +1,7 @@
 // The report's page: everything is drawn from the JSON in #data, which `aaresolve report` wrote. No network, no storage.
 "use strict";
 (() => {
-  const { run, order, words, protocol, space, pictures, errorScale, errorColours } = JSON.parse(document.getElementById("data").textContent);
+  const { run, order, words, protocol, space, pictures, errorScale, errorColours, figures, passBytes } = JSON.parse(document.getElementById("data").textContent);
   const $ = (id) => document.getElementById(id);
   const methods = run.methods;
   const measured = (m) => m.frames.filter((f) => f.metrics);
@@ -48,13 +48,13 @@
     { title: "To the next better, dB", get: (m, i) => { const g = toNext(i); return g ? g.gain : null; },
       show: (m, i) => { const g = toNext(i); return g ? signed(g.gain) : "–"; },
       small: (m, i) => { const g = toNext(i); return g && !g.resolved ? "not resolved" : null; } },
-    { title: "SSIM", better: "high", get: pooled("ssimLuma"), show: (m) => (m.pooled ? fixed(m.pooled.ssimLuma, 6) : "–") },
-    has("ssimRgb") && { title: "SSIM RGB", better: "high", get: pooled("ssimRgb"), show: (m) => (m.pooled ? fixed(m.pooled.ssimRgb, 6) : "–") },
-    has("flip") && { title: "FLIP", better: "low", get: pooled("flip"), show: (m) => (m.pooled ? short(m.pooled.flip) : "–") },
+    // Every other figure of the program's table that this run holds.
+    ...figures.map((f) => has(f.name) && { title: f.title, better: f.better, get: pooled(f.name),
+      show: (m) => (!m.pooled || m.pooled[f.name] == null ? "–" : f.form === "similarity" ? fixed(m.pooled[f.name], 6)
+        : f.form === "decibels" ? fixed(m.pooled[f.name], 2) : short(m.pooled[f.name])) }),
     { title: "MSE, 10⁻⁶", better: "low", get: pooled("mse"), show: (m) => (m.pooled ? millionths(m.pooled.mse) : "–"),
       small: () => (run.truth.noiseMse > 0 ? "± " + millionths(run.truth.noiseMse) : null) },
     { title: "SNR, dB", better: "high", get: pooled("snr"), show: (m) => (m.pooled ? fixed(m.pooled.snr, 2) : "–") },
-    has("relMse") && { title: "relMSE", better: "low", get: pooled("relMse"), show: (m) => (m.pooled ? short(m.pooled.relMse) : "–") },
     { title: "Time, ns/px", better: "low", get: (m) => m.nsPerPixel, show: (m) => short(m.nsPerPixel),
       small: (m) => short(m.secondsMedian * 1000) + " ms per frame" },
     { title: "State, MB", better: "low", get: (m) => m.stateBytes, show: (m) => (m.stateBytes / 1048576).toFixed(2) },
@@ -170,9 +170,8 @@
     const render = [...groups].reduce((sum, g) => sum + (renderSeconds[centre + g] ?? 0), 0);
     return { render, all: render + m.secondsMedian };
   };
-  // Bytes per pixel of each pass in memory, 32-bit floats and ids; S = sub-samples of the shot.
+  // passBytes: per pixel of each pass in memory, 32-bit floats and ids; S = sub-samples of the shot.
   const S = run.shot.subSamples || 0;
-  const passBytes = { depth: 4, albedo: 12, normal: 12, object: 4, motion: 8, edges: 8, subsamples: 4 + 20 * S, subsampleColor: 12 * S };
   const megabytes1080 = (bytesPerPixel) => bytesPerPixel * 1920 * 1080 / 1048576;
   const stateOf = (m) => megabytes1080(m.stateBytes / (run.shot.resolution[0] * run.shot.resolution[1]));
   const passMemory = (m) => megabytes1080(m.passes.reduce((sum, p) => sum + (passBytes[p] || 0), 0));
