@@ -1,0 +1,128 @@
+#include "study/run.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <map>
+
+#include "image/error.h"
+#include "shot/synth/synth.h"
+#include "study/prepare.h"
+#include "study/sweep.h"
+
+namespace aa {
+namespace {
+namespace fs = std::filesystem;
+
+// A shot of a few small frames, made once.
+const ShotReader& shot(const std::string& scene) {
+    static std::map<std::string, ShotReader> made;
+    if (const auto found = made.find(scene); found != made.end()) return found->second;
+    SynthOptions o;
+    o.scene = scene, o.width = 48, o.height = 32, o.frames = 4, o.period = 4;
+    const fs::path folder = fs::temp_directory_path() / ("aaresolve_study_" + scene + "_" + std::to_string(::getpid()));
+    writeSynth(o, folder);
+    return made.emplace(scene, ShotReader(folder)).first->second;
+}
+RunOptions optionsFor(const std::string& scene, std::initializer_list<std::string> methods) {
+    RunOptions o;
+    for (const auto& m : methods) o.methods.push_back(parseMethod(m));
+    o.frames = selectFrames(shot(scene).manifest(), "");
+    o.out = fs::temp_directory_path() / ("aaresolve_study_out_" + std::to_string(::getpid()));
+    o.writeExr = false;
+    return o;
+}
+
+TEST(Study, ARunTellsEveryStepAndJudgesAStaticShotAtItsLastFrame) {
+    const RunOptions o = optionsFor("half_planes", {"noaa", "accum", "taaSimplest"});
+    std::vector<std::string> notes;
+    const RunResults r = run(shot("half_planes"), o, {[&](const std::string& note) { notes.push_back(note); }});
+    EXPECT_EQ(notes.size(), stepsOf(o, shot("half_planes").manifest()));
+    EXPECT_EQ(notes.back(), "frame 4");
+    ASSERT_EQ(r.methods.size(), 3u);
+    for (const auto& m : r.methods) {
+        ASSERT_EQ(m.frames.size(), 4u);
+        EXPECT_FALSE(m.frames[2].judged);
+        EXPECT_TRUE(m.frames[3].judged);
+        EXPECT_EQ(m.pooled->frames, 1);
+        EXPECT_EQ(m.pooled->mean.mse, m.frames[3].metrics->mse);
+    }
+    EXPECT_GT(*r.methods[1].pooled->gainDb, 0);
+    EXPECT_TRUE(fs::exists(o.out / "results.json"));
+}
+TEST(Study, AnInterruptedRunHoldsTheFramesThatWereFinished) {
+    const RunOptions o = optionsFor("moving", {"noaa", "uncharted"});
+    int steps = 0;
+    const RunResults r = run(shot("moving"), o, {[&](const std::string&) { steps++; }, [&] { return steps >= 2; }});
+    EXPECT_EQ(r.methods[0].frames.size(), 2u);
+    EXPECT_EQ(r.methods[1].frames.size(), 2u);
+}
+TEST(Study, AFullHistoryRunsTenPeriodsBefore) {
+    RunOptions o = optionsFor("half_planes", {"noaa", "uncharted"});
+    o.protocol.history = History::full;
+    EXPECT_EQ(stepsOf(o, shot("half_planes").manifest()), 4u * (1 + 10));
+    EXPECT_EQ(run(shot("half_planes"), o, {}).warmUpFrames, 40u);
+    o.methods = {parseMethod("noaa")};  // nothing accumulates
+    EXPECT_EQ(stepsOf(o, shot("half_planes").manifest()), 4u);
+    RunOptions moving = optionsFor("moving", {"uncharted"});
+    moving.protocol.history = History::full;
+    EXPECT_THROW(applyHistory(moving, shot("moving").manifest()), UsageError);
+}
+TEST(Study, FiguresThatAreAskedForAreMeasured) {
+    RunOptions o = optionsFor("half_planes", {"noaa"});
+    const auto flipOf = [&] { return run(shot("half_planes"), o, {}).methods[0].pooled->mean.figure("flip"); };
+    EXPECT_FALSE(flipOf());
+    o.measure = measureOptions({"flip"});
+    EXPECT_GT(flipOf().value(), 0);
+    EXPECT_THROW(measureOptions({"flop"}), UsageError);
+}
+TEST(Study, FramesAreChosenByNumber) {
+    const Manifest& m = shot("moving").manifest();
+    EXPECT_EQ(selectFrames(m, ""), (std::vector<size_t>{0, 1, 2, 3}));
+    EXPECT_EQ(selectFrames(m, "4,1-2"), (std::vector<size_t>{0, 1, 3}));
+    EXPECT_THROW(selectFrames(m, "2-1"), UsageError);
+    EXPECT_THROW(selectFrames(m, "9"), InputError);
+}
+TEST(Study, AMissingPassIsNamed) {
+    try {
+        requirePasses(shot("moving"), {parseMethod("msaa")});
+        FAIL() << "msaa ran without sub-samples";
+    } catch (const InputError& e) {
+        EXPECT_NE(std::string(e.what()).find("'msaa' needs the pass 'subsamples'"), std::string::npos) << e.what();
+    }
+}
+TEST(Sweep, ParametersGoBeforeTheStages) {
+    EXPECT_EQ(withParameters("uncharted", "kmin=1"), "uncharted:kmin=1");
+    EXPECT_EQ(withParameters("uncharted:kmax=1+sharpen=norm", "kmin=1"), "uncharted:kmax=1,kmin=1+sharpen=norm");
+    // An exponent starts no stage.
+    EXPECT_EQ(withParameters("accumReject:nMaxMoving=1e+1", "nMaxStatic=8"),
+              "accumReject:nMaxMoving=1e+1,nMaxStatic=8");
+    EXPECT_EQ(withoutStages("accumReject:nMaxMoving=1e+1+sharpen=norm"), "accumReject:nMaxMoving=1e+1");
+}
+TEST(Sweep, EveryCombinationIsAVariantAndPartsGiveTheSameFigures) {
+    SweepOptions o;
+    o.methods = {"accumReject:nMaxMoving=1e+1"};
+    o.vary = {"nMaxStatic=8,16", "depthTest=window,point"};
+    RunOptions run = optionsFor("moving", {});
+    run.methods = variantsOf(o);
+    ASSERT_EQ(run.methods.size(), 1u + 4);
+    EXPECT_EQ(run.methods[4].text, "accumReject:nMaxMoving=1e+1,nMaxStatic=16,depthTest=point");
+    Sweep together(shot("moving"), run, o);
+    EXPECT_EQ(together.passes(), 1u);
+    const RunResults once = together.run({});
+    o.memoryMb = 1e-3;  // room for one
+    Sweep apart(shot("moving"), run, o);
+    EXPECT_EQ(apart.passes(), 5u);
+    const RunResults parts = apart.run({});
+    ASSERT_EQ(parts.methods.size(), 5u);
+    for (size_t k = 0; k < 5; k++) EXPECT_EQ(parts.methods[k].pooled->mean.mse, once.methods[k].pooled->mean.mse);
+    EXPECT_EQ(parts.pairs.size(), once.pairs.size());
+    o.vary = {"nMaxStatic=8,8"};
+    EXPECT_THROW(variantsOf(o), UsageError);
+    o.vary = {"nMaxStatic=8", "nMaxStatic=16"};
+    EXPECT_THROW(variantsOf(o), UsageError);
+}
+
+}  // namespace
+}  // namespace aa
