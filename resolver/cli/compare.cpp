@@ -135,14 +135,7 @@ nlohmann::ordered_json numbers(const FrameMetrics& m, const std::vector<const Fi
     return j;
 }
 void writeErrorMap(const Both& p, const fs::path& file) {
-    const PlaneF error = errorMap(p.encodedA, p.encodedB);
-    Rgb image(error.width(), error.height());
-    for (int y = 0; y < error.height(); y++)
-        for (int x = 0; x < error.width(); x++) {
-            const Colour c = errorColour(double(error.at(x, y)) / kErrorScale);
-            for (size_t k = 0; k < 3; k++) image.c[k].at(x, y) = c[k];
-        }
-    writePng(file, image);
+    writePng(file, colouredError(errorMap(p.encodedA, p.encodedB)));
 }
 
 void compare(const Options& o, Context& context) {

@@ -5,6 +5,7 @@
 
 #include "image/error.h"
 #include "image/io.h"
+#include "report/colour_map.h"
 
 namespace aa {
 namespace fs = std::filesystem;
@@ -152,6 +153,16 @@ std::vector<Window> mostTellingWindows(const Pictures& pictures, int width, int 
     std::sort(chosen.begin(), chosen.end(),
               [](const Window& a, const Window& b) { return std::pair(a.x, a.y) < std::pair(b.x, b.y); });
     return chosen;
+}
+
+Rgb colouredError(const PlaneF& error) {
+    Rgb image(error.width(), error.height());
+    for (int y = 0; y < error.height(); y++)
+        for (int x = 0; x < error.width(); x++) {
+            const Colour c = errorColour(double(error.at(x, y)) / kErrorScale);
+            for (size_t k = 0; k < 3; k++) image.c[k].at(x, y) = c[k];
+        }
+    return image;
 }
 
 PlaneF errorMap(const Rgb& test, const Rgb& reference) {

@@ -33,5 +33,7 @@ std::vector<Window> mostTellingWindows(const Pictures& pictures, int width, int 
 PlaneF errorMap(const Rgb& test, const Rgb& reference);
 // The one scale of every error map: black at 0, lightest at this error or more (0.2 = 51 of 255 codes).
 inline constexpr double kErrorScale = 0.2;
+// An error map as a picture: errorColour() on that scale.
+Rgb colouredError(const PlaneF& error);
 
 }  // namespace aa

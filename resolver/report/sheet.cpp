@@ -61,16 +61,6 @@ Layout layoutOf(const RunResults& run, const Pictures& p) {
 Rgb fullFrame(const Rgb& image, const Layout& l, const Exec& exec) {
     return l.magnification > 0 ? image : shrunk(image, l.frameWidth, l.frameHeight, exec);
 }
-Rgb coloured(const PlaneF& error) {
-    Rgb image(error.width(), error.height());
-    for (int y = 0; y < error.height(); y++)
-        for (int x = 0; x < error.width(); x++) {
-            const Colour c = errorColour(double(error.at(x, y)) / kErrorScale);
-            for (size_t k = 0; k < 3; k++) image.c[k].at(x, y) = c[k];
-        }
-    return image;
-}
-
 class Sheet {
   public:
     Sheet(const RunResults& run, const Pictures& pictures, const Exec& exec)
@@ -239,7 +229,7 @@ class Sheet {
     void errorCell(const Rgb& image, int y) {
         PlaneF error = errorMap(image, pictures_.truth);
         if (layout_.magnification == 0) error = shrunk(error, layout_.frameWidth, layout_.frameHeight);
-        canvas_.draw(coloured(error), layout_.errorX(), y + (layout_.rowHeight - layout_.frameHeight) / 2,
+        canvas_.draw(colouredError(error), layout_.errorX(), y + (layout_.rowHeight - layout_.frameHeight) / 2,
                      std::max(1, layout_.magnification));
     }
     void footer(int y) {
