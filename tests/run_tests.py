@@ -5,9 +5,11 @@ python3 tests/run_tests.py --preset release -j 2
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 DONE = re.compile(r"^ *\d+/\d+ Test +#\d+: (\S+) .*?([\d.]+) sec *$")
 SUMMARY = re.compile(r"^\d+% tests passed")
@@ -16,8 +18,17 @@ SUMMARY = re.compile(r"^\d+% tests passed")
 def main(arguments: list[str]) -> int:
     slowest: list[tuple[float, str]] = []
     summary: list[str] = []
+    # A launcher of several Pythons puts the one that runs this first in PATH; Blender, which finds its modules by the
+    # python3 of PATH, would take it for its own.
+    here = str(Path(sys.executable).parent)
+    places = [p for p in os.environ["PATH"].split(os.pathsep) if p != here or here == "/usr/bin"]
+    environment = {**os.environ, "PATH": os.pathsep.join(places)}
     with subprocess.Popen(
-        ["ctest", *arguments], stdout=subprocess.PIPE, text=True, errors="replace"
+        ["ctest", *arguments],
+        stdout=subprocess.PIPE,
+        text=True,
+        errors="replace",
+        env=environment,
     ) as ctest:
         assert ctest.stdout
         for line in ctest.stdout:
