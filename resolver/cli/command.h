@@ -61,8 +61,8 @@ class CommandLine {
     ~CommandLine();
     Command command(const std::string& name, const std::string& help);
     std::vector<std::string> commands() const;
-    // Reads and runs. Returns nothing, or the exit code where help or version were asked for or the usage is wrong
-    // (said on stderr). Errors of the command itself pass through.
+    // Reads and runs. Returns 2 where the usage is wrong (said on stderr), 0 otherwise, also for help and version.
+    // Errors of the command itself pass through.
     int parse(int argc, char** argv);
 
   private:

@@ -115,11 +115,9 @@ FrameMetrics figuresOf(const Both& p, const std::set<const Metric*>& wanted, con
     const bool linear = !p.linearA.empty() && !p.linearB.empty();
     const ImagePair images{p.encodedA, p.encodedB, linear ? &p.linearA : nullptr, linear ? &p.linearB : nullptr};
     for (const Metric* metric : wanted) {
-        if (!metric->measure) continue;
         if (!metric->isPossible(images))
             throw UsageError(std::string(metric->figures[0].name) + " needs linear images: two EXR files");
-        const std::vector<double> values = metric->measure(images, exec);
-        for (size_t i = 0; i < values.size(); i++) figures.others.emplace(metric->figures[i].name, values[i]);
+        addFigures(figures, *metric, images, exec);
     }
     return figures;
 }

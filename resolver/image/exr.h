@@ -36,10 +36,12 @@ struct ExrPart {
     const ExrChannel* find(std::string_view channel) const;
 };
 
+using PlaneRef = std::variant<PlaneF*, PlaneU*>;
+
 // Where a channel of a part goes. The target is allocated by the read.
 struct ChannelTarget {
     std::string channel;
-    std::variant<PlaneF*, PlaneU*> plane;
+    PlaneRef plane;
     ChannelType stored = ChannelType::real;  // set by the read
 };
 

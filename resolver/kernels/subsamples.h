@@ -103,5 +103,14 @@ AA_INLINE void mark(const aa::GeometryArgs& g, int x0, int y, Marks<R>& marks, c
             marks.lanes[i] |= maskBits<R>(differs(k, x, o));
         }
 }
+// Calls edgePixel(x, y) for every marked pixel of the chunk that starts at x0; not for row padding.
+template <class R, class EdgePixel>
+AA_INLINE void forMarked(const Marks<R>& marks, int width, int x0, int y, const EdgePixel& edgePixel) {
+    for (int i = 0; i < chunkGroups<R>(width - x0); i++)
+        for (int lane = 0; marks.lanes[i] >> lane; lane++) {
+            const int x = x0 + i * N<R> + lane;
+            if (marks.lanes[i] >> lane & 1u && x < width) edgePixel(x, y);
+        }
+}
 
 }  // namespace AA_ARCH

@@ -15,10 +15,9 @@ size_t startOfStage(std::string_view text, size_t from = 0) {
 }
 }  // namespace
 
-size_t startOfStages(std::string_view text) { return startOfStage(text); }
-std::string withoutStages(std::string_view text) { return std::string(text.substr(0, startOfStages(text))); }
+std::string withoutStages(std::string_view text) { return std::string(text.substr(0, startOfStage(text))); }
 std::string withParameters(std::string_view text, std::string_view parameters) {
-    const std::string_view head = text.substr(0, startOfStages(text)), stages = text.substr(head.size());
+    const std::string_view head = text.substr(0, startOfStage(text)), stages = text.substr(head.size());
     return std::string(head) + (head.find(':') == std::string_view::npos ? ":" : ",") + std::string(parameters) +
            std::string(stages);
 }

@@ -32,8 +32,6 @@ MethodSpec parseMethod(std::string_view text, const std::vector<MethodDescriptor
 PassSet passesOf(const std::vector<MethodSpec>& methods);
 // Of the methods that read frames of this sampling only.
 PassSet passesOf(const std::vector<MethodSpec>& methods, Sampling sampling);
-// Where the stages of a text start: at the first '+' that a letter follows ("1e+3" is a number), or its length.
-size_t startOfStages(std::string_view text);
 // The text without its stages, and with more parameters, written before them: "uncharted:kmin=1+sharpen=norm".
 std::string withoutStages(std::string_view text);
 std::string withParameters(std::string_view text, std::string_view parameters);

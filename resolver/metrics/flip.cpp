@@ -29,12 +29,7 @@ double flip(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map
                         map ? map->row(0) : nullptr,
                         map ? map->stride() : 0,
                         rows.data()};
-    const auto& kernel = flipKernelsFor(exec).flip;
-    const auto fn = exec.precision == Precision::fast     ? kernel.fast
-                    : exec.precision == Precision::scalar ? kernel.scalar
-                                                          : kernel.oracle;
-    forRows(
-        exec, h, [&](int y0, int y1) { fn(args, y0, y1); }, kRowsPerBlock);
+    runKernel(flipKernelsFor(exec).flip, exec, args, h, kRowsPerBlock);
     if (map) map->fillBorder();
     return std::accumulate(rows.begin(), rows.end(), 0.0) / (double(w) * h);
 }

@@ -41,6 +41,12 @@ std::optional<double> FrameMetrics::figure(std::string_view name) const {
     return f->ofSquares(squares());
 }
 
+void addFigures(FrameMetrics& to, const Metric& metric, const ImagePair& images, const Exec& exec) {
+    if (!metric.measure) return;
+    const std::vector<double> values = metric.measure(images, exec);
+    for (size_t i = 0; i < values.size(); i++) to.others.emplace(metric.figures[i].name, values[i]);
+}
+
 MeasureOptions measureOptions(const std::vector<std::string>& names) {
     MeasureOptions options;
     for (const auto& name : names)
@@ -57,9 +63,7 @@ FrameMetrics measure(const Rgb& encoded, const Rgb* linear, const Reference& ref
     FrameMetrics m = frameMetrics(errors.squaredError());
     const ImagePair images{encoded, reference.encoded, linear, linear ? &reference.linear : nullptr};
     const auto add = [&](const Metric& metric) {
-        if (!metric.measure || !metric.isPossible(images)) return;
-        const std::vector<double> values = metric.measure(images, exec);
-        for (size_t i = 0; i < values.size(); i++) m.others.emplace(metric.figures[i].name, values[i]);
+        if (metric.isPossible(images)) addFigures(m, metric, images, exec);
     };
     for (const Metric& metric : metrics())
         if (metric.always) add(metric);

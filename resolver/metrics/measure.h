@@ -19,6 +19,8 @@ struct FrameMetrics {
     std::optional<double> figure(std::string_view name) const;  // any figure; nothing where it was not measured
 };
 FrameMetrics frameMetrics(const SquaredError& squares);
+// Measures what is not of squared error and adds it. The images must be those that the metric asks for (isPossible).
+void addFigures(FrameMetrics& to, const Metric& metric, const ImagePair& images, const Exec& exec);
 
 // The ground truth of one frame, prepared once for all methods.
 struct Reference {

@@ -23,12 +23,7 @@ double ssim(const Rgb& test, const Rgb& reference, const Exec& exec, SsimSignal 
     const SsimArgs args{
         view(test), view(reference), test.stride(), w, h, signal, map ? map->row(0) : nullptr, map ? map->stride() : 0,
         rows.data()};
-    const auto& kernel = metricsKernelsFor(exec).ssim;
-    const auto fn = exec.precision == Precision::fast     ? kernel.fast
-                    : exec.precision == Precision::scalar ? kernel.scalar
-                                                          : kernel.oracle;
-    forRows(
-        exec, h, [&](int y0, int y1) { fn(args, y0, y1); }, kWindowRows);
+    runKernel(metricsKernelsFor(exec).ssim, exec, args, h, kWindowRows);
     if (map) map->fillBorder();
     return inOrder(rows) / (double(w) * h);
 }

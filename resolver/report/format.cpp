@@ -3,11 +3,12 @@
 #include <cmath>
 #include <cstdio>
 
+#include "study/non_finite.h"
+
 namespace aa {
 namespace {
 std::string printed(const char* format, double v) {
-    if (std::isnan(v)) return "NaN";
-    if (std::isinf(v)) return v > 0 ? "Inf" : "-Inf";
+    if (const char* word = nonFinite(v)) return word;
     char text[64];
     std::snprintf(text, sizeof text, format, v);
     return text;

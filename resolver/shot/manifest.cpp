@@ -192,8 +192,8 @@ Manifest parseDocument(const Member& doc) {
     if (const auto v = doc.find("name")) m.name = v->text();
     const Member resolution = doc["resolution"];
     if (resolution.arraySize() != 2) resolution.fail("[width, height]");
-    m.width = resolution.item(0).integer(1, kMaxResolution);
-    m.height = resolution.item(1).integer(1, kMaxResolution);
+    m.width = resolution.item(0).integer(1, kLargestSide);
+    m.height = resolution.item(1).integer(1, kLargestSide);
     if (const auto v = doc.find("fps")) m.fps = v->number(1e-3, 1e6, "frames per second in 0.001..1000000");
     m.extra = unknownMembers(doc.value(), {"format", "version", "name", "resolution", "fps", "jitter", "static",
                                            "subsamples", "objects", "truth", "frames"});

@@ -55,7 +55,6 @@ struct Manifest {
     const FrameEntry* find(int frame) const;
 };
 
-inline constexpr int kMaxResolution = 16384;  // conventions 10
 inline constexpr int kMaxSubSamples = 256;
 
 // SHOT may be the folder or its shot.json. Throws InputError: missing, not JSON, a missing required member, a wrong

@@ -3,7 +3,6 @@
 // pass is one row here, its members in shot/frame.h and its bit in shot/pass.h.
 #pragma once
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "shot/frame.h"
@@ -11,16 +10,14 @@
 
 namespace aa {
 
-using PlaneRef = std::variant<PlaneF*, PlaneU*>;
-
 // Channels that are repaired together, of one quantity: three of a colour, two of a motion.
 struct ChannelGroup {
     std::vector<std::string_view> channels;  // names in the part; of sub-sample k behind "sNN."
     // The planes that they fill, in that order; the one of the two that fits the pass.
     std::vector<PlaneRef> (*ofFrame)(Frame&) = nullptr;
     std::vector<PlaneRef> (*ofSubSample)(SubSample&) = nullptr;
-    Sanitise sanitise = nullptr;  // null: any value is good (ids, masks)
-    bool isUint = false;          // 32-bit unsigned; otherwise float, read from half or float
+    SanitisePlanes* sanitise = nullptr;  // null: any value is good (ids, masks)
+    bool isUint = false;                 // 32-bit unsigned; otherwise float, read from half or float
 };
 
 struct PassInfo {

@@ -133,7 +133,7 @@ std::map<std::string, uint64_t> counted(const SanitiseCounts& counts) {
 }
 
 namespace {
-using Planes = std::span<const std::variant<PlaneF*, PlaneU*>>;
+using Planes = std::span<const PlaneRef>;
 PlaneF& real(Planes planes, size_t i) { return *std::get<PlaneF*>(planes[i]); }
 }  // namespace
 
@@ -161,7 +161,7 @@ void sanitiseEdgesPlanes(Planes planes, bool, InputPolicy policy, const PlaneNam
 }
 
 void sanitiseColour(Rgb& colour, bool storedAsHalf, InputPolicy policy, const PlaneName& name, SanitiseCounts& counts) {
-    const std::variant<PlaneF*, PlaneU*> planes[] = {&colour.c[0], &colour.c[1], &colour.c[2]};
+    const PlaneRef planes[] = {&colour.c[0], &colour.c[1], &colour.c[2]};
     sanitiseColourPlanes(planes, storedAsHalf, policy, name, counts);
 }
 

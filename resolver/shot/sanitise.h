@@ -2,8 +2,8 @@
 #pragma once
 #include <span>
 #include <string>
-#include <variant>
 
+#include "image/exr.h"
 #include "shot/reader.h"
 
 namespace aa {
@@ -29,17 +29,9 @@ void sanitiseMotion(PlaneF& motionXPx, PlaneF& motionYPx, InputPolicy policy, co
 void sanitiseEdges(PlaneF& edgeXPx, PlaneF& edgeYPx, InputPolicy policy, const PlaneName& name, SanitiseCounts& counts);
 
 // The same on the planes of one group of channels of a pass (shot/pass_table.h), in the order of the channels.
-using Sanitise = void (*)(std::span<const std::variant<PlaneF*, PlaneU*>> planes, bool storedAsHalf, InputPolicy policy,
-                          const PlaneName& name, SanitiseCounts& counts);
-void sanitiseColourPlanes(std::span<const std::variant<PlaneF*, PlaneU*>> planes, bool storedAsHalf, InputPolicy policy,
-                          const PlaneName& name, SanitiseCounts& counts);
-void sanitiseDepthPlanes(std::span<const std::variant<PlaneF*, PlaneU*>> planes, bool storedAsHalf, InputPolicy policy,
-                         const PlaneName& name, SanitiseCounts& counts);
-void sanitiseNormalPlanes(std::span<const std::variant<PlaneF*, PlaneU*>> planes, bool storedAsHalf, InputPolicy policy,
-                          const PlaneName& name, SanitiseCounts& counts);
-void sanitiseMotionPlanes(std::span<const std::variant<PlaneF*, PlaneU*>> planes, bool storedAsHalf, InputPolicy policy,
-                          const PlaneName& name, SanitiseCounts& counts);
-void sanitiseEdgesPlanes(std::span<const std::variant<PlaneF*, PlaneU*>> planes, bool storedAsHalf, InputPolicy policy,
-                         const PlaneName& name, SanitiseCounts& counts);
+using SanitisePlanes = void(std::span<const PlaneRef> planes, bool storedAsHalf, InputPolicy policy,
+                            const PlaneName& name, SanitiseCounts& counts);
+SanitisePlanes sanitiseColourPlanes, sanitiseDepthPlanes, sanitiseNormalPlanes, sanitiseMotionPlanes,
+    sanitiseEdgesPlanes;
 
 }  // namespace aa

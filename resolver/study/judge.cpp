@@ -12,7 +12,7 @@ Judge::Judge(const Manifest& manifest, const RunOptions& o, bool overTime)
       scene_(manifest.isStatic),
       overTimeOf_(o.methods.size(), TemporalJudge(temporalWarmup(o.frames.size()))) {}
 
-void Judge::look(const Frame& frame, const std::shared_ptr<const Truth>& truth, RunResults& results) {
+void Judge::look(const Frame& frame, const std::shared_ptr<const Truth>& truth) {
     seen_++;
     number_ = frame.number;
     reset_ = frame.reset;
@@ -23,9 +23,9 @@ void Judge::look(const Frame& frame, const std::shared_ptr<const Truth>& truth, 
         if (truth) {
             reference_ = makeReference(truth->a, truth->b, protocol.display, options_.exec, protocol.eightBit);
             if (protocol.display.transfer == Transfer::identity) {
-                auto& clipped = results.truthClipped ? *results.truthClipped : results.truthClipped.emplace();
-                clipped.pixels += reference_->clippedPixels;
-                clipped.of += size_t(manifest_.width) * size_t(manifest_.height);
+                if (!clipped_) clipped_.emplace();
+                clipped_->pixels += reference_->clippedPixels;
+                clipped_->of += size_t(manifest_.width) * size_t(manifest_.height);
             }
         }
     }
@@ -73,7 +73,8 @@ void Judge::judgeRejected(const std::vector<RunningMethod>& methods, std::vector
     }
 }
 
-void Judge::finish(RunResults& results, bool fromReset) {
+void Judge::finish(RunResults& results, bool fromReset) const {
+    results.truthClipped = clipped_;
     // Of a truth with one half only (an imported render) nobody knows the noise.
     if (withTruth_ > 0 && manifest_.truthHalves.value_or(2) != 1) results.truthNoise = noise_ / double(withTruth_);
     for (size_t k = 0; overTime_ && k < overTimeOf_.size(); k++) {

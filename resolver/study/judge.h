@@ -14,7 +14,7 @@ class Judge {
     Judge(const Manifest& manifest, const RunOptions& options, bool overTime);
     // The next frame, prepared as the methods see it, and its truth or null. Frames of a static shot share one truth:
     // encoded once.
-    void look(const Frame& frame, const std::shared_ptr<const Truth>& truth, RunResults& results);
+    void look(const Frame& frame, const std::shared_ptr<const Truth>& truth);
     // The reference of that frame; null without truth.
     const Reference* reference() const { return reference_ ? &*reference_ : nullptr; }
     // Figures of what method `k` gave for it.
@@ -23,7 +23,7 @@ class Judge {
     // with a fill) and of its peers without or with another fill, which reject the same pixels.
     void judgeRejected(const std::vector<RunningMethod>& methods, std::vector<MethodResult>& results) const;
     // Fills what holds for the whole run; `fromReset`: the first frame had no history.
-    void finish(RunResults& results, bool fromReset);
+    void finish(RunResults& results, bool fromReset) const;
     const std::vector<TileErrors>& errors() const { return errors_; }
 
   private:
@@ -35,6 +35,7 @@ class Judge {
     std::vector<TileErrors> errors_;
     TemporalScene scene_;
     std::vector<TemporalJudge> overTimeOf_;
+    std::optional<ClippedPixels> clipped_;
     double noise_ = 0;
     size_t seen_ = 0, withTruth_ = 0;
     int number_ = 0;

@@ -151,6 +151,8 @@ RunResults describeRun(const Manifest& m, const RunOptions& o) {
     for (const auto& f : m.frames)
         for (const auto& [group, seconds] : f.renderSeconds) r.renderSeconds[group] += seconds, counted[group]++;
     for (auto& [group, seconds] : r.renderSeconds) seconds /= counted[group];
+    const bool unjittered =
+        std::all_of(m.frames.begin(), m.frames.end(), [](const auto& f) { return f.jitterPx == glm::dvec2(0.0); });
     for (const auto& spec : o.methods) {
         MethodResult result;
         result.id = spec.method->id;
@@ -159,8 +161,6 @@ RunResults describeRun(const Manifest& m, const RunOptions& o) {
         result.family = spec.method->family;
         result.source = spec.method->source;
         result.folder = spec.folderName();
-        const bool unjittered =
-            std::all_of(m.frames.begin(), m.frames.end(), [](const auto& f) { return f.jitterPx == glm::dvec2(0.0); });
         const bool centre = unjittered || (spec.method->sampling() == Sampling::centre && !m.frames[0].centre.empty());
         result.sampling = centre ? "centre" : "jittered";
         const Params params = spec.params();

@@ -4,14 +4,14 @@
 #include <set>
 #include <sstream>
 
+#include "study/non_finite.h"
 #include "study/results.h"
 
 namespace aa {
 namespace {
 
 std::string csvNumber(double v) {
-    if (std::isnan(v)) return "NaN";
-    if (std::isinf(v)) return v > 0 ? "Inf" : "-Inf";
+    if (const char* word = nonFinite(v)) return word;
     char text[40];
     std::snprintf(text, sizeof text, "%.9g", v);
     return text;

@@ -7,6 +7,7 @@
 
 #include "image/error.h"
 #include "image/io.h"
+#include "study/non_finite.h"
 #include "study/results.h"
 
 namespace aa {
@@ -15,8 +16,7 @@ namespace fs = std::filesystem;
 using json = nlohmann::ordered_json;
 
 json number(double v) {
-    if (std::isnan(v)) return "NaN";
-    if (std::isinf(v)) return v > 0 ? "Inf" : "-Inf";
+    if (const char* word = nonFinite(v)) return word;
     return v;
 }
 double toNumber(const json& j) {
@@ -60,18 +60,6 @@ json toJson(const std::map<int, std::string>& images) {
 void fromJson(const json& j, std::map<int, std::string>& images) {
     for (const auto& [frame, file] : j.items()) images[std::stoi(frame)] = file.get<std::string>();
 }
-struct EightBit {
-    bool& on;
-};
-struct IsEightBit {
-    bool on;
-};
-json toJson(const IsEightBit& v) { return v.on ? json(8) : json(nullptr); }
-void fromJson(const json& j, EightBit v) {
-    if (!j.is_null() && j.get<int>() != 8) throw std::runtime_error("quantiseBits: expected 8 or null");
-    v.on = !j.is_null();
-}
-
 // The two visitors. One member per call: under a key, as a value or as what its own members() describe.
 class Writer {
   public:
@@ -190,9 +178,11 @@ class Reader {
 template <class V>
 constexpr bool kReads = std::is_same_v<std::remove_cvref_t<V>, Reader>;
 
-// ---- the description; S is const where it is written ----
-template <class V, class S>
-requires std::is_same_v<std::remove_const_t<S>, FrameMetrics>
+// ---- the description; what is described is const where it is written ----
+template <class S, class T>
+concept Is = std::is_same_v<std::remove_const_t<S>, T>;
+
+template <class V, Is<FrameMetrics> S>
 void members(V v, S& m) {
     v.value("mse", m.mse);
     v.derived("psnr", m.psnr);
@@ -210,8 +200,7 @@ void members(V v, S& m) {
         for (const auto& [name, value] : m.others) v.value(name.c_str(), value);
     }
 }
-template <class V, class S>
-requires std::is_same_v<std::remove_const_t<S>, PooledMetrics>
+template <class V, Is<PooledMetrics> S>
 void members(V v, S& p) {
     members(v, p.mean);
     v.value("frames", p.frames);
@@ -221,8 +210,7 @@ void members(V v, S& p) {
     v.value("infinitePsnrFrames", p.infinitePsnrFrames);
     v.maybe("gainDb", p.gainDb);
 }
-template <class V, class S>
-requires std::is_same_v<std::remove_const_t<S>, TemporalMetrics>
+template <class V, Is<TemporalMetrics> S>
 void members(V v, S& t) {
     v.value("warmupFrames", t.warmup);
     v.value("frames", t.frames);
@@ -239,36 +227,31 @@ void members(V v, S& t) {
     v.sparse("trailShare", t.trailShare, !t.ghostFraction.empty());
     v.maybe("convergenceFrames", t.convergence);
 }
-template <class V, class S>
-requires std::is_same_v<std::remove_const_t<S>, TemporalFrame>
+template <class V, Is<TemporalFrame> S>
 void members(V v, S& t) {
     v.value("ghostSquares", t.ghostSquares);
     v.value("ghostValues", t.ghostValues);
     v.value("flickerSquares", t.flickerSquares);
     v.value("flickerPixels", t.flickerPixels);
 }
-template <class V, class S>
-requires std::is_same_v<std::remove_const_t<S>, FrameSum>
+template <class V, Is<FrameSum> S>
 void members(V v, S& s) {
     v.value("squares", s.sum);
     v.value("values", s.count);
 }
-template <class V, class S>
-requires std::is_same_v<std::remove_const_t<S>, ClippedPixels>
+template <class V, Is<ClippedPixels> S>
 void members(V v, S& c) {
     v.value("pixels", c.pixels);
     v.value("of", c.of);
 }
-template <class V, class S>
-requires std::is_same_v<std::remove_const_t<S>, TimeComparison>
+template <class V, Is<TimeComparison> S>
 void members(V v, S& c) {
     v.value("gainDb", c.gainDb);
     v.value("low95", c.low);
     v.value("high95", c.high);
     v.value("resolved", c.resolved);
 }
-template <class V, class S>
-requires std::is_same_v<std::remove_const_t<S>, FrameResult>
+template <class V, Is<FrameResult> S>
 void members(V v, S& f) {
     v.value("frame", f.frame);
     v.value("seconds", f.seconds);
@@ -278,8 +261,7 @@ void members(V v, S& f) {
     v.maybeObject("temporal", f.temporal);
     v.maybeObject("rejected", f.rejected);
 }
-template <class V, class S>
-requires std::is_same_v<std::remove_const_t<S>, MethodResult>
+template <class V, Is<MethodResult> S>
 void members(V v, S& m) {
     v.value("id", m.id);
     v.value("text", m.text);
@@ -303,8 +285,7 @@ void members(V v, S& m) {
         rejected.orNull("share", m.rejectedShare);
     });
 }
-template <class V, class S>
-requires std::is_same_v<std::remove_const_t<S>, PairResult>
+template <class V, Is<PairResult> S>
 void members(V v, S& p) {
     v.array("indices", p.first, p.second);
     v.value("mseDifference", p.comparison.mseDifference);
@@ -318,8 +299,7 @@ void members(V v, S& p) {
     v.maybeObject("flicker", p.flicker);
     v.maybeObject("rejected", p.rejected);
 }
-template <class V, class S>
-requires std::is_same_v<std::remove_const_t<S>, RunResults>
+template <class V, Is<RunResults> S>
 void members(V all, S& run) {
     all.group("shot", [&](auto v) {
         v.value("name", run.shot);
@@ -357,10 +337,13 @@ void members(V all, S& run) {
         });
         v.sparse("history", run.protocol.history, true);
         v.sparse("warmUpFrames", run.warmUpFrames, true);
-        if constexpr (kReads<decltype(v)>)
-            v.sparse("quantiseBits", EightBit{run.protocol.eightBit}, true);
-        else
-            v.sparse("quantiseBits", IsEightBit{run.protocol.eightBit}, true);
+        std::optional<int> bits;
+        if (run.protocol.eightBit) bits = 8;
+        v.orNull("quantiseBits", bits);
+        if constexpr (kReads<decltype(v)>) {
+            if (bits && *bits != 8) throw std::runtime_error("quantiseBits: expected 8 or null");
+            run.protocol.eightBit = bits.has_value();
+        }
         v.value("sanitised", run.sanitised);
     });
     all.list("methods", run.methods);

@@ -45,7 +45,7 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, const Progres
         prepareFrame(*frame, methods, display, o.exec);
         if (stream.centre() && stream.centre() != centreFrame) prepareFrame(*stream.centre(), methods, display, o.exec);
         centreFrame = stream.centre();
-        judge.look(*frame, stream.truth(), results);
+        judge.look(*frame, stream.truth());
         const Reference* reference = judge.reference();
         const bool write = o.writeAllFrames || (reference && (!manifest.isStatic || i + 1 == o.frames.size()));
         if (write && reference) results.truthImages[frame->number] = writeTruthImage(*reference, frame->number, o);

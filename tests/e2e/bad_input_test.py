@@ -42,19 +42,7 @@ class BadInput(ProgramTest):
     def setUp(self) -> None:
         super().setUp()
         self.shot = self.folder / "shot"
-        self.aaresolve(
-            "synth",
-            "moving",
-            "-o",
-            self.shot,
-            "--resolution",
-            "48",
-            "32",
-            "--frames",
-            "3",
-            "--for",
-            "noaa,uncharted",
-        )
+        self.synth("moving", self.shot, (48, 32), 3, "--for", "noaa,uncharted")
 
     def run_refused(self, code: int, *says: str, method: str = "noaa", **options) -> str:
         return self.refused(
@@ -102,19 +90,7 @@ class BadInput(ProgramTest):
 
     def test_missing_pass_names_pass_and_method(self) -> None:
         shot = self.folder / "colour_only"
-        self.aaresolve(
-            "synth",
-            "moving",
-            "-o",
-            shot,
-            "--resolution",
-            "48",
-            "32",
-            "--frames",
-            "2",
-            "--for",
-            "noaa",
-        )
+        self.synth("moving", shot, (48, 32), 2, "--for", "noaa")
         self.refused(
             3,
             "run",
@@ -146,22 +122,7 @@ class BadInput(ProgramTest):
 
     def test_nan_is_counted_or_refused(self) -> None:
         shot = self.folder / "nan"
-        self.aaresolve(
-            "synth",
-            "moving",
-            "-o",
-            shot,
-            "--resolution",
-            "48",
-            "32",
-            "--frames",
-            "2",
-            "--for",
-            "noaa",
-            "--inject-nan",
-            "10",
-            "7",
-        )
+        self.synth("moving", shot, (48, 32), 2, "--for", "noaa", "--inject-nan", "10", "7")
         done = self.aaresolve("run", shot, "-m", "noaa", "-o", self.folder / "o", "-q")
         self.assertIn("colourNan", done.stdout)
         self.refused(

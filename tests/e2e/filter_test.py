@@ -59,19 +59,7 @@ class Filter(ProgramTest):
     def test_blend_space_is_the_files_space(self) -> None:
         """A method told to blend encoded values writes the same picture to PNG and, linearised, to EXR."""
         shot, out = self.folder / "shot", self.folder / "run"
-        self.aaresolve(
-            "synth",
-            "clutter",
-            "-o",
-            shot,
-            "--resolution",
-            "90",
-            "60",
-            "--frames",
-            "1",
-            "--jitter",
-            "none",
-        )
+        self.synth("clutter", shot, (90, 60), 1, "--jitter", "none")
         spec = "smaa1x:blendSpace=encoded"
         self.aaresolve("run", shot, "-m", spec, "-o", out, "-q", "--write", "exr,png")
         folder = out / "smaa1x_blendSpace=encoded"
@@ -82,19 +70,7 @@ class Filter(ProgramTest):
     def test_methods_of_more_passes_are_refused(self) -> None:
         image = self.folder / "in.png"
         shot = self.folder / "shot"
-        self.aaresolve(
-            "synth",
-            "circles",
-            "-o",
-            shot,
-            "--resolution",
-            "32",
-            "32",
-            "--frames",
-            "1",
-            "--jitter",
-            "none",
-        )
+        self.synth("circles", shot, (32, 32), 1, "--jitter", "none")
         self.aaresolve("filter", "noaa", shot / "frames" / RUN_FRAME, image)
         refused = [m["id"] for m in self.methods() if m["passes"] != ["color"]]
         self.assertGreater(len(refused), 10)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 import shutil
-import sys
 from pathlib import Path
 
+from graph import cycles_of
 from program import ROOT, ProgramTest, main
 
 # From the lowest room to the highest; a file includes its own room and lower ones.
@@ -62,27 +62,7 @@ def complaints(folder: Path) -> list[str]:
                 continue
             if ROOMS.index(room_of(include)) > ROOMS.index(room_of(name)):
                 found.append(f"{name}: includes {include}, of a higher room")
-    state: dict[str, int] = {}
-
-    def visit(name: str, way: list[str]) -> None:
-        state[name] = 1
-        for include in graph.get(name, []):
-            if state.get(include) == 1:
-                found.append(
-                    "cycle: "
-                    + " -> ".join(
-                        [*way[way.index(include) :], include] if include in way else [name, include]
-                    )
-                )
-            elif include not in state:
-                visit(include, [*way, include])
-        state[name] = 2
-
-    sys.setrecursionlimit(10000)
-    for name in graph:
-        if name not in state:
-            visit(name, [name])
-    return found
+    return found + [f"cycle: {' -> '.join(cycle)}" for cycle in cycles_of(graph)]
 
 
 class Includes(ProgramTest):

@@ -13,19 +13,7 @@ from program import ROOT, ProgramTest, main
 class Pipeline(ProgramTest):
     def test_synth_check_run_sheet_report(self) -> None:
         shot, out = self.folder / "shot", self.folder / "out"
-        self.aaresolve(
-            "synth",
-            "circles",
-            "-o",
-            shot,
-            "--resolution",
-            "96",
-            "64",
-            "--frames",
-            "16",
-            "--for",
-            "noaa,accum,fxaa311,unchartedNorm",
-        )
+        self.synth("circles", shot, (96, 64), 16, "--for", "noaa,accum,fxaa311,unchartedNorm")
         self.aaresolve("check", shot)
         self.aaresolve(
             "run",
@@ -62,19 +50,7 @@ class Pipeline(ProgramTest):
 
     def test_same_bits_for_threads_and_instruction_sets(self) -> None:
         shot = self.folder / "shot"
-        self.aaresolve(
-            "synth",
-            "moving",
-            "-o",
-            shot,
-            "--resolution",
-            "90",
-            "50",
-            "--frames",
-            "5",
-            "--for",
-            "uncharted,fxaa311",
-        )
+        self.synth("moving", shot, (90, 50), 5, "--for", "uncharted,fxaa311")
         images = []
         for name, options in {
             "a": ("-j", 1, "--isa", "v2"),
@@ -103,19 +79,7 @@ class Pipeline(ProgramTest):
 
     def test_a_sequence_may_start_in_the_middle(self) -> None:
         shot, out = self.folder / "shot", self.folder / "out"
-        self.aaresolve(
-            "synth",
-            "moving",
-            "-o",
-            shot,
-            "--resolution",
-            "48",
-            "32",
-            "--frames",
-            "6",
-            "--for",
-            "uncharted",
-        )
+        self.synth("moving", shot, (48, 32), 6, "--for", "uncharted")
         self.aaresolve("run", shot, "-m", "uncharted", "-o", out, "-q", "--frames", "4-6")
         results = json.loads((out / "results.json").read_text())
         self.assertEqual([f["frame"] for f in results["methods"][0]["frames"]], [4, 5, 6])
@@ -137,22 +101,8 @@ class Pipeline(ProgramTest):
             shot = self.folder / name
             wanted = next(iter(pattern), "d3d8")
             pattern.pop(wanted, None)
-            self.aaresolve(
-                "synth",
-                "moving",
-                "-o",
-                shot,
-                "--resolution",
-                "8",
-                "8",
-                "--frames",
-                "9",
-                "--jitter",
-                name,
-                "--period",
-                "7",
-                "--subsamples",
-                wanted,
+            self.synth(
+                "moving", shot, (8, 8), 9, "--jitter", name, "--period", "7", "--subsamples", wanted
             )
             manifest = json.loads((shot / "shot.json").read_text())
             for index, entry in enumerate(manifest["frames"]):

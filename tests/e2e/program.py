@@ -53,6 +53,14 @@ class ProgramTest(unittest.TestCase):
         )
         return done
 
+    def synth(
+        self, scene: str, shot: Path, size: tuple[int, int], frames: int, *options: object
+    ) -> None:
+        """Makes an analytic shot of `size` pixels."""
+        self.aaresolve(
+            "synth", scene, "-o", shot, "--resolution", *size, "--frames", frames, *options
+        )
+
     def refused(self, code: int, *arguments: object, says: tuple[str, ...], **options) -> str:
         """The call must end with `code` and one line on stderr that holds every word of `says`."""
         done = self.aaresolve(*arguments, expect=code, **options)

@@ -6,6 +6,7 @@ import ast
 import shutil
 from pathlib import Path
 
+from graph import cycles_of
 from program import ROOT, ProgramTest, main
 
 ADDON = ROOT / "blender_addon/aa_resolve"
@@ -64,24 +65,6 @@ def problems_of(folder: Path) -> list[str]:
             if not allowed:
                 problems.append(f"{file}.py imports {target}.py: not from '{room or 'the top'}'")
     return problems + [f"cycle of imports: {' -> '.join(cycle)}" for cycle in cycles_of(graph)]
-
-
-def cycles_of(graph: dict[str, set[str]]) -> list[list[str]]:
-    """Every cycle that a walk from each file meets first; none where the graph has an order."""
-    done: set[str] = set()
-    found: list[list[str]] = []
-
-    def visit(file: str, path: list[str]) -> None:
-        if file in path:
-            found.append([*path[path.index(file) :], file])
-        elif file not in done:
-            for target in sorted(graph.get(file, ())):
-                visit(target, [*path, file])
-            done.add(file)
-
-    for file in graph:
-        visit(file, [])
-    return found
 
 
 class Rooms(ProgramTest):

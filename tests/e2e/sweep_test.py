@@ -12,20 +12,7 @@ class Sweep(ProgramTest):
     def setUp(self) -> None:
         super().setUp()
         self.shot = self.folder / "shot"
-        self.aaresolve(
-            "synth",
-            "moving",
-            "-o",
-            self.shot,
-            "--resolution",
-            "64",
-            "40",
-            "--frames",
-            "5",
-            "--for",
-            "noaa,uncharted",
-            "-q",
-        )
+        self.synth("moving", self.shot, (64, 40), 5, "--for", "noaa,uncharted", "-q")
 
     def results(self, out) -> dict:
         return json.loads((out / "results.json").read_text())

@@ -57,11 +57,7 @@ struct Dmsaa {
                 Marks<R> marks;
                 markEdges(x0, y, marks);
                 copyChunk<R>(a.color, a.out, g.width - x0, o);
-                for (int i = 0; i < chunkGroups<R>(g.width - x0); i++)
-                    for (int lane = 0; marks.lanes[i] >> lane; lane++) {
-                        const int x = x0 + i * N<R> + lane;
-                        if (marks.lanes[i] >> lane & 1u && x < g.width) edgePixel(x, y);
-                    }
+                forMarked<R>(marks, g.width, x0, y, [&](int x, int row) { edgePixel(x, row); });
             }
     }
 };

@@ -117,11 +117,7 @@ struct Msaa {
                     fillChunk<R>(1, a.surfacesLayer + o, g.width - x0);
                     fillChunk<R>(1, a.coverageLayer + o, g.width - x0);
                 }
-                for (int i = 0; i < chunkGroups<R>(g.width - x0); i++)
-                    for (int lane = 0; marks.lanes[i] >> lane; lane++) {
-                        const int x = x0 + i * N<R> + lane;
-                        if (marks.lanes[i] >> lane & 1u && x < g.width) edgePixel(x, y);
-                    }
+                forMarked<R>(marks, g.width, x0, y, [&](int x, int row) { edgePixel(x, row); });
             }
     }
 };

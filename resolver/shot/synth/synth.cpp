@@ -270,7 +270,7 @@ struct SynthShot::Scene {
 };
 
 SynthShot::SynthShot(const SynthOptions& o) {
-    if (o.width < 1 || o.height < 1 || o.width > kMaxResolution || o.height > kMaxResolution)
+    if (o.width < 1 || o.height < 1 || o.width > kLargestSide || o.height > kLargestSide)
         throw UsageError("synth: resolution " + std::to_string(o.width) + "x" + std::to_string(o.height) +
                          ": expected 1..16384 a side");
     if (o.frames < 1 || o.frames > 1000000)
