@@ -4,12 +4,16 @@
 // are caught once, in main.
 #pragma once
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "cli/command.h"
 #include "kernels/table.h"
 
 namespace aa {
+namespace gpu {
+class Session;
+}
 
 struct Context {
     int exitCode = 0;  // set by a command's callback
@@ -19,9 +23,15 @@ struct Context {
 struct WorkOptions {
     int threads = 0;  // 0: all processors
     std::string isa = "auto", precision = "fast";
+    std::string device = "cpu", gpuPrecision = "exact", gpuShaders = {};
+    bool gpuValidate = false;
     Exec exec() const;  // throws UsageError when this processor lacks the instruction set
+    // The graphics device that was asked for, opened; null: none was. Throws UsageError, gpu::DeviceError.
+    std::shared_ptr<gpu::Session> session() const;
 };
 void addWorkOptions(Command& command, WorkOptions& work);
+// --device and what goes with it.
+void addDeviceOptions(Command& command, WorkOptions& work);
 // Runs `body` in an arena of the asked number of threads.
 void withThreads(int threads, const std::function<void()>& body);
 
@@ -40,5 +50,7 @@ void addCheck(CommandLine& line, Context& context);
 void addImport(CommandLine& line, Context& context);
 void addSweep(CommandLine& line, Context& context);
 void addAngles(CommandLine& line, Context& context);
+void addDevices(CommandLine& line, Context& context);
+void addVerify(CommandLine& line, Context& context);
 
 }  // namespace aa

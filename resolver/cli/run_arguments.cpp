@@ -36,10 +36,12 @@ void addRunArguments(Command& c, RunArguments& a) {
     c.flag("--json", a.json, "print results.json instead of the table");
     c.flag("-q,--quiet", a.quiet, "no progress");
     addWorkOptions(c, a.work);
+    addDeviceOptions(c, a.work);
 }
 
 ShotReader openShot(const RunArguments& a, RunOptions& run) {
     run.exec = a.work.exec();
+    run.device = a.work.session();
     run.measure = measureOptions(a.metrics);
     run.protocol = {.display = {float(a.exposure), toneMapByName(a.toneMap), transferByName(a.display)},
                     .history = historyByName(a.history),

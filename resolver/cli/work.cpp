@@ -1,7 +1,10 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include <filesystem>
+
 #include "cli/cli.h"
+#include "gpu/method.h"
 #include "image/error.h"
 #include "kernels/dispatch.h"
 
@@ -13,6 +16,32 @@ void addWorkOptions(Command& command, WorkOptions& work) {
         .oneOf({"auto", "v2", "v3", "v4"});
     command.option("--precision", work.precision, "fast = float lanes, scalar = float, double = the oracle")
         .oneOf({"fast", "scalar", "double"});
+}
+
+void addDeviceOptions(Command& command, WorkOptions& work) {
+    command.option("--device", work.device,
+                   "cpu, vulkan, vulkan:NUMBER or vulkan:NAME (`aaresolve devices`): where the methods run");
+    command
+        .option("--gpu-precision", work.gpuPrecision,
+                "exact = 32-bit images, filtered in the shader as on the processor; fast = 16-bit colours, motion "
+                "and histories, filtered by the texture unit")
+        .oneOf({"exact", "fast"});
+    command.option("--gpu-shaders", work.gpuShaders,
+                   "a folder of SPIR-V, as temporal/karis.spv, that stands for the program's own shaders");
+    command.flag("--gpu-validate", work.gpuValidate,
+                 "run under Vulkan's validation layer; its first complaint ends the run");
+}
+
+std::shared_ptr<gpu::Session> WorkOptions::session() const {
+    if (device == "cpu") {
+        if (gpuPrecision != "exact" || gpuValidate || !gpuShaders.empty())
+            throw UsageError("--gpu-precision, --gpu-validate, --gpu-shaders: no effect without --device vulkan");
+        return {};
+    }
+    if (!gpuShaders.empty() && !std::filesystem::is_directory(gpuShaders))
+        throw InputError(gpuShaders + ": expected a folder of SPIR-V files");
+    return std::make_shared<gpu::Session>(gpu::Settings{
+        device, gpuPrecision == "fast" ? gpu::Precision::fast : gpu::Precision::exact, gpuValidate, gpuShaders});
 }
 
 Exec WorkOptions::exec() const {

@@ -8,6 +8,8 @@
 namespace aa {
 
 RunningMethod::RunningMethod(MethodSpec s, const ShotInfo& shot) : spec(std::move(s)), method(spec.create(shot)) {}
+RunningMethod::RunningMethod(MethodSpec s, std::unique_ptr<Method> form)
+    : spec(std::move(s)), method(std::move(form)) {}
 
 double RunningMethod::resolve(const Frame& frame, const DisplayChain& chain, const Exec& exec) {
     if (out.width() != frame.width || out.height() != frame.height) out = Rgb(frame.width, frame.height);
@@ -19,7 +21,7 @@ double RunningMethod::resolve(const Frame& frame, const DisplayChain& chain, con
         encode(out, chain, exec, outEncoded);
     else
         outEncoded = out;
-    return seconds;
+    return method->deviceSeconds().value_or(seconds);
 }
 
 ShotInfo shotInfo(const Manifest& m) {

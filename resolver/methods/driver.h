@@ -13,8 +13,9 @@ struct RunningMethod {
     Rgb out;         // in the method's output space
     Rgb outEncoded;  // display-encoded, what the metrics see
     RunningMethod(MethodSpec spec, const ShotInfo& shot);
-    // Resolves one frame; returns the seconds that the method took, conversions not counted. `chain` is frame.display
-    // of a frame that was prepared.
+    RunningMethod(MethodSpec spec, std::unique_ptr<Method> form);  // another form of spec's method
+    // Resolves one frame; returns the seconds that the method took, conversions not counted: those of the device where
+    // it ran on one. `chain` is frame.display of a frame that was prepared.
     double resolve(const Frame& frame, const DisplayChain& chain, const Exec& exec);
 };
 

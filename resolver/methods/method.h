@@ -2,6 +2,7 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,6 +45,8 @@ class Method {
     // unless the method is temporal and keepRejection was set before the first frame.
     virtual const PlaneF* rejection() const { return nullptr; }
     bool keepRejection = false;
+    // Seconds that a graphics device took for the last frame, by its own clock; none on the CPU.
+    virtual std::optional<double> deviceSeconds() const { return {}; }
 };
 
 inline constexpr int kAnyReachPx = -1;

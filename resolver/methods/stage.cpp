@@ -55,6 +55,7 @@ class StagedMethod : public Method {
     }
     std::vector<DebugLayer> debugLayers() const override { return method_->debugLayers(); }
     const PlaneF* rejection() const override { return method_->rejection(); }
+    std::optional<double> deviceSeconds() const override { return method_->deviceSeconds(); }
 
   private:
     std::unique_ptr<Method> method_;

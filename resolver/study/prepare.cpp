@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "gpu/method.h"
 #include "image/error.h"
 #include "image/io.h"
 #include "metrics/temporal.h"
@@ -101,7 +102,8 @@ std::vector<RunningMethod> startMethods(const ShotReader& shot, const RunOptions
     requirePasses(shot, o.methods);
     std::vector<RunningMethod> methods;
     for (const auto& spec : o.methods) {
-        methods.emplace_back(spec, shotInfo(shot.manifest()));
+        const ShotInfo info = shotInfo(shot.manifest());
+        methods.emplace_back(spec, o.device ? gpu::create(*o.device, spec, info) : spec.create(info));
         methods.back().method->keepDebugLayers = o.debugLayers;
     }
     makeWritableFolder(o.out);

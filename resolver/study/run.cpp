@@ -1,5 +1,6 @@
 #include "study/run.h"
 
+#include "gpu/method.h"
 #include "metrics/temporal.h"
 #include "shot/frame_stream.h"
 #include "study/images.h"
@@ -45,6 +46,7 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, const Progres
         prepareFrame(*frame, methods, display, o.exec);
         if (stream.centre() && stream.centre() != centreFrame) prepareFrame(*stream.centre(), methods, display, o.exec);
         centreFrame = stream.centre();
+        if (o.device) o.device->share(*frame);
         judge.look(*frame, stream.truth());
         const Reference* reference = judge.reference();
         const bool write = o.writeAllFrames || (reference && (!manifest.isStatic || i + 1 == o.frames.size()));

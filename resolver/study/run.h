@@ -3,6 +3,7 @@
 // files here: prepare -> (warm_up) -> resolve -> judge -> images, results.
 #pragma once
 #include <filesystem>
+#include <memory>
 
 #include "methods/spec.h"
 #include "shot/reader.h"
@@ -10,12 +11,16 @@
 #include "study/results.h"
 
 namespace aa {
+namespace gpu {
+class Session;
+}
 
 struct RunOptions {
     std::vector<MethodSpec> methods;
     std::vector<size_t> frames;  // indices into the manifest, ascending; the methods see them all, in order
     Protocol protocol;
     Exec exec;
+    std::shared_ptr<gpu::Session> device;  // null: the processor
     MeasureOptions measure;
     std::filesystem::path out;
     bool writeExr = true, writePng = false;

@@ -1,0 +1,7 @@
+#include "gpu/forms.h"
+
+namespace aa::gpu {
+
+std::vector<Form> msaaForms() { return {}; }
+
+}  // namespace aa::gpu

@@ -1,0 +1,107 @@
+#include "gpu/method.h"
+
+#include <ImathConfig.h>
+#include <half.h>
+
+#include "gpu/forms.h"
+#include "methods/stage.h"
+
+namespace aa::gpu {
+
+Session::Session(const Settings& settings)
+    : settings_(settings),
+      device_(settings.device, {settings.validate, settings.shaders}),
+      inputs_{Inputs(*this), Inputs(*this)},
+      uploads_(device_) {}
+Session::~Session() = default;
+
+void Session::share(const Frame& frame, const std::vector<Input>& inputs) {
+    const std::lock_guard lock(mutex_);
+    uploads_.wait();  // of the frame before
+    for (Inputs& i : inputs_)
+        if (i.frame() == &frame) i.end();  // another frame that lay at the same address
+    latest_ = 1 - latest_;
+    inputs_[latest_].begin(frame);
+    for (const Input input : inputs) inputs_[latest_].get(input, uploads_);
+    if (!inputs.empty()) uploads_.submit();
+}
+void Session::forget() {
+    const std::lock_guard lock(mutex_);
+    uploads_.wait();
+    for (Inputs& i : inputs_) i.end();
+}
+Inputs* Session::shared(const Frame& frame) {
+    const std::lock_guard lock(mutex_);
+    for (Inputs& i : inputs_)
+        if (i.frame() == &frame) return &i;
+    return nullptr;
+}
+
+namespace {
+template <class T>
+void planar(const std::byte* from, size_t channels, std::span<PlaneF* const> planes) {
+    const T* in = reinterpret_cast<const T*>(from);
+    for (int y = 0; y < planes[0]->height(); y++) {
+        const size_t width = size_t(planes[0]->width());
+        for (size_t c = 0; c < planes.size(); c++) {
+            float* row = planes[c]->row(y);
+            for (size_t x = 0; x < width; x++) row[x] = float(in[x * channels + c]);
+        }
+        in += width * channels;
+    }
+}
+}  // namespace
+
+void GpuMethod::resolve(const Frame& frame, const Exec&, Rgb& out) {
+    Inputs* inputs = session_.shared(frame);
+    if (!inputs) own_.begin(frame), inputs = &own_;
+    Current current(*inputs, recorder_);
+    fitted(out_, frame.width, frame.height, session_.colour());
+    record(current, out_);
+    if (out.width() != frame.width || out.height() != frame.height) out = Rgb(frame.width, frame.height);
+    recorder_.download(out_, [&](const std::byte* texels) {
+        PlaneF* const planes[] = {&out.c[0], &out.c[1], &out.c[2]};
+        session_.fast() ? planar<half>(texels, 4, planes) : planar<float>(texels, 4, planes);
+    });
+    if (const Image* rejection = keepRejection ? rejectionImage() : nullptr) {
+        if (rejection_.width() != frame.width || rejection_.height() != frame.height)
+            rejection_ = PlaneF(frame.width, frame.height);
+        recorder_.download(*rejection, [&](const std::byte* texels) {
+            PlaneF* const planes[] = {&rejection_};
+            planar<float>(texels, 1, planes);
+        });
+    }
+    recorder_.run();
+}
+
+std::optional<double> GpuMethod::deviceSeconds() const {
+    if (recorder_.times().empty()) return {};
+    double sum = 0;
+    for (const PassTime& t : recorder_.times()) sum += t.seconds;
+    return sum;
+}
+Image& GpuMethod::fitted(Image& image, int width, int height, Format format, int layers) {
+    if (image.width() == width && image.height() == height && image.layers() == layers && image.format() == format)
+        return image;
+    if (!image.empty()) bytes_ -= image.bytes();
+    image = Image(session_.device(), width, height, format, layers);
+    bytes_ += image.bytes();
+    return image;
+}
+Buffer& GpuMethod::fitted(Buffer& buffer, size_t bytes) {
+    if (!buffer.empty() && buffer.bytes() >= bytes) return buffer;
+    bytes_ -= buffer.bytes();
+    buffer = Buffer(session_.device(), bytes);
+    bytes_ += buffer.bytes();
+    return buffer;
+}
+
+bool hasForm(std::string_view id) { return findForm(id) != nullptr; }
+std::unique_ptr<Method> create(Session& session, const MethodSpec& spec, const ShotInfo& shot) {
+    const Form* form = findForm(spec.method->id);
+    if (!form) throw UsageError("--device: '" + std::string(spec.method->id) + "' has no shader; use --device cpu");
+    spec.method->create(spec.params(), shot);  // its errors about the shot and the parameters
+    return withStages(form->create(session, spec.params(), shot), spec, shot);
+}
+
+}  // namespace aa::gpu

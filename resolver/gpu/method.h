@@ -1,0 +1,152 @@
+// A method's GPU form: the same parameters, the same frames and the same state as its CPU form, with its images on the
+// device. A form declares the images that it keeps, records its shaders' dispatches, and leaves everything else here.
+#pragma once
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+
+#include "gpu/device.h"
+#include "methods/spec.h"
+
+namespace aa::gpu {
+
+// What an engine would store, measured: exact keeps every image in 32 bits and filters in the shader, as the CPU form
+// does; fast keeps colours and histories in 16 bits and lets the texture unit filter.
+enum class Precision { exact, fast };
+
+struct Settings {
+    std::string device;  // "vulkan", "vulkan:N", "vulkan:NAME"
+    Precision precision = Precision::exact;
+    bool validate = false;
+    std::filesystem::path shaders;  // as DeviceOptions::shaders
+};
+
+// The passes of one frame as images, each uploaded when it is first asked for. Colours have alpha 1.
+enum class Input {
+    colour,
+    encoded,
+    albedo,
+    albedoEncoded,  // RGBA 32F, fast: 16F
+    depth,          // R32F, planar view z
+    normal,         // RGBA 32F, world, unit
+    objectId,
+    mask,    // R32UI
+    motion,  // RG 32F, fast: 16F; px, y down, current - previous
+    edges,   // RG 32F, px
+    subColour,
+    subEncoded,
+    subNormal,
+    subDepth,
+    subId,  // the same, one layer per sub-sample
+};
+class Session;
+class Inputs {
+  public:
+    explicit Inputs(const Session& session) : session_(session) {}
+    void begin(const Frame& frame) { frame_ = &frame, current_.clear(); }
+    void end() { frame_ = nullptr, current_.clear(); }
+    const Frame* frame() const { return frame_; }  // null: none
+    // Throws std::logic_error where the frame lacks the pass.
+    const Image& get(Input which, Recorder& recorder);
+
+  private:
+    const Session& session_;
+    const Frame* frame_ = nullptr;
+    std::map<Input, Image> images_;
+    std::set<Input> current_;
+};
+
+// A device in use: shared by all methods of a run, so that each frame is uploaded once.
+class Session {
+  public:
+    explicit Session(const Settings& settings);
+    ~Session();
+    const Device& device() const { return device_; }
+    bool fast() const { return settings_.precision == Precision::fast; }
+    const Settings& settings() const { return settings_; }
+    // Formats of images that a method makes: colours and histories, and values that no engine keeps in 16 bits (depth,
+    // counts, weights).
+    Format colour() const { return fast() ? Format::rgba16f : Format::rgba32f; }
+    static constexpr Format value = Format::r32f;
+
+    // A frame that several methods will resolve, which must not change until forget() or the next but one share():
+    // uploaded once, and what `inputs` names at once, while the device works on the frame before.
+    void share(const Frame& frame, const std::vector<Input>& inputs = {});
+    void forget();
+    // The shared frame's images; null where `frame` is not shared.
+    Inputs* shared(const Frame& frame);
+
+  private:
+    Settings settings_;
+    Device device_;
+    std::array<Inputs, 2> inputs_;
+    size_t latest_ = 0;
+    std::mutex mutex_;
+    Recorder uploads_;
+};
+
+// What record() sees of its frame.
+class Current {
+  public:
+    Current(Inputs& inputs, Recorder& recorder) : inputs_(inputs), recorder_(recorder) {}
+    const Frame& frame() const { return *inputs_.frame(); }
+    int width() const { return frame().width; }
+    int height() const { return frame().height; }
+    const Image& operator[](Input which) { return inputs_.get(which, recorder_); }
+    Recorder& recorder() { return recorder_; }
+
+  private:
+    Inputs& inputs_;
+    Recorder& recorder_;
+};
+
+class GpuMethod : public Method {
+  public:
+    GpuMethod(Session& session, const Params& params)
+        : session_(session), params_(params), recorder_(session.device()), own_(session) {}
+
+    void resolve(const Frame& frame, const Exec& exec, Rgb& out) final;
+    size_t stateBytes() const final { return bytes_; }
+    const PlaneF* rejection() const final { return rejection_.empty() ? nullptr : &rejection_; }
+    std::optional<double> deviceSeconds() const final;
+    const std::vector<PassTime>& passTimes() const { return recorder_.times(); }  // of the last frame
+
+  protected:
+    // Records everything that makes `out`, RGBA in the method's output space, of this frame.
+    virtual void record(Current& current, Image& out) = 0;
+    // Where history was not used (Rejection), R32F; written by methods that have one when keepRejection is set.
+    virtual const Image* rejectionImage() const { return nullptr; }
+
+    const Params& params() const { return params_; }
+    Session& session() const { return session_; }
+    // An image of this size that the method keeps; made anew, of zeros, where it has another.
+    Image& fitted(Image& image, int width, int height, Format format, int layers = 1);
+    Buffer& fitted(Buffer& buffer, size_t bytes);
+
+  private:
+    Session& session_;
+    Params params_;
+    Recorder recorder_;
+    Inputs own_;  // of frames that are not shared
+    Image out_;
+    PlaneF rejection_;
+    size_t bytes_ = 0;
+};
+
+// Two images in turn: what the last frame left and what this one writes.
+struct TwoImages {
+    Image images[2];
+    int now = 0;
+    Image& next() { return images[now]; }
+    Image& previous() { return images[1 - now]; }
+    void swap() { now = 1 - now; }
+};
+
+// The GPU form of a method with its stages. Throws UsageError where the method has none (named), and what its CPU form
+// throws for the shot.
+std::unique_ptr<Method> create(Session& session, const MethodSpec& spec, const ShotInfo& shot);
+bool hasForm(std::string_view id);
+
+}  // namespace aa::gpu
