@@ -26,8 +26,8 @@ void printTable(const RunResults& r) {
     });
     size_t width = 6;
     for (const auto* m : rows) width = std::max(width, m->text.size());
-    std::printf("%-*s %10s %9s %9s %9s %10s\n", int(width), "method", "PSNR dB", "gain dB", "SSIM", "ns/px",
-                "state MB");
+    std::printf("%-*s %10s %9s %9s %9s %10s%s\n", int(width), "method", "PSNR dB", "gain dB", "SSIM", "ns/px",
+                "state MB", r.device ? "  device ms" : "");
     for (const auto* m : rows) {
         std::printf("%-*s", int(width), m->text.c_str());
         if (m->pooled) {
@@ -40,8 +40,18 @@ void printTable(const RunResults& r) {
         } else {
             std::printf(" %10s %9s %9s", "-", "-", "-");
         }
-        std::printf(" %9.2f %10.2f\n", m->nsPerPixel, double(m->stateBytes) / (1 << 20));
+        if (m->nsPerPixel > 0)
+            std::printf(" %9.2f", m->nsPerPixel);
+        else
+            std::printf(" %9s", "-");
+        std::printf(" %10.2f", double(m->stateBytes) / (1 << 20));
+        if (m->deviceSecondsMedian) std::printf(" %10.4f", 1e3 * *m->deviceSecondsMedian);
+        std::puts("");
     }
+    if (r.device)
+        std::printf("device: %s (%s), %s%s\n", r.device->name.c_str(), r.device->kind.c_str(),
+                    r.device->precision.c_str(),
+                    r.device->isSoftware() ? "; software on the processor, its times are no card's" : "");
     if (r.truthNoise && *r.truthNoise == 0)
         std::puts("truth: exact");
     else if (r.truthNoise)

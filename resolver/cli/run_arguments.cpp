@@ -37,11 +37,15 @@ void addRunArguments(Command& c, RunArguments& a) {
     c.flag("-q,--quiet", a.quiet, "no progress");
     addWorkOptions(c, a.work);
     addDeviceOptions(c, a.work);
+    c.flag("--device-times", a.timeOnly,
+           "the methods run on the processor, and on the device for its time beside: both costs in one report");
 }
 
 ShotReader openShot(const RunArguments& a, RunOptions& run) {
     run.exec = a.work.exec();
     run.device = a.work.session();
+    run.timeOnly = a.timeOnly;
+    if (a.timeOnly && !run.device) throw UsageError("--device-times: no effect without --device vulkan");
     run.measure = measureOptions(a.metrics);
     run.protocol = {.display = {float(a.exposure), toneMapByName(a.toneMap), transferByName(a.display)},
                     .history = historyByName(a.history),

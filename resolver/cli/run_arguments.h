@@ -14,6 +14,7 @@ struct RunArguments {
     double exposure = 0;
     std::vector<std::string> metrics;
     int quantise = 0;  // 0: off
+    bool timeOnly = false;
     bool json = false, quiet = false;
     WorkOptions work;
 };

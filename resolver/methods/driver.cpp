@@ -21,7 +21,7 @@ double RunningMethod::resolve(const Frame& frame, const DisplayChain& chain, con
         encode(out, chain, exec, outEncoded);
     else
         outEncoded = out;
-    return method->deviceSeconds().value_or(seconds);
+    return seconds;
 }
 
 ShotInfo shotInfo(const Manifest& m) {

@@ -14,8 +14,8 @@ struct RunningMethod {
     Rgb outEncoded;  // display-encoded, what the metrics see
     RunningMethod(MethodSpec spec, const ShotInfo& shot);
     RunningMethod(MethodSpec spec, std::unique_ptr<Method> form);  // another form of spec's method
-    // Resolves one frame; returns the seconds that the method took, conversions not counted: those of the device where
-    // it ran on one. `chain` is frame.display of a frame that was prepared.
+    // Resolves one frame; returns the seconds that the method took, conversions not counted. `chain` is frame.display
+    // of a frame that was prepared.
     double resolve(const Frame& frame, const DisplayChain& chain, const Exec& exec);
 };
 

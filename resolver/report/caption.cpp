@@ -52,7 +52,7 @@ std::string cheapestSentence(const RunResults& run, const std::vector<size_t>& o
     const MethodResult* cheapest = nullptr;
     for (const size_t i : order) {
         const MethodResult& m = run.methods[i];
-        if (i != noaa && *m.pooled->gainDb > 0 && resolved(run, i, noaa) &&
+        if (i != noaa && m.nsPerPixel > 0 && *m.pooled->gainDb > 0 && resolved(run, i, noaa) &&
             (!cheapest || m.nsPerPixel < cheapest->nsPerPixel))
             cheapest = &m;
     }

@@ -210,7 +210,10 @@ class Sheet {
                        *m.pooled->gainDb >= 0 ? kBetter : kWorse, 16);
             figure("SSIM", similarity(m.pooled->mean.others.at("ssimLuma")), "", kInk, 16);
         }
-        figure("time", shortNumber(m.nsPerPixel), "ns/px", kInk, 16);
+        if (m.nsPerPixel > 0) figure("time", shortNumber(m.nsPerPixel), "ns/px", kInk, 16);
+        if (m.deviceSecondsMedian)
+            figure(run_.device->isSoftware() ? "software" : "GPU", shortNumber(1e3 * *m.deviceSecondsMedian), "ms",
+                   kInk, 16);
         if (m.temporal) {
             const auto flicker = run_.isStatic ? m.temporal->flickerStatic : m.temporal->flickerMoving;
             if (flicker && (*flicker > 0 || !run_.isStatic))

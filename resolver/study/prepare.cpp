@@ -103,10 +103,12 @@ std::vector<RunningMethod> startMethods(const ShotReader& shot, const RunOptions
     std::vector<RunningMethod> methods;
     for (const auto& spec : o.methods) {
         const ShotInfo info = shotInfo(shot.manifest());
-        methods.emplace_back(spec, o.device ? gpu::create(*o.device, spec, info) : spec.create(info));
+        methods.emplace_back(spec, o.device && !o.timeOnly ? gpu::create(*o.device, spec, info) : spec.create(info));
         methods.back().method->keepDebugLayers = o.debugLayers;
     }
     makeWritableFolder(o.out);
+    if (o.device && !o.timeOnly && o.debugLayers)
+        throw UsageError("--debug-layers: the shaders keep none; use --device cpu");
     for (const auto& m : methods) makeWritableFolder(o.out / m.spec.folderName());
     makeWritableFolder(o.out / "truth");
     return methods;
@@ -146,6 +148,10 @@ RunResults describeRun(const Manifest& m, const RunOptions& o) {
                   : o.exec.precision == Precision::scalar ? "scalar"
                                                           : "double";
     r.machine = machineName();
+    if (o.device) {
+        const gpu::DeviceInfo& d = o.device->device().info();
+        r.device = {d.name, d.kind, d.driver, o.device->fast() ? "fast" : "exact", !o.timeOnly};
+    }
     r.threads =
         o.exec.parallel ? int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)) : 1;
     r.protocol = o.protocol;

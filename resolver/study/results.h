@@ -17,7 +17,8 @@ namespace aa {
 
 struct FrameResult {
     int frame = 0;
-    double seconds = 0;                       // of this resolve
+    double seconds = 0;                       // of this resolve on the processor; 0: it did not run there
+    std::optional<double> deviceSeconds{};    // on RunResults::device, by its own clock
     std::optional<FrameMetrics> metrics;      // only when the frame has ground truth
     bool judged = true;                       // counts in the pooled figures; of a static shot only the last frame does
     std::string image;                        // relative path of the written image; empty when none was
@@ -46,7 +47,9 @@ struct MethodResult {
     std::vector<FrameResult> frames;
     size_t stateBytes = 0;  // history and scratch kept between frames
     // Filled by finish():
-    double secondsMedian = 0, secondsMin = 0, nsPerPixel = 0;  // per frame; ns/px from the median
+    // Per frame, on the processor; ns/px from the median. 0: the method did not run there.
+    double secondsMedian = 0, secondsMin = 0, nsPerPixel = 0;
+    std::optional<double> deviceSecondsMedian, deviceSecondsMin;
     std::optional<PooledMetrics> pooled;
     std::vector<double> tileSquares;  // sums of squared error of tiles of 32 x 32 px, so that runs can be paired
     std::optional<TemporalMetrics> temporal;  // of a sequence
@@ -68,6 +71,14 @@ struct ClippedPixels {
     size_t pixels = 0, of = 0;
 };
 
+// The graphics device on which the methods ran, or which was timed beside the processor.
+struct RunDevice {
+    std::string name, kind, driver;  // kind: discrete, integrated, virtual, cpu (software), other
+    std::string precision;           // exact, fast
+    bool judged = false;             // the judged images are the device's, not the processor's
+    bool isSoftware() const { return kind == "cpu"; }
+};
+
 struct RunResults {
     // The shot
     std::string shot;  // its name
@@ -87,6 +98,7 @@ struct RunResults {
     // The run
     std::string programVersion, isa, precision, machine;
     int threads = 1;
+    std::optional<RunDevice> device;
     Protocol protocol;
     size_t warmUpFrames = 0;                      // that ran before the first judged one, for a full history
     std::map<std::string, uint64_t> sanitised;    // replaced input values by kind; empty when none

@@ -44,16 +44,19 @@ std::string toCsvText(const RunResults& run) {
     const std::vector<const Figure*> figures = figuresIn(run);
     out << "method,frame";
     for (const Figure* f : figures) out << ',' << f->name;
+    if (run.device) out << ",deviceSeconds";
     out << ",seconds,protocol\n";
-    const auto line = [&](const std::string& method, const std::string& frame, const FrameMetrics* m, double seconds) {
+    const auto line = [&](const std::string& method, const std::string& frame, const FrameMetrics* m, double seconds,
+                          std::optional<double> deviceSeconds) {
         out << csvText(method) << ',' << frame;
         for (const Figure* f : figures) out << ',' << csvNumber(m ? m->figure(f->name) : std::nullopt);
+        if (run.device) out << ',' << csvNumber(deviceSeconds);
         out << ',' << csvNumber(seconds) << ',' << protocol << '\n';
     };
     for (const auto& m : run.methods) {
         for (const auto& f : m.frames)
-            line(m.text, std::to_string(f.frame), f.metrics ? &*f.metrics : nullptr, f.seconds);
-        line(m.text, "pooled", m.pooled ? &m.pooled->mean : nullptr, m.secondsMedian);
+            line(m.text, std::to_string(f.frame), f.metrics ? &*f.metrics : nullptr, f.seconds, f.deviceSeconds);
+        line(m.text, "pooled", m.pooled ? &m.pooled->mean : nullptr, m.secondsMedian, m.deviceSecondsMedian);
     }
     return out.str();
 }

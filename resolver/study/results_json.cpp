@@ -255,6 +255,7 @@ template <class V, Is<FrameResult> S>
 void members(V v, S& f) {
     v.value("frame", f.frame);
     v.value("seconds", f.seconds);
+    v.maybe("deviceSeconds", f.deviceSeconds);
     v.value("judged", f.judged);
     v.sparse("image", f.image, !f.image.empty());
     v.maybeObject("metrics", f.metrics);
@@ -276,6 +277,8 @@ void members(V v, S& m) {
     v.value("secondsMedian", m.secondsMedian);
     v.value("secondsMin", m.secondsMin);
     v.value("nsPerPixel", m.nsPerPixel);
+    v.maybe("deviceSecondsMedian", m.deviceSecondsMedian);
+    v.maybe("deviceSecondsMin", m.deviceSecondsMin);
     v.objectOrNull("pooled", m.pooled);
     v.list("frames", m.frames);
     v.maybeObject("temporal", m.temporal);
@@ -298,6 +301,14 @@ void members(V v, S& p) {
     v.maybeObject("ghost", p.ghost);
     v.maybeObject("flicker", p.flicker);
     v.maybeObject("rejected", p.rejected);
+}
+template <class V, Is<RunDevice> S>
+void members(V v, S& d) {
+    v.value("name", d.name);
+    v.value("kind", d.kind);
+    v.value("driver", d.driver);
+    v.value("precision", d.precision);
+    v.value("judged", d.judged);
 }
 template <class V, Is<RunResults> S>
 void members(V all, S& run) {
@@ -330,6 +341,7 @@ void members(V all, S& run) {
         v.value("precision", run.precision);
         v.value("threads", run.threads);
         v.value("machine", run.machine);
+        v.maybeObject("device", run.device);
         v.group("display", [&](auto d) {
             d.value("exposureEv", run.protocol.display.exposure);
             d.value("toneMap", run.protocol.display.toneMap);

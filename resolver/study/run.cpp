@@ -24,6 +24,10 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, const Progres
                       std::vector<TileErrors>& errors) {
     const Manifest& manifest = shot.manifest();
     std::vector<RunningMethod> methods = startMethods(shot, o);
+    std::vector<std::unique_ptr<Method>> timed;  // the same methods on a device, for its time alone
+    if (o.device && o.timeOnly)
+        for (const auto& spec : o.methods) timed.push_back(gpu::create(*o.device, spec, shotInfo(manifest)));
+    Rgb unused;
     RunResults results = describeRun(manifest, o);
     const InputPlan plan = planInput(shot, o);
     Judge judge(manifest, o, plan.overTime);
@@ -55,8 +59,10 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, const Progres
         for (size_t k = 0; k < methods.size(); k++) {
             const Frame& input = plan.readsCentre(methods[k].spec) ? *stream.centre() : *frame;
             const double seconds = methods[k].resolve(input, input.display, o.exec);
+            if (!timed.empty()) timed[k]->resolve(input, o.exec, unused);
             if (o.protocol.eightBit) quantise8(methods[k].outEncoded, o.exec);
-            FrameResult result = judge.judge(k, methods[k], seconds);
+            FrameResult result = judge.judge(k, methods[k], o.device && !o.timeOnly ? 0 : seconds);
+            if (o.device) result.deviceSeconds = (timed.empty() ? *methods[k].method : *timed[k]).deviceSeconds();
             if (write) result.image = writeImage(methods[k], frame->number, o);
             MethodResult& of = results.methods[k];
             if (manifest.isStatic && !of.frames.empty()) of.frames.back().judged = false;
@@ -67,6 +73,7 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, const Progres
         progress.step("frame " + std::to_string(frame->number));
         if (progress.interrupted()) break;
     }
+    if (o.device) o.device->forget();
     judge.finish(results, passes == 0);
     results.sanitised = counted(stream.counts());
     errors = judge.errors();

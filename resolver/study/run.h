@@ -21,6 +21,7 @@ struct RunOptions {
     Protocol protocol;
     Exec exec;
     std::shared_ptr<gpu::Session> device;  // null: the processor
+    bool timeOnly = false;                 // the methods run on the processor, and on the device for its time beside
     MeasureOptions measure;
     std::filesystem::path out;
     bool writeExr = true, writePng = false;

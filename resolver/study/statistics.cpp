@@ -107,7 +107,15 @@ void finish(RunResults& run, const std::vector<TileErrors>& errors) {
     const MethodResult* noaa = nullptr;
     for (auto& m : run.methods) {
         std::vector<double> seconds;
-        for (const auto& f : m.frames) seconds.push_back(f.seconds);
+        std::vector<double> onDevice;
+        for (const auto& f : m.frames) {
+            seconds.push_back(f.seconds);
+            if (f.deviceSeconds) onDevice.push_back(*f.deviceSeconds);
+        }
+        if (!onDevice.empty()) {
+            m.deviceSecondsMedian = median(onDevice);
+            m.deviceSecondsMin = *std::min_element(onDevice.begin(), onDevice.end());
+        }
         m.secondsMedian = median(seconds);
         m.secondsMin = seconds.empty() ? 0 : *std::min_element(seconds.begin(), seconds.end());
         m.nsPerPixel = m.secondsMedian * 1e9 / (double(run.width) * run.height);

@@ -1,5 +1,6 @@
 #include "study/warm_up.h"
 
+#include "gpu/method.h"
 #include "shot/frame_stream.h"
 
 namespace aa {
@@ -42,12 +43,14 @@ std::optional<Camera> warmUp(const ShotReader& shot, const RunOptions& o, std::v
         frame->number = numberInPass(number, passes - pass, o, shot.manifest());
         before = frame->camera;
         prepareFrame(*frame, methods, o.protocol.display, o.exec);
+        if (o.device) o.device->share(*frame);
         for (auto& m : methods)
             if (m.spec.method->wantsHistory()) m.resolve(*frame, frame->display, o.exec);
         progress.step("warm-up " + std::to_string(pass + 1) + "/" + std::to_string(passes) + " frame " +
                       std::to_string(number));
         if (progress.interrupted()) break;
     }
+    if (o.device) o.device->forget();
     return before;
 }
 

@@ -37,6 +37,10 @@
   const noaa = methods.findIndex((m) => m.id === "noaa");
   const pooled = (key) => (m) => (m.pooled ? value(m.pooled[key]) : null);
   const has = (key) => methods.some((m) => m.pooled && m.pooled[key] != null);
+  // The graphics device that ran the methods or was timed beside the processor. Software is never shown as a card.
+  const device = run.run.device;
+  const onDevice = device && `ms ${device.kind === "cpu" ? "in software" : "on the GPU"} (${device.name})`;
+  const deviceMs = (m) => (m.deviceSecondsMedian == null ? null : m.deviceSecondsMedian * 1000);
   const columns = [
     { title: "PSNR, dB", better: "high", get: pooled("psnr"), show: (m) => (m.pooled ? fixed(m.pooled.psnr, 2) : "–"),
       // What the truth's own noise takes off the MSE: the PSNR lies between the two.
@@ -55,8 +59,9 @@
     { title: "MSE, 10⁻⁶", better: "low", get: pooled("mse"), show: (m) => (m.pooled ? millionths(m.pooled.mse) : "–"),
       small: () => (run.truth.noiseMse > 0 ? "± " + millionths(run.truth.noiseMse) : null) },
     { title: "SNR, dB", better: "high", get: pooled("snr"), show: (m) => (m.pooled ? fixed(m.pooled.snr, 2) : "–") },
-    { title: "Time, ns/px", better: "low", get: (m) => m.nsPerPixel, show: (m) => short(m.nsPerPixel),
-      small: (m) => short(m.secondsMedian * 1000) + " ms per frame" },
+    methods.some((m) => m.nsPerPixel > 0) && { title: "Time, ns/px", better: "low", get: (m) => m.nsPerPixel || null,
+      show: (m) => (m.nsPerPixel > 0 ? short(m.nsPerPixel) : "–"), small: (m) => short(m.secondsMedian * 1000) + " ms per frame" },
+    device && { title: onDevice, better: "low", get: deviceMs, show: (m) => (deviceMs(m) == null ? "–" : short(deviceMs(m))) },
     { title: "State, MB", better: "low", get: (m) => m.stateBytes, show: (m) => (m.stateBytes / 1048576).toFixed(2) },
   ].filter(Boolean);
   const ranked = methods.map((m, i) => i).filter((i) => methods[i].pooled).sort((a, b) => value(methods[a].pooled.mse) - value(methods[b].pooled.mse));
@@ -168,7 +173,7 @@
     const groups = new Set(["color", ...m.passes.map((p) => (p.startsWith("subsample") ? "subsamples" : p))]);
     if (renderSeconds[centre + "color"] == null) return null;
     const render = [...groups].reduce((sum, g) => sum + (renderSeconds[centre + g] ?? 0), 0);
-    return { render, all: render + m.secondsMedian };
+    return { render, all: render + (m.secondsMedian || (m.deviceSecondsMedian ?? 0)) };
   };
   // passBytes: per pixel of each pass in memory, 32-bit floats and ids; S = sub-samples of the shot.
   const S = run.shot.subSamples || 0;
@@ -179,11 +184,12 @@
   const publishedMemory = (m) => ({ gbaa: 7.9, fxaa1: 0, fxaacs: 9.9, t2msaa: 67.2, asaa: 86.5 })[m.id] ?? (m.id === "msaa" ? { 2: 39.6, 4: 91, 8: 209.6 }[S] : undefined) ?? null;
   sortableTable($("price-figures"), order, [
     { title: "Passes, s per frame", better: "low", get: (m, i) => priceOf(i)?.render ?? null, small: (m) => m.passes.join(", ") },
-    { title: "Method, ms per frame", better: "low", get: (m) => m.secondsMedian * 1000 },
+    methods.some((m) => m.nsPerPixel > 0) && { title: "Method, ms per frame", better: "low", get: (m) => m.secondsMedian * 1000 || null },
+    device && { title: "Method, " + onDevice, better: "low", get: deviceMs },
     { title: "Kept, MB at 1080p", better: "low", get: (m) => stateOf(m), show: (m) => stateOf(m).toFixed(1) },
     { title: "Passes, MB at 1080p", better: "low", get: (m) => passMemory(m), show: (m) => passMemory(m).toFixed(1) },
     { title: "Published extra, MB", better: "low", get: publishedMemory, show: (m) => (publishedMemory(m) == null ? "–" : publishedMemory(m).toFixed(1)) },
-  ]);
+  ].filter(Boolean));
   $("price-note").textContent = "Kept: history and working memory of the method, scaled from this picture's size. Passes: what it reads beside colour, in 32-bit floats" +
     (S ? ` with ${S} sub-samples per pixel` : "") + ". Published: extra memory of a GPU implementation (Linköping thesis, table 5.6), which packs its buffers more tightly and counts its render targets.";
 
@@ -208,14 +214,27 @@
     const shown = order.filter((i) => methods[i].pooled && finite(methods[i].pooled.psnr) !== null);
     const show = (id, config) => charts.push(new Chart($(id), config));
     if (!shown.length) { $("charts").hidden = true; return; }
-    show("scatter", {
-      type: "scatter",
-      data: { datasets: shown.map((i) => ({ label: methods[i].text, data: [{ x: methods[i].nsPerPixel, y: value(methods[i].pooled.psnr) }],
-        backgroundColor: colourOf(i), borderColor: colourOf(i), pointStyle: markerOf(i), pointRadius: 7, pointHoverRadius: 9, borderWidth: 2 })) },
-      options: { scales: { x: axis("time, ns per pixel (logarithmic)", { type: "logarithmic" }), y: axis("PSNR, dB", { grace: "8%" }) },
-        plugins: { legend: { position: "bottom", labels: { usePointStyle: true, boxWidth: 8, boxHeight: 8 } },
-          tooltip: { callbacks: { label: (t) => `${t.dataset.label}: ${t.parsed.x.toPrecision(3)} ns/px, ${t.parsed.y.toFixed(2)} dB` } } } },
-    });
+    // Cost against accuracy, for each of the two costs that the run holds.
+    const scatter = (id, costOf, axisTitle, unit) => {
+      const priced = shown.filter((i) => costOf(methods[i]) > 0);
+      $(id).closest("figure").hidden = !priced.length;
+      if (!priced.length) return;
+      show(id, {
+        type: "scatter",
+        data: { datasets: priced.map((i) => ({ label: methods[i].text, data: [{ x: costOf(methods[i]), y: value(methods[i].pooled.psnr) }],
+          backgroundColor: colourOf(i), borderColor: colourOf(i), pointStyle: markerOf(i), pointRadius: 7, pointHoverRadius: 9, borderWidth: 2 })) },
+        options: { scales: { x: axis(axisTitle + " (logarithmic)", { type: "logarithmic" }), y: axis("PSNR, dB", { grace: "8%" }) },
+          plugins: { legend: { position: "bottom", labels: { usePointStyle: true, boxWidth: 8, boxHeight: 8 } },
+            tooltip: { callbacks: { label: (t) => `${t.dataset.label}: ${t.parsed.x.toPrecision(3)} ${unit}, ${t.parsed.y.toFixed(2)} dB` } } } },
+      });
+    };
+    scatter("scatter", (m) => m.nsPerPixel, "time, ns per pixel", "ns/px");
+    if (device) {
+      $("device-title").textContent = device.kind === "cpu" ? "Shaders in software against accuracy" : "GPU time against accuracy: up and left is better";
+      $("device-note").textContent = `${device.name}, ${device.precision}; by the device's own clock, without transfers.` +
+        (device.kind === "cpu" ? " Software on the processor, which checks the shaders: these are no card's times." : "");
+      scatter("device-scatter", deviceMs, onDevice, "ms");
+    }
     // Horizontal bars, as tall as their number asks for.
     const bars = (id, indices, get, axisTitle, colour, tip, errorOf) => {
       $(id).closest("figure").hidden = !indices.length;
