@@ -84,7 +84,14 @@ Loader load(bool validate) {
         layers.push_back(kValidationLayer);
         extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     }
-    loader.instance = vk::raii::Instance(loader.context, vk::InstanceCreateInfo({}, &application, layers, extensions));
+    try {
+        loader.instance =
+            vk::raii::Instance(loader.context, vk::InstanceCreateInfo({}, &application, layers, extensions));
+    } catch (const vk::SystemError& e) {
+        throw DeviceError(std::string("--device vulkan: no driver answers (") + e.what() +
+                          "); install your card's driver (mesa-vulkan-drivers has one in software), or use --device "
+                          "cpu");
+    }
     return loader;
 }
 
@@ -185,6 +192,23 @@ size_t bytesPerTexel(Format f) {
     throw std::logic_error("gpu::Format: unknown");
 }
 
+std::string refusal(int result, const std::string& device, const std::string& during) {
+    switch (vk::Result(result)) {
+        case vk::Result::eErrorDeviceLost:
+            return "--device: " + device + " was lost during " + during +
+                   " (its driver reset it, or another program's fault did); run again, or use --device cpu";
+        case vk::Result::eErrorOutOfDeviceMemory:
+            return "--device: " + device + " is out of memory during " + during +
+                   "; use fewer methods or a smaller resolution, or --device cpu";
+        case vk::Result::eErrorOutOfHostMemory:
+            return "--device: out of memory on this machine during " + during +
+                   "; use fewer methods or a smaller resolution";
+        default:
+            return "--device: " + device + ": " + vk::to_string(vk::Result(result)) + " during " + during +
+                   "; use --device cpu";
+    }
+}
+
 std::vector<DeviceInfo> listDevices() {
     const Loader loader = load(false);
     std::vector<DeviceInfo> all;
@@ -216,17 +240,8 @@ class DeviceState {
     auto guarded(const Fn& fn, const std::string& during) const {
         try {
             return fn();
-        } catch (const vk::DeviceLostError&) {
-            throw DeviceError("--device: " + info.name + " was lost during " + during +
-                              " (driver reset, or another program's fault); run again, or use --device cpu");
-        } catch (const vk::OutOfDeviceMemoryError&) {
-            throw DeviceError("--device: " + info.name + " is out of memory during " + during +
-                              "; use fewer methods or a smaller resolution, or --device cpu");
-        } catch (const vk::OutOfHostMemoryError&) {
-            throw DeviceError("--device: out of memory on this machine during " + during +
-                              "; use fewer methods or a smaller resolution");
         } catch (const vk::SystemError& e) {
-            throw DeviceError("--device: " + info.name + ": " + e.what() + " during " + during);
+            throw DeviceError(refusal(e.code().value(), info.name, during));
         }
     }
     void complain() {

@@ -32,6 +32,8 @@ struct DeviceInfo {
     std::string lacks;                    // what it would need to run the shaders; empty: usable
     bool isCpu() const { return kind == "cpu"; }
 };
+// The user's line for a VkResult that is an error.
+std::string refusal(int result, const std::string& device, const std::string& during);
 // Real cards before software. Throws DeviceError: no Vulkan in this build, no loader on this machine.
 std::vector<DeviceInfo> listDevices();
 

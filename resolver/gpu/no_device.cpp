@@ -16,6 +16,8 @@ struct Shader::Pipeline {};
 struct Recorder::State {};
 class DeviceState {};
 
+std::string refusal(int, const std::string&, const std::string&) { absent(); }
+size_t bytesPerTexel(Format) { absent(); }
 std::vector<DeviceInfo> listDevices() { absent(); }
 Image::Image(const Device&, int, int, Format, int) { absent(); }
 Image::Image() = default;
