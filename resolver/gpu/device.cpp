@@ -526,7 +526,11 @@ struct Recorder::State {
         std::function<void(const std::byte*)> take;
     };
     std::vector<Download> downloads;
-    std::vector<std::string> timed;
+    struct Timed {
+        std::string shader;
+        size_t bytesRead = 0, bytesWritten = 0;
+    };
+    std::vector<Timed> timed;
     std::vector<PassTime> times;
     bool recording = false, submitted = false;
 
@@ -661,7 +665,14 @@ void Recorder::dispatchBytes(Shader& shader, int width, int height, std::span<co
             c.dispatch((uint32_t(width) + kGroup - 1) / kGroup, (uint32_t(height) + kGroup - 1) / kGroup, 1);
             if (time) {
                 c.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, *s.queries, query + 1);
-                s.timed.push_back(shader.name_);
+                State::Timed& t = s.timed.emplace_back();
+                t.shader = shader.name_;
+                for (const Binding& b : bindings) {
+                    if (b.kind == Binding::Kind::image)
+                        t.bytesWritten += b.texture->bytes();
+                    else
+                        t.bytesRead += b.memory ? b.memory->bytes() : b.texture->bytes();
+                }
             }
             s.sets.push_back(std::move(set));
         },
@@ -769,8 +780,9 @@ void Recorder::wait() {
                     vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
                 const uint64_t mask = s.d.timestampBits >= 64 ? ~uint64_t(0) : (uint64_t(1) << s.d.timestampBits) - 1;
                 for (size_t i = 0; i < s.timed.size(); i++)
-                    s.times.push_back({s.timed[i], 1e-9 * double(s.d.limits.timestampPeriod) *
-                                                       double((ticks[2 * i + 1] - ticks[2 * i]) & mask)});
+                    s.times.push_back({s.timed[i].shader, 1e-9 * double(s.d.limits.timestampPeriod) *
+                                                       double((ticks[2 * i + 1] - ticks[2 * i]) & mask),
+                                       s.timed[i].bytesRead, s.timed[i].bytesWritten});
             }
         },
         "its work");

@@ -148,6 +148,7 @@ class Device {
 struct PassTime {
     std::string shader;
     double seconds;
+    size_t bytesRead, bytesWritten;  // every image and buffer that it binds, once
 };
 
 // Commands in order; each sees what those before it wrote. Nothing runs before submit().

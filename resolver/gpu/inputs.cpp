@@ -124,16 +124,38 @@ Format formatOf(Input which, const Session& session) {
 }
 }  // namespace
 
+bool Inputs::offers(Input which) const {
+    const Frame& f = *frame_;
+    const auto all = [&](auto member) { return !f.subSamples.empty() && !(f.subSamples[0].*member).empty(); };
+    switch (which) {
+        case Input::colour: return !f.colorLinear.empty();
+        case Input::encoded: return !f.colorEncoded.empty();
+        case Input::albedo: return !f.albedoLinear.empty();
+        case Input::albedoEncoded: return !f.albedoEncoded.empty();
+        case Input::depth: return !f.depthView.empty();
+        case Input::normal: return !f.normalWorld.empty();
+        case Input::objectId: return !f.objectId.empty();
+        case Input::mask: return !f.subSampleMask.empty();
+        case Input::motion: return !f.motionXPx.empty();
+        case Input::edges: return !f.edgeXPx.empty();
+        case Input::subColour:
+        case Input::subEncoded: return all(&SubSample::colorLinear);
+        case Input::subNormal: return all(&SubSample::normalWorld);
+        case Input::subDepth: return all(&SubSample::depthView);
+        case Input::subId: return all(&SubSample::objectId);
+    }
+    return false;
+}
+
 const Image& Inputs::get(Input which, Recorder& recorder) {
     Image& image = images_[which];
     if (!current_.insert(which).second) return image;
     const Frame& f = *frame_;
+    if (!offers(which)) throw std::logic_error("gpu::Inputs: the frame lacks input " + std::to_string(int(which)));
     std::vector<Rgb> converted;
     const auto planes = planesOf(f, which, converted);
     const auto ids = planes.empty() ? idsOf(f, which) : std::vector<const PlaneU*>{};
     const size_t layers = planes.empty() ? ids.size() : planes.size();
-    if (layers == 0 || (planes.empty() ? ids[0]->empty() : planes[0][0]->empty()))
-        throw std::logic_error("gpu::Inputs: the frame lacks input " + std::to_string(int(which)));
     const Format format = formatOf(which, session_);
     if (image.width() != f.width || image.height() != f.height || image.layers() != int(layers) ||
         image.format() != format)

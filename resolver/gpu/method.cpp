@@ -3,6 +3,8 @@
 #include <ImathConfig.h>
 #include <half.h>
 
+#include <algorithm>
+
 #include "gpu/forms.h"
 #include "methods/stage.h"
 
@@ -11,29 +13,36 @@ namespace aa::gpu {
 Session::Session(const Settings& settings)
     : settings_(settings),
       device_(settings.device, {settings.validate, settings.shaders}),
-      inputs_{Inputs(*this), Inputs(*this)},
-      uploads_(device_) {}
+      uploads_(device_) {
+    for (auto& i : inputs_) i = std::make_unique<Inputs>(*this);
+}
 Session::~Session() = default;
 
-void Session::share(const Frame& frame, const std::vector<Input>& inputs) {
+void Session::share(const Frame& frame, bool changed) {
     const std::lock_guard lock(mutex_);
     uploads_.wait();  // of the frame before
-    for (Inputs& i : inputs_)
-        if (i.frame() == &frame) i.end();  // another frame that lay at the same address
-    latest_ = 1 - latest_;
-    inputs_[latest_].begin(frame);
-    for (const Input input : inputs) inputs_[latest_].get(input, uploads_);
-    if (!inputs.empty()) uploads_.submit();
+    auto slot = std::find_if(inputs_.begin(), inputs_.end(), [&](const auto& i) { return i->frame() == &frame; });
+    const bool known = slot != inputs_.end();
+    if (!known) slot = inputs_.end() - 1;
+    std::rotate(inputs_.begin(), slot, slot + 1);
+    if (known && !changed) return;
+    Inputs& inputs = *inputs_.front();
+    asked_.insert(inputs.uploaded().begin(), inputs.uploaded().end());  // of a frame that is done
+    inputs.begin(frame);
+    bool any = false;
+    for (const Input input : asked_)
+        if (inputs.offers(input)) inputs.get(input, uploads_), any = true;
+    if (any) uploads_.submit();
 }
 void Session::forget() {
     const std::lock_guard lock(mutex_);
     uploads_.wait();
-    for (Inputs& i : inputs_) i.end();
+    for (auto& i : inputs_) i->end();
 }
 Inputs* Session::shared(const Frame& frame) {
     const std::lock_guard lock(mutex_);
-    for (Inputs& i : inputs_)
-        if (i.frame() == &frame) return &i;
+    for (auto& i : inputs_)
+        if (i->frame() == &frame) return i.get();
     return nullptr;
 }
 

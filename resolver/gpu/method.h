@@ -48,6 +48,8 @@ class Inputs {
     void begin(const Frame& frame) { frame_ = &frame, current_.clear(); }
     void end() { frame_ = nullptr, current_.clear(); }
     const Frame* frame() const { return frame_; }  // null: none
+    const std::set<Input>& uploaded() const { return current_; }
+    bool offers(Input which) const;  // whether the frame has the pass
     // Throws std::logic_error where the frame lacks the pass.
     const Image& get(Input which, Recorder& recorder);
 
@@ -71,18 +73,20 @@ class Session {
     Format colour() const { return fast() ? Format::rgba16f : Format::rgba32f; }
     static constexpr Format value = Format::r32f;
 
-    // A frame that several methods will resolve, which must not change until forget() or the next but one share():
-    // uploaded once, and what `inputs` names at once, while the device works on the frame before.
-    void share(const Frame& frame, const std::vector<Input>& inputs = {});
+    // A frame that several methods will resolve, uploaded once: what they asked of the frames before at once, while the
+    // device works on them, the rest when it is asked for. It must not change until forget() or kShared more of these
+    // calls. `changed` false: it is the frame that was shared from this address before.
+    void share(const Frame& frame, bool changed = true);
     void forget();
+    static constexpr size_t kShared = 4;  // this frame and the next, each with its centre-sampled one
     // The shared frame's images; null where `frame` is not shared.
     Inputs* shared(const Frame& frame);
 
   private:
     Settings settings_;
     Device device_;
-    std::array<Inputs, 2> inputs_;
-    size_t latest_ = 0;
+    std::array<std::unique_ptr<Inputs>, kShared> inputs_;  // the latest first
+    std::set<Input> asked_;                                 // of frames that are done
     std::mutex mutex_;
     Recorder uploads_;
 };

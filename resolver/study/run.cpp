@@ -3,6 +3,7 @@
 #include "gpu/method.h"
 #include "metrics/temporal.h"
 #include "shot/frame_stream.h"
+#include "study/feed.h"
 #include "study/images.h"
 #include "study/judge.h"
 #include "study/prepare.h"
@@ -41,23 +42,25 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, const Progres
 
     FrameStream stream(shot, o.frames, plan.jittered, /*withTruth=*/true, plan.centre);
     const DisplayChain& display = o.protocol.display;
-    std::shared_ptr<Frame> centreFrame;  // of the last frame; shared by those of a static shot, and prepared once
-    for (size_t i = 0; auto frame = stream.next(); i++) {
-        if (i == 0) {
-            frame->reset = passes == 0;  // a sequence may start in the middle
-            if (passes > 0) frame->previousCamera = before;
-        }
-        prepareFrame(*frame, methods, display, o.exec);
-        if (stream.centre() && stream.centre() != centreFrame) prepareFrame(*stream.centre(), methods, display, o.exec);
-        centreFrame = stream.centre();
-        if (o.device) o.device->share(*frame);
-        judge.look(*frame, stream.truth());
+    Feed feed(
+        stream,
+        [&](int i, Frame& frame) {
+            if (i == 0) {
+                frame.reset = passes == 0;  // a sequence may start in the middle
+                if (passes > 0) frame.previousCamera = before;
+            }
+            prepareFrame(frame, methods, display, o.exec);
+        },
+        o.device.get());
+    for (size_t i = 0; auto item = feed.next(); i++) {
+        const auto& frame = item->frame;
+        judge.look(*frame, item->truth);
         const Reference* reference = judge.reference();
         const bool write = o.writeAllFrames || (reference && (!manifest.isStatic || i + 1 == o.frames.size()));
         if (write && reference) results.truthImages[frame->number] = writeTruthImage(*reference, frame->number, o);
 
         for (size_t k = 0; k < methods.size(); k++) {
-            const Frame& input = plan.readsCentre(methods[k].spec) ? *stream.centre() : *frame;
+            const Frame& input = plan.readsCentre(methods[k].spec) ? *item->centre : *frame;
             const double seconds = methods[k].resolve(input, input.display, o.exec);
             if (!timed.empty()) timed[k]->resolve(input, o.exec, unused);
             if (o.protocol.eightBit) quantise8(methods[k].outEncoded, o.exec);
@@ -73,6 +76,7 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, const Progres
         progress.step("frame " + std::to_string(frame->number));
         if (progress.interrupted()) break;
     }
+    feed.stop();
     if (o.device) o.device->forget();
     judge.finish(results, passes == 0);
     results.sanitised = counted(stream.counts());
