@@ -1,6 +1,7 @@
 #include <cstdio>
 
 #include "cli/cli.h"
+#include "gpu/method.h"
 #include "image/error.h"
 #include "image/io.h"
 #include "methods/driver.h"
@@ -46,7 +47,11 @@ void filter(const Options& o) {
     const LoadedImage image = readImage(o.in);
     const DisplayChain display{.transfer = transferByName(o.display)};
     const Frame frame = frameOf(image, display, exec);
-    RunningMethod running(spec, {.width = frame.width, .height = frame.height, .isStatic = true});
+    const ShotInfo info{.width = frame.width, .height = frame.height, .isStatic = true};
+    const auto session = o.work.session();
+    if (session && !o.debugLayers.empty())
+        throw UsageError("--debug-layers: the shaders keep none; use --device cpu");
+    RunningMethod running(spec, session ? gpu::create(*session, spec, info) : spec.create(info));
     running.method->keepDebugLayers = !o.debugLayers.empty();
     double seconds = 0;
     withThreads(o.work.threads, [&] { seconds = running.resolve(frame, frame.display, exec); });
@@ -60,6 +65,11 @@ void filter(const Options& o) {
         writeExr(o.out, linear, true);
     }
     if (!o.debugLayers.empty()) writeLayers(o.debugLayers, running.method->debugLayers());
+    if (running.method->deviceSeconds()) {
+        std::printf("%s %dx%d %.4f ms on %s -> %s\n", spec.text.c_str(), frame.width, frame.height,
+                    1e3 * *running.method->deviceSeconds(), session->device().info().name.c_str(), o.out.c_str());
+        return;
+    }
     std::printf("%s %dx%d %.3f ms %.2f ns/px -> %s\n", spec.text.c_str(), frame.width, frame.height, seconds * 1e3,
                 seconds * 1e9 / (double(frame.width) * frame.height), o.out.c_str());
 }
@@ -76,6 +86,7 @@ void addFilter(CommandLine& line, Context&) {
              "srgb = EXR values are linear light; identity = they are the displayed values, as the codes of a PNG")
         .oneOf({"srgb", "identity"});
     addWorkOptions(c, o->work);
+    addDeviceOptions(c, o->work);
     c.run([o] { filter(*o); });
 }
 

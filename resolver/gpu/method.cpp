@@ -61,12 +61,20 @@ void planar(const std::byte* from, size_t channels, std::span<PlaneF* const> pla
 }
 }  // namespace
 
-void GpuMethod::resolve(const Frame& frame, const Exec&, Rgb& out) {
+void GpuMethod::recordFrame(const Frame& frame) {
     Inputs* inputs = session_.shared(frame);
     if (!inputs) own_.begin(frame), inputs = &own_;
     Current current(*inputs, recorder_);
     fitted(out_, frame.width, frame.height, session_.colour());
     record(current, out_);
+}
+const std::vector<PassTime>& GpuMethod::run(const Frame& frame) {
+    recordFrame(frame);
+    recorder_.run();
+    return recorder_.times();
+}
+void GpuMethod::resolve(const Frame& frame, const Exec&, Rgb& out) {
+    recordFrame(frame);
     if (out.width() != frame.width || out.height() != frame.height) out = Rgb(frame.width, frame.height);
     recorder_.download(out_, [&](const std::byte* texels) {
         PlaneF* const planes[] = {&out.c[0], &out.c[1], &out.c[2]};

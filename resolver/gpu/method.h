@@ -112,6 +112,7 @@ class GpuMethod : public Method {
         : session_(session), params_(params), recorder_(session.device()), own_(session) {}
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) final;
+    const std::vector<PassTime>& run(const Frame& frame);  // the same, with the picture left on the device
     size_t stateBytes() const final { return bytes_; }
     const PlaneF* rejection() const final { return rejection_.empty() ? nullptr : &rejection_; }
     std::optional<double> deviceSeconds() const final;
@@ -130,6 +131,7 @@ class GpuMethod : public Method {
     Buffer& fitted(Buffer& buffer, size_t bytes);
 
   private:
+    void recordFrame(const Frame& frame);
     Session& session_;
     Params params_;
     Recorder recorder_;
