@@ -122,13 +122,15 @@ void benchDevice(const BenchOptions& o, const std::vector<MethodSpec>& methods) 
                                   {"rows", nlohmann::ordered_json::array()}};
     if (!o.json) printHead(*session, o);
     const MethodSpec copy = parseMethod("noaa");
+    std::vector<MethodSpec> both = methods;
+    both.push_back(copy);
     for (const auto& size : o.sizes) {
         BenchFrames source{o.shot, o.scene, 0, 0, 2};
         std::tie(source.width, source.height) = sizeOf(size);
         std::optional<Frames> frames;
         double copyRate = 0;  // bytes per second of the shader that copies a picture: what this size can reach
         const auto run = [&](const MethodSpec& spec) {
-            framesFor(frames, source, spec, {copy, spec}, o.work.exec());
+            framesFor(frames, source, spec, both, o.work.exec());
             return time(spec, *frames, *session, o.runs);
         };
         copyRate = run(copy).bytesPerSecond();

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "gpu/forms.h"
-#include "methods/stage.h"
+#include "gpu/stages.h"
 
 namespace aa::gpu {
 
@@ -61,12 +61,25 @@ void planar(const std::byte* from, size_t channels, std::span<PlaneF* const> pla
 }
 }  // namespace
 
-void GpuMethod::recordFrame(const Frame& frame) {
+void GpuMethod::addStage(std::unique_ptr<DeviceStage> stage) {
+    keepRejection = keepRejection || stage->needsRejection();
+    stages_.push_back(std::move(stage));
+}
+size_t GpuMethod::stateBytes() const {
+    size_t bytes = bytes_;
+    for (const auto& stage : stages_) bytes += stage->stateBytes();
+    return bytes;
+}
+
+const Image& GpuMethod::recordFrame(const Frame& frame) {
     Inputs* inputs = session_.shared(frame);
     if (!inputs) own_.begin(frame), inputs = &own_;
     Current current(*inputs, recorder_);
     fitted(out_, frame.width, frame.height, session_.colour());
     record(current, out_);
+    const Image* shown = &out_;
+    for (const auto& stage : stages_) shown = &stage->record(current, *shown, rejectionImage());
+    return *shown;
 }
 const std::vector<PassTime>& GpuMethod::run(const Frame& frame) {
     recordFrame(frame);
@@ -74,9 +87,9 @@ const std::vector<PassTime>& GpuMethod::run(const Frame& frame) {
     return recorder_.times();
 }
 void GpuMethod::resolve(const Frame& frame, const Exec&, Rgb& out) {
-    recordFrame(frame);
+    const Image& shown = recordFrame(frame);
     if (out.width() != frame.width || out.height() != frame.height) out = Rgb(frame.width, frame.height);
-    recorder_.download(out_, [&](const std::byte* texels) {
+    recorder_.download(shown, [&](const std::byte* texels) {
         PlaneF* const planes[] = {&out.c[0], &out.c[1], &out.c[2]};
         session_.fast() ? planar<half>(texels, 4, planes) : planar<float>(texels, 4, planes);
     });
@@ -117,8 +130,10 @@ bool hasForm(std::string_view id) { return findForm(id) != nullptr; }
 std::unique_ptr<Method> create(Session& session, const MethodSpec& spec, const ShotInfo& shot) {
     const Form* form = findForm(spec.method->id);
     if (!form) throw UsageError("--device: '" + std::string(spec.method->id) + "' has no shader; use --device cpu");
-    spec.method->create(spec.params(), shot);  // its errors about the shot and the parameters
-    return withStages(form->create(session, spec.params(), shot), spec, shot);
+    spec.create(shot);  // its errors about the shot, the parameters and the stages
+    std::unique_ptr<GpuMethod> method = form->create(session, spec.params(), shot);
+    for (const StageSpec& stage : spec.stages) method->addStage(makeStage(session, stage, spec, shot));
+    return method;
 }
 
 }  // namespace aa::gpu

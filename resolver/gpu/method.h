@@ -20,7 +20,7 @@ struct Settings {
     std::string device;  // "vulkan", "vulkan:N", "vulkan:NAME"
     Precision precision = Precision::exact;
     bool validate = false;
-    std::filesystem::path shaders;  // as DeviceOptions::shaders
+    std::filesystem::path shaders = {};  // as DeviceOptions::shaders
 };
 
 // The passes of one frame as images, each uploaded when it is first asked for. Colours have alpha 1.
@@ -106,21 +106,35 @@ class Current {
     Recorder& recorder_;
 };
 
+// What runs on a method's output while it is still on the device, and is never fed back: gpu/stages.h.
+class DeviceStage {
+  public:
+    virtual ~DeviceStage() = default;
+    // Records what makes `image`, RGBA in the method's output space, to what is shown: an image of the stage's own.
+    // `rejection`: where the method did not use its history; null: it keeps none.
+    virtual const Image& record(Current& current, const Image& image, const Image* rejection) = 0;
+    virtual bool needsRejection() const { return false; }
+    virtual size_t stateBytes() const = 0;
+};
+
 class GpuMethod : public Method {
   public:
     GpuMethod(Session& session, const Params& params)
         : session_(session), params_(params), recorder_(session.device()), own_(session) {}
 
+    // Before the first frame.
+    void addStage(std::unique_ptr<DeviceStage> stage);
+    // Records everything that makes `out`, RGBA in the method's output space, of this frame.
+    virtual void record(Current& current, Image& out) = 0;
+
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) final;
     const std::vector<PassTime>& run(const Frame& frame);  // the same, with the picture left on the device
-    size_t stateBytes() const final { return bytes_; }
+    size_t stateBytes() const final;
     const PlaneF* rejection() const final { return rejection_.empty() ? nullptr : &rejection_; }
     std::optional<double> deviceSeconds() const final;
     const std::vector<PassTime>& passTimes() const { return recorder_.times(); }  // of the last frame
 
   protected:
-    // Records everything that makes `out`, RGBA in the method's output space, of this frame.
-    virtual void record(Current& current, Image& out) = 0;
     // Where history was not used (Rejection), R32F; written by methods that have one when keepRejection is set.
     virtual const Image* rejectionImage() const { return nullptr; }
 
@@ -131,12 +145,13 @@ class GpuMethod : public Method {
     Buffer& fitted(Buffer& buffer, size_t bytes);
 
   private:
-    void recordFrame(const Frame& frame);
+    const Image& recordFrame(const Frame& frame);  // what is shown
     Session& session_;
     Params params_;
     Recorder recorder_;
     Inputs own_;  // of frames that are not shared
     Image out_;
+    std::vector<std::unique_ptr<DeviceStage>> stages_;
     PlaneF rejection_;
     size_t bytes_ = 0;
 };

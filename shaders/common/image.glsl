@@ -20,6 +20,8 @@ float minComponent(vec3 c) { return min(min(c.x, c.y), c.z); }
 
 // a + (b - a) f, and a itself at f = 0, whatever b is: a texel of weight 0 cannot spread NaN.
 vec4 lerpExact(vec4 a, vec4 b, float f) { return f == 0.0 ? a : a + (b - a) * f; }
+vec3 lerpExact(vec3 a, vec3 b, float f) { return f == 0.0 ? a : a + (b - a) * f; }
+float lerpExact(float a, float b, float f) { return f == 0.0 ? a : a + (b - a) * f; }
 
 // Bilinear at p + offset, in px. Offset 0 gives the texel itself.
 vec4 texelAt(sampler2D image, ivec2 p, vec2 offset) {

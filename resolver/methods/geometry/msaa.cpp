@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "image/error.h"
+#include "methods/geometry/msaa_slots.h"
 #include "methods/geometry/subsample_geometry.h"
 #include "methods/method.h"
 #include "methods/reference/resolve_filters.h"
@@ -34,52 +35,69 @@ std::vector<int> slotsFirst(const std::vector<glm::dvec2>& positionsPx, int slot
     return order;
 }
 
+CoverageSlots coverageSlots(std::string_view id, const Params& p, const std::vector<glm::dvec2>& positionsPx, int slots,
+                            bool spread) {
+    CoverageSlots s;
+    s.slotsFirst = slotsFirst(positionsPx, slots, spread), s.slots = slots;
+    const auto position = [&](int k) { return positionsPx[size_t(s.slotsFirst[size_t(k)])]; };
+    if (p.choice("filter") != "box") {
+        ResolveShape shape{.filter = chosenFilter(p), .diameterPx = p.real("diameter")};
+        s.taps = resolveTaps(withOwnDiameter(shape), positionsPx, id);
+        for (auto& tap : s.taps)
+            tap.sample = int(std::find(s.slotsFirst.begin(), s.slotsFirst.end(), tap.sample) - s.slotsFirst.begin());
+    }
+    s.order.resize(positionsPx.size());
+    std::iota(s.order.begin(), s.order.end(), 0);
+    s.nearestSlot = s.order;
+    for (int& nearest : s.nearestSlot) {
+        const glm::dvec2 own = position(nearest);
+        nearest = *std::min_element(s.order.begin(), s.order.begin() + slots, [&](int a, int b) {
+            return distance2(position(a), own) < distance2(position(b), own);
+        });
+    }
+    std::stable_sort(s.order.begin(), s.order.end(),
+                     [&](int a, int b) { return distance2(position(a), {}) < distance2(position(b), {}); });
+    return s;
+}
+}  // namespace
+
+CoverageSlots msaaSlots(const Params& p, const std::vector<glm::dvec2>& positionsPx) {
+    return coverageSlots("msaa", p, positionsPx, int(positionsPx.size()), false);
+}
+CoverageSlots csaaSlots(const Params& p, const std::vector<glm::dvec2>& positionsPx) {
+    const int slots = p.integer("slots"), samples = int(positionsPx.size());
+    if (slots > samples)
+        throw UsageError("csaa: slots=" + std::to_string(slots) + ", and the shot has only " + std::to_string(samples) +
+                         " sub-samples per pixel; choose at most that many");
+    return coverageSlots("csaa", p, positionsPx, slots, p.choice("slotPositions") == "spread");
+}
+
+namespace {
 class MsaaMethod : public Method {
   public:
-    MsaaMethod(std::string_view id, const Params& p, std::vector<int> slotsFirst, int slots,
-               const std::vector<glm::dvec2>& positionsPx)
+    MsaaMethod(std::string_view id, const Params& p, CoverageSlots slots)
         : id_(id),
-          slotsFirst_(std::move(slotsFirst)),
-          slots_(slots),
+          slots_(std::move(slots)),
           byGeometry_(p.choice("key") == "surface"),
           centroid_(p.choice("shadingPosition") == "centroid"),
           encoded_(averagedSpace(p) == Space::encoded),
-          inverseLuminance_(p.choice("resolve") == "inverseLuminance"),
-          order_(positionsPx.size()) {
-        const auto position = [&](int k) { return positionsPx[size_t(slotsFirst_[size_t(k)])]; };
-        if (p.choice("filter") != "box") {
-            ResolveShape shape{.filter = chosenFilter(p), .diameterPx = p.real("diameter")};
-            taps_ = resolveTaps(withOwnDiameter(shape), positionsPx, id);
-            for (auto& tap : taps_)
-                tap.sample = int(std::find(slotsFirst_.begin(), slotsFirst_.end(), tap.sample) - slotsFirst_.begin());
-        }
-        std::iota(order_.begin(), order_.end(), 0);
-        nearestSlot_ = order_;
-        for (int& nearest : nearestSlot_) {
-            const glm::dvec2 own = position(nearest);
-            nearest = *std::min_element(order_.begin(), order_.begin() + slots, [&](int a, int b) {
-                return distance2(position(a), own) < distance2(position(b), own);
-            });
-        }
-        std::stable_sort(order_.begin(), order_.end(),
-                         [&](int a, int b) { return distance2(position(a), {}) < distance2(position(b), {}); });
-    }
+          inverseLuminance_(p.choice("resolve") == "inverseLuminance") {}
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         const GeometryViews geometry(
             frame, {.normals = byGeometry_, .ids = true, .camera = byGeometry_, .colors = true}, id_ + ":key=surface");
         GeometryArgs permuted = geometry.args();
         std::vector<SubSampleArgs> samples;
-        for (const int k : slotsFirst_) samples.push_back(geometry.args().sample[k]);
+        for (const int k : slots_.slotsFirst) samples.push_back(geometry.args().sample[k]);
         permuted.sample = samples.data();
         MsaaArgs a{.color = view(frame.colorLinear),
                    .copied = view(encoded_ ? frame.colorEncoded : frame.colorLinear),
                    .out = view(out),
                    .geometry = &permuted,
                    .rule = kSameSurface,
-                   .slots = slots_,
-                   .order = order_.data(),
-                   .nearestSlot = nearestSlot_.data(),
+                   .slots = slots_.slots,
+                   .order = slots_.order.data(),
+                   .nearestSlot = slots_.nearestSlot.data(),
                    .byGeometry = byGeometry_,
                    .centroid = centroid_,
                    .encoded = encoded_,
@@ -89,7 +107,7 @@ class MsaaMethod : public Method {
                    .surfacesLayer = nullptr,
                    .coverageLayer = nullptr};
         std::vector<RgbOut> sampleColors;
-        if (!taps_.empty()) {
+        if (!slots_.taps.empty()) {
             sampleColors_.resize(samples.size());
             for (Rgb& c : sampleColors_) {
                 if (c.width() != frame.width || c.height() != frame.height) c = Rgb(frame.width, frame.height);
@@ -104,7 +122,7 @@ class MsaaMethod : public Method {
             a.surfacesLayer = layers_[0].planes[0].row(0), a.coverageLayer = layers_[1].planes[0].row(0);
         }
         runKernel(msaaKernelsFor(exec).resolve, exec, a, frame.height);
-        if (!taps_.empty()) filter(exec, out);
+        if (!slots_.taps.empty()) filter(exec, out);
     }
     size_t stateBytes() const override {
         size_t bytes = 0;
@@ -122,8 +140,8 @@ class MsaaMethod : public Method {
         }
         const ResolveArgs args{.samples = samples.data(),
                                .sampleCount = int(samples.size()),
-                               .taps = taps_.data(),
-                               .tapCount = int(taps_.size()),
+                               .taps = slots_.taps.data(),
+                               .tapCount = int(slots_.taps.size()),
                                .inverseLuminance = false,
                                .luminanceScale = 1,
                                .out = view(out),
@@ -142,12 +160,9 @@ class MsaaMethod : public Method {
     }
 
     std::string id_;
-    std::vector<int> slotsFirst_;
-    int slots_;
+    CoverageSlots slots_;
     bool byGeometry_, centroid_, encoded_, inverseLuminance_;
-    std::vector<int> order_, nearestSlot_;
-    std::vector<ResolveTap> taps_;   // of another filter than the box over the pixel
-    std::vector<Rgb> sampleColors_;  // what it filters: the colour of every sub-sample's surface
+    std::vector<Rgb> sampleColors_;  // what the filter reads: the colour of every sub-sample's surface
     std::vector<DebugLayer> layers_;
 };
 
@@ -177,10 +192,7 @@ MethodDescriptor msaaDescriptor() {
             .params = surfaceParams(),
             .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
                 requireSubSamples(shot.subSamplePositionsPx, "msaa", size_t(kMsaaMaxSamples));
-                const auto& positionsPx = shot.subSamplePositionsPx;
-                const int samples = int(positionsPx.size());
-                return std::make_unique<MsaaMethod>("msaa", p, slotsFirst(positionsPx, samples, false), samples,
-                                                    positionsPx);
+                return std::make_unique<MsaaMethod>("msaa", p, msaaSlots(p, shot.subSamplePositionsPx));
             },
             .morePasses = surfacePasses,
             .outputSpace = averagedSpace,
@@ -204,13 +216,7 @@ MethodDescriptor csaaDescriptor() {
     d.params.insert(d.params.begin(), slotParams.begin(), slotParams.end());
     d.create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
         requireSubSamples(shot.subSamplePositionsPx, "csaa", size_t(kMsaaMaxSamples));
-        const int slots = p.integer("slots"), samples = int(shot.subSamplePositionsPx.size());
-        if (slots > samples)
-            throw UsageError("csaa: slots=" + std::to_string(slots) + ", and the shot has only " +
-                             std::to_string(samples) + " sub-samples per pixel; choose at most that many");
-        return std::make_unique<MsaaMethod>(
-            "csaa", p, slotsFirst(shot.subSamplePositionsPx, slots, p.choice("slotPositions") == "spread"), slots,
-            shot.subSamplePositionsPx);
+        return std::make_unique<MsaaMethod>("csaa", p, csaaSlots(p, shot.subSamplePositionsPx));
     };
     return d;
 }

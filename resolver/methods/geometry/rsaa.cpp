@@ -5,6 +5,7 @@
 
 #include "image/error.h"
 #include "methods/geometry/rsaa_lut_data.h"
+#include "methods/geometry/rsaa_options.h"
 #include "methods/geometry/subsample_geometry.h"
 #include "methods/method.h"
 
@@ -17,34 +18,26 @@ constexpr Choice<Dissimilarity> kMeasures[] = {
     {"sadp", Dissimilarity::sadp}, {"depth", Dissimilarity::depth}, {"normal", Dissimilarity::normal}};
 constexpr Choice<RsaaTraining> kTrainings[] = {{"all", RsaaTraining::all}, {"halfPlanes", RsaaTraining::halfPlanes}};
 
-struct Options {
-    Dissimilarity measure;
-    float floor;
-    bool adaptive, tuning, tuneAdaptive, quadrant, ids, maskPass;
-    RsaaTraining training;
-    explicit Options(const Params& p)
-        : measure(p.chosen("measure", kMeasures)),
-          floor(p.realf(measure == Dissimilarity::sadp    ? "sadpFloor"
-                        : measure == Dissimilarity::depth ? "depthFloor"
-                                                          : "normalFloor")),
-          adaptive(p.choice("clustering") == "adaptive"),
-          tuning(p.choice("tuning") != "off"),
-          tuneAdaptive(p.choice("tuning") == "adaptive"),
-          quadrant(p.choice("neighbours") == "quadrant"),
-          ids(p.flag("ids")),
-          maskPass(p.choice("mask") == "pass" || (p.choice("mask") == "auto" && asTheMaskPass(p))),
-          training(p.chosen("training", kTrainings)) {}
-    // Whether computing the masks would give the mask pass, which was made by the defaults.
-    bool asTheMaskPass(const Params& p) const {
-        return measure == Dissimilarity::sadp && p.real("sadpFloor") == kMaskPassFloor && adaptive && ids;
-    }
-    bool readsGeometry() const { return !maskPass || tuning; }
-    GeometryNeeds needs() const {
-        return {.normals = measure != Dissimilarity::depth, .ids = ids, .camera = measure == Dissimilarity::sadp};
-    }
-};
+// Whether computing the masks would give the mask pass, which was made by the defaults.
+bool asTheMaskPass(const RsaaOptions& o, const Params& p) {
+    return o.measure == Dissimilarity::sadp && p.real("sadpFloor") == kMaskPassFloor && o.adaptive && o.ids;
+}
+}  // namespace
 
-std::vector<float> offsetTable(const std::vector<glm::dvec2>& positionsPx, RsaaTraining training) {
+RsaaOptions::RsaaOptions(const Params& p)
+    : measure(p.chosen("measure", kMeasures)),
+      floor(p.realf(measure == Dissimilarity::sadp    ? "sadpFloor"
+                    : measure == Dissimilarity::depth ? "depthFloor"
+                                                      : "normalFloor")),
+      adaptive(p.choice("clustering") == "adaptive"),
+      tuning(p.choice("tuning") != "off"),
+      tuneAdaptive(p.choice("tuning") == "adaptive"),
+      quadrant(p.choice("neighbours") == "quadrant"),
+      ids(p.flag("ids")),
+      maskPass(p.choice("mask") == "pass" || (p.choice("mask") == "auto" && asTheMaskPass(*this, p))),
+      training(p.chosen("training", kTrainings)) {}
+
+std::vector<float> rsaaOffsets(const std::vector<glm::dvec2>& positionsPx, RsaaTraining training) {
     const size_t samples = positionsPx.size();
     const auto shipped = shippedRsaaEntries(samples);
     if (training == RsaaTraining::all && !shipped.empty() && positionsPx == d3dPattern(samples))
@@ -52,16 +45,12 @@ std::vector<float> offsetTable(const std::vector<glm::dvec2>& positionsPx, RsaaT
     return rsaaTable(samples, learnRsaa(positionsPx, training));
 }
 
-// The pixels that are asked for the surface of a sub-sample. quadrant:
-// all three on its side, which are those that a fetch toward it blends. Otherwise the nearest of the eight; on a tie
-// one across an edge rather than one across a corner.
-RsaaNeighbours neighboursOf(const SubSampleArgs& sample, bool quadrant) {
-    const float ox = sample.offsetPx[0], oy = sample.offsetPx[1];
-    const int sx = ox < 0 ? -1 : 1, sy = oy < 0 ? -1 : 1;
+RsaaNeighbours rsaaNeighbours(glm::vec2 offsetPx, bool quadrant) {
+    const int sx = offsetPx.x < 0 ? -1 : 1, sy = offsetPx.y < 0 ? -1 : 1;
     if (quadrant) return {{{sx, 0}, {0, sy}, {sx, sy}}, 3};
     static const glm::ivec2 axisFirst[] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
     const auto distance2 = [&](glm::ivec2 n) {
-        const float dx = ox - float(n.x), dy = oy - float(n.y);
+        const float dx = offsetPx.x - float(n.x), dy = offsetPx.y - float(n.y);
         return dx * dx + dy * dy;
     };
     const glm::ivec2 nearest =
@@ -70,10 +59,11 @@ RsaaNeighbours neighboursOf(const SubSampleArgs& sample, bool quadrant) {
     return {{{nearest.x, nearest.y}}, 1};
 }
 
+namespace {
 class RsaaMethod : public Method {
   public:
-    RsaaMethod(const Options& options, const std::vector<glm::dvec2>& positionsPx)
-        : options_(options), offsetsPx_(offsetTable(positionsPx, options.training)) {}
+    RsaaMethod(const RsaaOptions& options, const std::vector<glm::dvec2>& positionsPx)
+        : options_(options), offsetsPx_(rsaaOffsets(positionsPx, options.training)) {}
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         RsaaArgs a{};
@@ -90,7 +80,7 @@ class RsaaMethod : public Method {
         if (options_.readsGeometry()) {
             geometry.emplace(frame, options_.needs(), "rsaa:measure=sadp");
             for (int k = 0; k < a.samples; k++)
-                neighbours.push_back(neighboursOf(geometry->args().sample[k], options_.quadrant));
+                neighbours.push_back(rsaaNeighbours(frame.subSamplePositionsPx[size_t(k)], options_.quadrant));
             a.geometry = &geometry->args(), a.neighbours = neighbours.data();
         }
         if (keepDebugLayers) keepLayers(frame, a);
@@ -109,7 +99,7 @@ class RsaaMethod : public Method {
         a.offsetXLayer = layers_[3].planes[0].row(0), a.offsetYLayer = layers_[4].planes[0].row(0);
     }
 
-    Options options_;
+    RsaaOptions options_;
     std::vector<float> offsetsPx_;
     std::vector<DebugLayer> layers_;
 };
@@ -153,11 +143,11 @@ MethodDescriptor rsaaDescriptor() {
                    choiceParam("training", "all", kTrainings, "what the offsets were learned from", "decisions 33")},
         .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
             requireSubSamples(shot.subSamplePositionsPx, "rsaa", size_t(kRsaaMaxSamples));
-            return std::make_unique<RsaaMethod>(Options(p), shot.subSamplePositionsPx);
+            return std::make_unique<RsaaMethod>(RsaaOptions(p), shot.subSamplePositionsPx);
         },
         .morePasses =
             [](const Params& p) {
-                const Options o(p);
+                const RsaaOptions o(p);
                 PassSet passes;
                 if (!o.readsGeometry()) return passes;
                 passes |= Pass::depth;

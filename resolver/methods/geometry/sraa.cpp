@@ -12,35 +12,30 @@ constexpr double kLog2E = 1.4426950408889634;
 
 constexpr Choice<SraaIds> kIds[] = {{"off", SraaIds::off}, {"depth", SraaIds::depth}, {"always", SraaIds::always}};
 
+}  // namespace
+
+SraaArgs sraaArgs(const Params& p) {
+    const auto exponent = [&](const char* sigma) { return float(kLog2E / (2 * p.real(sigma) * p.real(sigma))); };
+    SraaArgs a{};
+    a.radius = p.integer("radius");
+    a.maxMetric = p.choice("metric") == "max", a.plainDepth = p.choice("distance") == "depth";
+    a.ids = p.chosen("ids", kIds);
+    a.spatial = exponent("sigmaX"), a.depth = exponent("sigmaZ"), a.normal = exponent("sigmaN");
+    a.sharpness = float(p.real("sharpness") * kLog2E), a.depthSigma = p.realf("sigmaZ");
+    return a;
+}
+
+namespace {
 class Sraa : public Method {
   public:
-    explicit Sraa(const Params& p)
-        : radius_(p.integer("radius")),
-          max_(p.choice("metric") == "max"),
-          plainDepth_(p.choice("distance") == "depth"),
-          ids_(p.chosen("ids", kIds)),
-          sigmaX_(p.real("sigmaX")),
-          sigmaZ_(p.real("sigmaZ")),
-          sigmaN_(p.real("sigmaN")),
-          sharpness_(p.real("sharpness")) {}
+    explicit Sraa(const Params& p) : args_(sraaArgs(p)) {}
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
-        const GeometryViews geometry(frame, {.normals = true, .ids = ids_ != SraaIds::off, .camera = !plainDepth_},
-                                     "sraa:distance=plane");
-        const auto exponent = [](double sigma) { return float(kLog2E / (2 * sigma * sigma)); };
-        SraaArgs a{.color = view(frame.colorLinear),
-                   .out = view(out),
-                   .geometry = &geometry.args(),
-                   .radius = radius_,
-                   .maxMetric = max_,
-                   .plainDepth = plainDepth_,
-                   .ids = ids_,
-                   .spatial = exponent(sigmaX_),
-                   .depth = exponent(sigmaZ_),
-                   .normal = exponent(sigmaN_),
-                   .sharpness = float(sharpness_ * kLog2E),
-                   .depthSigma = float(sigmaZ_),
-                   .ownShareLayer = nullptr};
+        const GeometryViews geometry(
+            frame, {.normals = true, .ids = args_.ids != SraaIds::off, .camera = !args_.plainDepth},
+            "sraa:distance=plane");
+        SraaArgs a = args_;
+        a.color = view(frame.colorLinear), a.out = view(out), a.geometry = &geometry.args();
         layers_.clear();
         if (keepDebugLayers) {
             layers_.push_back({"ownShare", {PlaneF(frame.width, frame.height)}});
@@ -51,10 +46,7 @@ class Sraa : public Method {
     std::vector<DebugLayer> debugLayers() const override { return layers_; }
 
   private:
-    int radius_;
-    bool max_, plainDepth_;
-    SraaIds ids_;
-    double sigmaX_, sigmaZ_, sigmaN_, sharpness_;
+    SraaArgs args_;
     std::vector<DebugLayer> layers_;
 };
 

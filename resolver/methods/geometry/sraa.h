@@ -13,6 +13,7 @@
 #include "kernels/subsample_args.h"
 
 namespace aa {
+class Params;
 struct MethodDescriptor;
 MethodDescriptor sraaDescriptor();
 
@@ -30,6 +31,9 @@ struct SraaArgs {
     float depthSigma;      // SraaIds::depth: objects are told apart where the relative depth differs by more
     float* ownShareLayer;  // debug layer; null when not kept
 };
+// What the parameters say; the images are left out.
+SraaArgs sraaArgs(const Params& params);
+
 struct SraaKernels {
     RowKernel<SraaArgs> resolve;
 };

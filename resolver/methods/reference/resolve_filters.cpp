@@ -124,19 +124,23 @@ ResolveShape withOwnDiameter(ResolveShape shape) {
     return shape;
 }
 
+ResolveShape resolveShape(const Params& p) {
+    ResolveShape shape;
+    shape.filter = chosenFilter(p);
+    shape.sigma = p.real("sigma");
+    shape.b = p.real("b");
+    shape.c = p.real("c");
+    shape.lobes = p.integer("lobes");
+    shape.textbookSinc = p.choice("sincZeros") == "pixel";
+    shape.diameterPx = p.real("diameter");
+    return withOwnDiameter(shape);
+}
+
 namespace {
 class Resolve : public Method {
   public:
     Resolve(const Params& p, const ShotInfo& shot) {
-        ResolveShape shape;
-        shape.filter = chosenFilter(p);
-        shape.sigma = p.real("sigma");
-        shape.b = p.real("b");
-        shape.c = p.real("c");
-        shape.lobes = p.integer("lobes");
-        shape.textbookSinc = p.choice("sincZeros") == "pixel";
-        shape.diameterPx = p.real("diameter");
-        taps_ = resolveTaps(withOwnDiameter(shape), shot.subSamplePositionsPx);
+        taps_ = resolveTaps(resolveShape(p), shot.subSamplePositionsPx);
         inverseLuminance_ = p.flag("inverseLuminance");
         luminanceScale_ = float(std::exp2(p.real("exposure")));
     }

@@ -40,6 +40,8 @@ std::vector<ResolveTap> resolveTaps(const ResolveShape& shape, const std::vector
 ParamSpec filterParam(std::string_view source);
 ResolveFilter chosenFilter(const Params& p);
 ResolveShape withOwnDiameter(ResolveShape shape);
+// The shape that the parameters of resolve say.
+ResolveShape resolveShape(const Params& p);
 
 MethodDescriptor resolveDescriptor();
 

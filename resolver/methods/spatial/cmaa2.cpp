@@ -10,26 +10,32 @@ namespace {
 // Thresholds of CMAA2 v2.3; custom has a parameter of its own.
 constexpr Choice<float> kPresets[] = {
     {"LOW", 0.15f}, {"MEDIUM", 0.10f}, {"HIGH", 0.07f}, {"ULTRA", 0.05f}, {"custom", 0}};
+}  // namespace
 
+Cmaa2Settings cmaa2Settings(const Params& p) {
+    const bool sharp = p.flag("sharp");
+    Cmaa2Settings s;
+    s.threshold = p.choice("preset") == "custom" ? p.realf("threshold") : p.chosen("preset", kPresets);
+    s.localContrast = sharp ? 0.15f : 0.10f;
+    s.blend.simpleBlur = sharp ? 0.07 : 0.10;
+    s.blend.dampening = sharp ? 0.11 : 0.15;
+    s.blend.fadeFrom = sharp ? 1.15 : 1.30;
+    s.blend.fadePerEdge = sharp ? 1.0 / 8 : 1.0 / 10;
+    s.blend.symmetryCorrection = p.real("symmetryCorrection");
+    s.blend.longestPx = p.integer("maxLine");
+    return s;
+}
+
+namespace {
 class Cmaa2 : public Method {
   public:
-    explicit Cmaa2(const Params& p) : linear_(p.choice("blendSpace") == "linear") {
-        threshold_ = p.choice("preset") == "custom" ? p.realf("threshold") : p.chosen("preset", kPresets);
-        const bool sharp = p.flag("sharp");
-        localContrast_ = sharp ? 0.15f : 0.10f;
-        blend_.simpleBlur = sharp ? 0.07 : 0.10;
-        blend_.dampening = sharp ? 0.11 : 0.15;
-        blend_.fadeFrom = sharp ? 1.15 : 1.30;
-        blend_.fadePerEdge = sharp ? 1.0 / 8 : 1.0 / 10;
-        blend_.symmetryCorrection = p.real("symmetryCorrection");
-        blend_.longestPx = p.integer("maxLine");
-    }
+    explicit Cmaa2(const Params& p) : settings_(cmaa2Settings(p)), linear_(p.choice("blendSpace") == "linear") {}
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         width_ = frame.width;
         height_ = frame.height;
         findEdges(frame, exec);
         const Rgb& in = linear_ ? frame.colorLinear : frame.colorEncoded;
-        Cmaa2BlendArgs args = blend_;
+        Cmaa2BlendArgs args = settings_.blend;
         prepare(args, in, out);
         const auto& kernels = cmaa2KernelsFor(exec);
         runKernel(kernels.rows, exec, args, height_);
@@ -64,8 +70,8 @@ class Cmaa2 : public Method {
         all_.resize(width_, height_, 4);
         const auto& kernels = cmaa2KernelsFor(exec);
         runKernel(kernels.edges, exec,
-                  Cmaa2EdgeArgs{luma_.row(0), edges_.row(0), luma_.stride(), edges_.stride(), width_, threshold_,
-                                localContrast_},
+                  Cmaa2EdgeArgs{luma_.row(0), edges_.row(0), luma_.stride(), edges_.stride(), width_,
+                                settings_.threshold, settings_.localContrast},
                   height_);
         edges_.clearBesideTheRows();
         runKernel(kernels.join, exec, Cmaa2JoinArgs{edges_.row(0), all_.row(0), edges_.stride(), width_}, height_);
@@ -105,9 +111,8 @@ class Cmaa2 : public Method {
             for (int k = 0; k < verticalCount_[size_t(y)]; k++)
                 visit(int(verticals_[size_t(y) * size_t(width_) + size_t(k)]), y);
     }
+    Cmaa2Settings settings_;
     bool linear_;
-    float threshold_, localContrast_;
-    Cmaa2BlendArgs blend_{};
     int width_ = 0, height_ = 0;
     PlaneF luma_;
     EdgePlane edges_, all_;

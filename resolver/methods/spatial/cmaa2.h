@@ -11,6 +11,7 @@
 #include "kernels/table.h"
 
 namespace aa {
+class Params;
 struct MethodDescriptor;
 MethodDescriptor cmaa2Descriptor();
 
@@ -43,6 +44,12 @@ struct Cmaa2BlendArgs {
     int longestPx;
     double simpleBlur, fadeFrom, fadePerEdge, symmetryCorrection, dampening;
 };
+// What the parameters say of the passes: thresholds and lengths, no planes yet.
+struct Cmaa2Settings {
+    float threshold, localContrast;
+    Cmaa2BlendArgs blend{};
+};
+Cmaa2Settings cmaa2Settings(const Params& params);
 struct Cmaa2Kernels {
     RowKernel<Cmaa2EdgeArgs> edges;
     RowKernel<Cmaa2JoinArgs> join;

@@ -14,16 +14,16 @@ class Deaa : public Method {
         args_.maxLengthPx = p.real("maxLength");
         args_.sameColour = p.real("sameColour");
         for (const auto& o : shot.subSamplePositionsPx) xPx_.push_back(o.x), yPx_.push_back(o.y);
-        setNormalMatrix();
+        args_.xPx = xPx_.data();
+        args_.yPx = yPx_.data();
+        args_.sampleCount = int(xPx_.size());
+        setNormalMatrix(args_);
     }
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         std::vector<RgbIn> samples;
         for (const auto& s : frame.subSamples) samples.push_back(view(s.colorLinear));
         edges_.resize(frame.width, frame.height, 16);
         args_.samples = samples.data();
-        args_.xPx = xPx_.data();
-        args_.yPx = yPx_.data();
-        args_.sampleCount = int(samples.size());
         args_.edges = edges_.row(0);
         args_.edgesOut = edges_.row(0);
         args_.out = view(out);
@@ -49,21 +49,6 @@ class Deaa : public Method {
     }
 
   private:
-    // Of the plane fit over the samples of 3x3 pixels, constant for a pattern; left 0 when they lie on a line.
-    void setNormalMatrix() {
-        double mx = 0, my = 0, xx = 0, xy = 0, yy = 0;
-        const double n = 9 * double(xPx_.size());
-        for (size_t k = 0; k < xPx_.size(); k++) mx += 9 * xPx_[k] / n, my += 9 * yPx_[k] / n;
-        for (int j = -1; j <= 1; j++)
-            for (int i = -1; i <= 1; i++)
-                for (size_t k = 0; k < xPx_.size(); k++) {
-                    const double dx = xPx_[k] + i - mx, dy = yPx_[k] + j - my;
-                    xx += dx * dx, xy += dx * dy, yy += dy * dy;
-                }
-        const double determinant = xx * yy - xy * xy;
-        if (!(determinant > 1e-9)) return;
-        args_.invXX = yy / determinant, args_.invXY = -xy / determinant, args_.invYY = xx / determinant;
-    }
     DeaaArgs args_{};
     std::vector<double> xPx_, yPx_;
     EdgePlane edges_;
@@ -71,6 +56,21 @@ class Deaa : public Method {
 };
 
 }  // namespace
+
+void setNormalMatrix(DeaaArgs& args) {
+    double mx = 0, my = 0, xx = 0, xy = 0, yy = 0;
+    const double n = 9 * double(args.sampleCount);
+    for (int k = 0; k < args.sampleCount; k++) mx += 9 * args.xPx[k] / n, my += 9 * args.yPx[k] / n;
+    for (int j = -1; j <= 1; j++)
+        for (int i = -1; i <= 1; i++)
+            for (int k = 0; k < args.sampleCount; k++) {
+                const double dx = args.xPx[k] + i - mx, dy = args.yPx[k] + j - my;
+                xx += dx * dx, xy += dx * dy, yy += dy * dy;
+            }
+    const double determinant = xx * yy - xy * xy;
+    if (!(determinant > 1e-9)) return;
+    args.invXX = yy / determinant, args.invXY = -xy / determinant, args.invYY = xx / determinant;
+}
 
 MethodDescriptor deaaDescriptor() {
     return {

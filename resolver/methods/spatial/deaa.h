@@ -25,6 +25,8 @@ struct DeaaArgs {
     float* applied;  // debug; null when not wanted
     int stride, edgeStride, width;
 };
+// Of the plane fit, from the sample offsets: constant for a pattern; left 0 when they lie on a line.
+void setNormalMatrix(DeaaArgs& args);
 struct DeaaKernels {
     RowKernel<DeaaArgs> mark, filter;
 };

@@ -31,14 +31,8 @@ const std::vector<FxaaPreset>& presets311() {
 }
 class Fxaa311 : public FxaaMethod {
   public:
-    explicit Fxaa311(const Params& p) : linear_(p.choice("blendSpace") == "linear") {
-        args_.edgeThreshold = p.realf("edgeThreshold");
-        args_.edgeThresholdMin = p.realf("edgeThresholdMin");
-        args_.subpix = p.real("subpix");
-        setDistances(args_, presets311()[p.choiceIndex("preset")].stepsPx);
-        const auto& luma = p.choice("luma");
-        lumaKind_ = luma == "rec601" ? LumaKind::rec601 : luma == "green" ? LumaKind::green : LumaKind::sqrtLinear;
-    }
+    explicit Fxaa311(const Params& p)
+        : args_(fxaa311Args(p)), linear_(p.choice("blendSpace") == "linear"), lumaKind_(fxaa311Luma(p)) {}
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         const bool lumaOfLinear = lumaKind_ == LumaKind::sqrtLinear;
         findLuma(lumaOfLinear ? frame.colorLinear : frame.colorEncoded, shownLuma(lumaKind_, frame.display), exec);
@@ -48,12 +42,25 @@ class Fxaa311 : public FxaaMethod {
     }
 
   private:
-    FxaaArgs args_{};
+    FxaaArgs args_;
     bool linear_;
     LumaKind lumaKind_;
 };
 
 }  // namespace
+
+FxaaArgs fxaa311Args(const Params& p) {
+    FxaaArgs args{};
+    args.edgeThreshold = p.realf("edgeThreshold");
+    args.edgeThresholdMin = p.realf("edgeThresholdMin");
+    args.subpix = p.real("subpix");
+    setDistances(args, presets311()[p.choiceIndex("preset")].stepsPx);
+    return args;
+}
+LumaKind fxaa311Luma(const Params& p) {
+    const auto& luma = p.choice("luma");
+    return luma == "rec601" ? LumaKind::rec601 : luma == "green" ? LumaKind::green : LumaKind::sqrtLinear;
+}
 
 MethodDescriptor fxaa311Descriptor() {
     return {

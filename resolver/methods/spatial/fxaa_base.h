@@ -32,6 +32,13 @@ inline void setDistances(FxaaArgs& args, const std::vector<double>& stepsPx) {
     }
 }
 
+// What a method's parameters say, without a frame's planes.
+FxaaArgs fxaa311Args(const Params& p);
+LumaKind fxaa311Luma(const Params& p);
+Fxaa1Args fxaa1Args(const Params& p);
+FxaaCsArgs fxaaCsArgs(const Params& p);
+FxaaConsoleArgs fxaaConsoleArgs(const Params& p);
+
 // A luma plane with the border that searches need.
 class SearchedLuma {
   public:

@@ -19,16 +19,7 @@ constexpr Choice<Fxaa1Preset> kFxaa1Presets[] = {
 
 class Fxaa1 : public FxaaMethod {
   public:
-    explicit Fxaa1(const Params& p) {
-        const Fxaa1Preset& preset = p.chosen("preset", kFxaa1Presets);
-        args_.edgeThreshold = preset.threshold;
-        args_.edgeThresholdMin = preset.thresholdMin;
-        args_.steps = preset.steps;
-        args_.acceleration = preset.acceleration;
-        args_.subpixCap = preset.cap;
-        args_.subpixTrim = 0.25;
-        args_.crossLowPass = preset.cross;
-    }
+    explicit Fxaa1(const Params& p) : args_(fxaa1Args(p)) {}
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         findLuma(frame.colorEncoded, LumaKind::redGreen, exec);
         prepare(args_, frame.colorEncoded, out);
@@ -36,20 +27,12 @@ class Fxaa1 : public FxaaMethod {
     }
 
   private:
-    Fxaa1Args args_{};
+    Fxaa1Args args_;
 };
 
 class FxaaCs : public FxaaMethod {
   public:
-    explicit FxaaCs(const Params& p) : linear_(p.choice("blendSpace") == "linear") {
-        args_.edgeThreshold = 0;
-        args_.edgeThresholdMin = p.realf("contrastThreshold");
-        args_.subpix = p.real("subpixelRemoval");
-        if (p.choice("preset") == "25")
-            setDistances(args_, {1, 1.5, 2, 2, 2, 2, 4, 8});
-        else
-            setDistances(args_, {1, 1, 1, 1, 1, 1.5, 2, 2, 2, 2, 4, p.choice("longest") == "36.5" ? 18.0 : 8.0});
-    }
+    explicit FxaaCs(const Params& p) : args_(fxaaCsArgs(p)), linear_(p.choice("blendSpace") == "linear") {}
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         findLuma(frame.colorLinear, shownLuma(LumaKind::log2Linear, frame.display), exec);
         transposeLuma(frame.width, frame.height, exec);
@@ -58,18 +41,13 @@ class FxaaCs : public FxaaMethod {
     }
 
   private:
-    FxaaCsArgs args_{};
+    FxaaCsArgs args_;
     bool linear_;
 };
 
 class FxaaConsole : public FxaaMethod {
   public:
-    explicit FxaaConsole(const Params& p) {
-        args_.edgeThreshold = p.realf("edgeThreshold");
-        args_.edgeThresholdMin = p.realf("edgeThresholdMin");
-        args_.reachPx = p.real("reach");
-        args_.sharpness = p.real("sharpness");
-    }
+    explicit FxaaConsole(const Params& p) : args_(fxaaConsoleArgs(p)) {}
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         findLuma(frame.colorEncoded, LumaKind::rec601, exec);
         prepare(args_, frame.colorEncoded, out);
@@ -82,10 +60,42 @@ class FxaaConsole : public FxaaMethod {
     }
 
   private:
-    FxaaConsoleArgs args_{};
+    FxaaConsoleArgs args_;
 };
 
 }  // namespace
+
+Fxaa1Args fxaa1Args(const Params& p) {
+    const Fxaa1Preset& preset = p.chosen("preset", kFxaa1Presets);
+    Fxaa1Args args{};
+    args.edgeThreshold = preset.threshold;
+    args.edgeThresholdMin = preset.thresholdMin;
+    args.steps = preset.steps;
+    args.acceleration = preset.acceleration;
+    args.subpixCap = preset.cap;
+    args.subpixTrim = 0.25;
+    args.crossLowPass = preset.cross;
+    return args;
+}
+FxaaCsArgs fxaaCsArgs(const Params& p) {
+    FxaaCsArgs args{};
+    args.edgeThreshold = 0;
+    args.edgeThresholdMin = p.realf("contrastThreshold");
+    args.subpix = p.real("subpixelRemoval");
+    if (p.choice("preset") == "25")
+        setDistances(args, {1, 1.5, 2, 2, 2, 2, 4, 8});
+    else
+        setDistances(args, {1, 1, 1, 1, 1, 1.5, 2, 2, 2, 2, 4, p.choice("longest") == "36.5" ? 18.0 : 8.0});
+    return args;
+}
+FxaaConsoleArgs fxaaConsoleArgs(const Params& p) {
+    FxaaConsoleArgs args{};
+    args.edgeThreshold = p.realf("edgeThreshold");
+    args.edgeThresholdMin = p.realf("edgeThresholdMin");
+    args.reachPx = p.real("reach");
+    args.sharpness = p.real("sharpness");
+    return args;
+}
 
 MethodDescriptor fxaa1Descriptor() {
     return {

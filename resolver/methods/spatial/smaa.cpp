@@ -28,21 +28,29 @@ Preset chosen(const Params& p) {
 }
 }  // namespace
 
-Smaa::Smaa(const Params& p) : published_(p.choice("areas") == "table") {
+SmaaSettings smaaSettings(const Params& p) {
     const Preset preset = chosen(p);
-    edge_.kind = p.chosen("edges", kEdges);
-    edge_.predication = p.chosen("predication", kPredications);
-    edge_.consistent = p.choice("colourContrast") == "consistent";
-    edge_.threshold = edge_.kind == SmaaEdges::depth ? p.realf("depthThreshold") : preset.threshold;
-    edge_.localContrast = p.realf("localContrast");
-    edge_.predicationThreshold = p.realf("predicationThreshold");
-    edge_.predicationScale = p.realf("predicationScale");
-    edge_.predicationStrength = p.realf("predicationStrength");
-    blend_.searchSteps = preset.searchSteps;
-    blend_.diagonalSteps = preset.diagonalSteps;
-    blend_.cornerRounding = preset.cornerRounding < 0 ? -1 : preset.cornerRounding / 100;
-    blend_.unorm8 = p.choice("weights") == "unorm8";
-    border_ = std::max(2 * preset.searchSteps, preset.diagonalSteps) + 4;
+    SmaaSettings s;
+    s.edge.kind = p.chosen("edges", kEdges);
+    s.edge.predication = p.chosen("predication", kPredications);
+    s.edge.consistent = p.choice("colourContrast") == "consistent";
+    s.edge.threshold = s.edge.kind == SmaaEdges::depth ? p.realf("depthThreshold") : preset.threshold;
+    s.edge.localContrast = p.realf("localContrast");
+    s.edge.predicationThreshold = p.realf("predicationThreshold");
+    s.edge.predicationScale = p.realf("predicationScale");
+    s.edge.predicationStrength = p.realf("predicationStrength");
+    s.blend.searchSteps = preset.searchSteps;
+    s.blend.diagonalSteps = preset.diagonalSteps;
+    s.blend.cornerRounding = preset.cornerRounding < 0 ? -1 : preset.cornerRounding / 100;
+    s.blend.unorm8 = p.choice("weights") == "unorm8";
+    s.published = p.choice("areas") == "table";
+    return s;
+}
+
+Smaa::Smaa(const Params& p) {
+    const SmaaSettings s = smaaSettings(p);
+    edge_ = s.edge, blend_ = s.blend, published_ = s.published;
+    border_ = std::max(2 * blend_.searchSteps, blend_.diagonalSteps) + 4;
     static_assert(kMaxDiagonal + 2 < kBitRows);
 }
 
@@ -61,12 +69,9 @@ const Smaa::Tables& Smaa::tablesFor(glm::dvec2 samplePx) {
         t.orthogonal[0] = exactTable(double(-float(samplePx.y)), 2 * blend_.searchSteps);
         if (samplePx.x != samplePx.y) t.orthogonal[1] = exactTable(double(-float(samplePx.x)), 2 * blend_.searchSteps);
     }
-    if (blend_.diagonalSteps > 0) {
-        // The displacement along the line does nothing; across it, half of it in x and half in y (y up).
-        const double first = (samplePx.x + samplePx.y) / 2, second = (samplePx.x - samplePx.y) / 2;
-        t.diagonal[0] = diagonalTable({first, -first}, published_);
-        t.diagonal[1] = diagonalTable({second, -second}, published_);
-    }
+    if (blend_.diagonalSteps > 0)
+        for (const bool falling : {false, true})
+            t.diagonal[falling] = diagonalTableAt({samplePx.x, samplePx.y}, falling, published_);
     if (tables_.size() == 64) tables_.erase(tables_.begin());  // jitter without a period
     tables_.push_back(std::move(t));
     return tables_.back();

@@ -16,6 +16,14 @@
 
 namespace aa {
 
+// What the parameters say of the passes: thresholds and lengths, no planes yet.
+struct SmaaSettings {
+    SmaaEdgeArgs edge{};
+    SmaaBlendArgs blend{};
+    bool published = false;  // areas as in the shader's texture
+};
+SmaaSettings smaaSettings(const Params& params);
+
 // The three passes, for one image at a time.
 class Smaa {
   public:
@@ -55,6 +63,11 @@ class Smaa {
 // Parameters of the SMAA family: preset, edges, thresholds, areas.
 std::vector<ParamSpec> smaaParams();
 PassSet smaaPasses(const Params& params);
+// Indices of the two sub-samples that a frame is made of; smaa4x: in even and in odd frames. Throw InputError where the
+// shot lacks them.
+using SmaaSamples = std::array<size_t, 2>;
+SmaaSamples smaaS2xSamples(const ShotInfo& shot);
+std::array<SmaaSamples, 2> smaa4xSamples(const ShotInfo& shot);
 
 MethodDescriptor smaa1xDescriptor();
 MethodDescriptor smaaS2xDescriptor();  // two sub-samples, each through SMAA 1x, averaged

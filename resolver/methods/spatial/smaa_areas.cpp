@@ -195,4 +195,10 @@ std::vector<float> diagonalTable(std::array<double, 2> offset, bool quantised) {
     });
 }
 
+std::vector<float> diagonalTableAt(std::array<double, 2> samplePx, bool falling, bool quantised) {
+    // The displacement along the line does nothing; across it, half of it in x and half in y (y up).
+    const double across = (falling ? samplePx[0] - samplePx[1] : samplePx[0] + samplePx[1]) / 2;
+    return diagonalTable({across, -across}, quantised);
+}
+
 }  // namespace aa

@@ -27,5 +27,8 @@ std::vector<float> orthogonalTable(double offset);
 std::vector<float> exactTable(double offset, int reachPx);
 // 16 code pairs x kDiagonals^2 pairs for every distance; `quantised` as published, otherwise exact.
 std::vector<float> diagonalTable(std::array<double, 2> offset, bool quantised);
+// The same of an image that was sampled at `samplePx` from the pixel centres (y down), for lines that rise or fall to
+// the right.
+std::vector<float> diagonalTableAt(std::array<double, 2> samplePx, bool falling, bool quantised);
 
 }  // namespace aa

@@ -8,23 +8,6 @@
 namespace aa {
 namespace {
 
-// Where the static surface point at (p, z) of this frame lies in clip space of another camera.
-CameraPath cameraPath(const Frame& frame, const std::optional<Camera>& other) {
-    CameraPath path;
-    const auto rays = viewRays(frame);
-    if (!rays || !other || other->kind != frame.camera->kind) return path;
-    path.moves = other->view != frame.camera->view || other->projection != frame.camera->projection;
-    const glm::dmat4 m = other->projection * other->view * glm::inverse(frame.camera->view);
-    const int rows[3] = {0, 1, 3};
-    for (int r = 0; r < 3; r++) {
-        const int i = rows[r];
-        const glm::dvec3 d = m[0][i] * rays->perDepth[0] + m[1][i] * rays->perDepth[1] - glm::dvec3(0, 0, m[2][i]);
-        const glm::dvec3 c = m[0][i] * rays->constant[0] + m[1][i] * rays->constant[1] + glm::dvec3(0, 0, m[3][i]);
-        for (int k = 0; k < 3; k++) path.perDepth[r][k] = float(d[k]), path.constant[r][k] = float(c[k]);
-    }
-    return path;
-}
-
 class Asaa : public Method {
   public:
     explicit Asaa(const Params& params) : params_(params) {}
@@ -32,27 +15,27 @@ class Asaa : public Method {
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         history_.begin(frame, "asaa");
 
-        // (-.25, -.25), (-.25, .25), (.25, -.25), (.25, .25): the quadrant that the jitter lies in.
-        const size_t quadrant = size_t(frame.jitterPx.x >= 0) * 2 + size_t(frame.jitterPx.y >= 0);
-        const auto phi = [](size_t q) { return glm::vec2(q & 2 ? 0.25f : -0.25f, q & 1 ? 0.25f : -0.25f); };
+        const size_t quadrant = asaaQuadrant(frame.jitterPx);
+        const glm::vec2 phi = asaaOffsetPx(quadrant);
         AsaaArgs args{};
         args.in = temporal::frameView(frame, frame.colorEncoded);
         if (params_.flag("unjitter")) {  // to where the quadrant's buffer has its samples
-            temporal::unjitter(frame.colorEncoded, frame.jitterPx - glm::dvec2(phi(quadrant)), exec, unjittered_);
+            temporal::unjitter(frame.colorEncoded, frame.jitterPx - glm::dvec2(phi), exec, unjittered_);
             args.in.color = view(std::as_const(unjittered_));
         }
         args.in.out = view(out);
         args.in.next = buffers_.next(quadrant).row(0);
-        args.lastFrame = cameraPath(frame, frame.previousCamera);
+        args.lastFrame = cameraPath(frame, frame.previousCamera ? &*frame.previousCamera : nullptr);
         for (size_t i = 0; i < 4; i++) {
             const RgbaPlane& image = buffers_.previous(i);
             if (!buffers_.filled(i)) continue;
             args.anyHistory = true;
-            args.buffer[i] = {
-                image.row(0), phi(i).x, phi(i).y, float(buffers_.age(i)), cameraPath(frame, cameras_[i]), {}};
-            if (cameras_[i]) args.buffer[i].expected = expectedDepth(frame, *cameras_[i]);
+            const Camera* camera = cameras_[i] ? &*cameras_[i] : nullptr;
+            const glm::vec2 offset = asaaOffsetPx(i);
+            args.buffer[i] = {image.row(0), offset.x, offset.y, float(buffers_.age(i)), cameraPath(frame, camera), {}};
+            if (camera) args.buffer[i].expected = expectedDepth(frame, *camera);
         }
-        args.phiX = phi(quadrant).x, args.phiY = phi(quadrant).y;
+        args.phiX = phi.x, args.phiY = phi.y;
         args.previousCount = count_.previous().row(0);
         args.nextCount = count_.next().row(0);
         args.eq331 = params_.choice("blurMode") == "eq331";
@@ -82,6 +65,25 @@ class Asaa : public Method {
     TemporalDebugLayers debug_;
 };
 }  // namespace
+
+// (-.25, -.25), (-.25, .25), (.25, -.25), (.25, .25)
+size_t asaaQuadrant(glm::dvec2 jitterPx) { return size_t(jitterPx.x >= 0) * 2 + size_t(jitterPx.y >= 0); }
+glm::vec2 asaaOffsetPx(size_t quadrant) { return {quadrant & 2 ? 0.25f : -0.25f, quadrant & 1 ? 0.25f : -0.25f}; }
+CameraPath cameraPath(const Frame& frame, const Camera* other) {
+    CameraPath path;
+    const auto rays = viewRays(frame);
+    if (!rays || !other || other->kind != frame.camera->kind) return path;
+    path.moves = other->view != frame.camera->view || other->projection != frame.camera->projection;
+    const glm::dmat4 m = other->projection * other->view * glm::inverse(frame.camera->view);
+    const int rows[3] = {0, 1, 3};
+    for (int r = 0; r < 3; r++) {
+        const int i = rows[r];
+        const glm::dvec3 d = m[0][i] * rays->perDepth[0] + m[1][i] * rays->perDepth[1] - glm::dvec3(0, 0, m[2][i]);
+        const glm::dvec3 c = m[0][i] * rays->constant[0] + m[1][i] * rays->constant[1] + glm::dvec3(0, 0, m[3][i]);
+        for (int k = 0; k < 3; k++) path.perDepth[r][k] = float(d[k]), path.constant[r][k] = float(c[k]);
+    }
+    return path;
+}
 
 MethodDescriptor asaaDescriptor() {
     return {

@@ -16,11 +16,20 @@
 // "quadrants" with Gaussian sigma 0.2575. The output filter is a tent of radius 1 px: blurrier than a box truth.
 // Display-encoded, as the thesis's 8-bit buffers (conventions 4). Depth of each buffer rides in its alpha.
 #pragma once
+#include <cstddef>
+#include <glm/fwd.hpp>
+
 #include "methods/temporal/temporal_kernels.h"
 
 namespace aa {
+struct Camera;
+struct Frame;
 struct MethodDescriptor;
 MethodDescriptor asaaDescriptor();
+
+// The buffer that a frame of this jitter updates, 0..3, and where a buffer's samples lie from the pixel centres.
+size_t asaaQuadrant(glm::dvec2 jitterPx);
+glm::vec2 asaaOffsetPx(size_t quadrant);
 
 // Clip position of a static surface point at pixel position p and depth z in another camera, as three rows x, y, w:
 // z * (perDepth . (p, 1)) + constant . (p, 1).
@@ -28,6 +37,8 @@ struct CameraPath {
     bool moves = false;  // false: the same camera, no displacement
     float perDepth[3][3] = {}, constant[3][3] = {};
 };
+// From this frame to `other`; null: unknown, no displacement.
+CameraPath cameraPath(const Frame& frame, const Camera* other);
 struct AsaaBuffer {
     const float* rgba = nullptr;  // null: not filled since the reset; alpha = depth
     float phiX = 0, phiY = 0;     // quadrant offset, px

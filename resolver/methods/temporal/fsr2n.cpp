@@ -40,7 +40,6 @@ class Fsr2n : public Method {
         Fsr2nArgs args{};
         args.in = temporal::frameView(frame, frame.colorLinear);
         if (p.flag("unjitter")) temporal::unjitter(frame, args.in);
-        const glm::dvec2 jitterPx{args.in.jitterXPx, args.in.jitterYPx};
         args.in.out = view(out);
         history_.begin(frame, "fsr2n", args.in);
         args.in.feedbackCeiling = temporal::feedbackCeiling(p, history_.framesSinceReset());
@@ -54,16 +53,11 @@ class Fsr2n : public Method {
         args.nearest = nearest_.row(0);
         args.previousLuma = luma_.previous().row(0);
         args.nextLuma = luma_.next().row(0);
-        fillWeights(args.lanczos, jitterPx, lanczos2);
-        fillWeights(args.still, jitterPx, [](double d) { return std::exp(-2 * d * d); });
-        fillWeights(args.moving, jitterPx, [](double d) { return std::exp(-3 * d * d); });
+        setFsr2nFrame(args, frame, args.in.jitterXPx, args.in.jitterYPx);
         args.weight = p.realf("weight");
         args.boxScale = p.realf("boxScale");
         args.lockDecay = lockDecay_;
         args.locks = p.flag("locks");
-        const double diagonalPx = std::hypot(frame.width, frame.height);
-        args.separation = float(1.37e-5 * cornerStretch(frame) * diagonalPx);            // FSR 2
-        args.power = float(1 + 2 * std::min(1.0, diagonalPx / std::hypot(1920, 1080)));  // FSR 2 has 2203, its rounding
         args.in.debug = debug_.begin(*this, frame.width, frame.height);
         if (keepDebugLayers) {
             args.debugDepthClip = fitted(depthClip_, frame.width, frame.height).row(0);
@@ -93,6 +87,16 @@ class Fsr2n : public Method {
     PlaneF depthClip_, lock_;
 };
 }  // namespace
+
+void setFsr2nFrame(Fsr2nArgs& args, const Frame& frame, float jitterXPx, float jitterYPx) {
+    const glm::dvec2 jitterPx{jitterXPx, jitterYPx};
+    fillWeights(args.lanczos, jitterPx, lanczos2);
+    fillWeights(args.still, jitterPx, [](double d) { return std::exp(-2 * d * d); });
+    fillWeights(args.moving, jitterPx, [](double d) { return std::exp(-3 * d * d); });
+    const double diagonalPx = std::hypot(frame.width, frame.height);
+    args.separation = float(1.37e-5 * cornerStretch(frame) * diagonalPx);            // FSR 2
+    args.power = float(1 + 2 * std::min(1.0, diagonalPx / std::hypot(1920, 1080)));  // FSR 2 has 2203, its rounding
+}
 
 MethodDescriptor fsr2nDescriptor() {
     return {

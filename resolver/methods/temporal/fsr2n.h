@@ -14,6 +14,7 @@
 #include "methods/temporal/temporal_kernels.h"
 
 namespace aa {
+struct Frame;
 struct MethodDescriptor;
 MethodDescriptor fsr2nDescriptor();
 
@@ -41,6 +42,8 @@ struct Fsr2nArgs {
     bool locks;
     float *debugDepthClip, *debugLock;  // or null
 };
+// Those of them that a frame's size, camera and jitter decide: lanczos, still, moving, separation, power.
+void setFsr2nFrame(Fsr2nArgs& args, const Frame& frame, float jitterXPx, float jitterYPx);
 struct Fsr2nKernels {
     RowKernel<Fsr2nScatterArgs> scatter;
     RowKernel<Fsr2nArgs> resolve;

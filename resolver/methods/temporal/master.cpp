@@ -40,12 +40,12 @@ class Master : public Method {
         m.albedoEncoded = view(frame.albedoEncoded);
         m.previousDepth = depth_.previous().row(0), m.keptDepth = depth_.next().row(0);
         m.weightAlbedo = p.realf("wU"), m.weightLit = p.realf("wL");
-        m.depthUnit = p.chosen("depthUnit", kDepthUnits);
+        m.depthUnit = masterDepthUnit(p);
         m.luminance = temporal::luminance(p);
         m.temporalSobel = p.flag("sobelTemporal");
         m.samePixelDepth = p.choice("pastDepth") == "samePixel";
         m.kMin = p.realf("kmin"), m.kMax = p.realf("kmax");
-        m.farDepth = farDepthOf(frame);
+        m.farDepth = masterFarDepth(frame);
         m.depthThreshold = p.realf("depthThreshold");
         m.minAlias = p.realf("minAlias");
         m.clipTarget = temporal::clipTarget(p);
@@ -100,24 +100,6 @@ class Master : public Method {
             if (seam[size_t(y)]) rows.push_back(y);
         return rows;
     }
-    // The camera's far plane, or the largest depth that is not background.
-    static float farDepthOf(const Frame& frame) {
-        static constexpr float kFar = 1e9f;
-        if (frame.camera && frame.camera->farClip > 0) return float(frame.camera->farClip);
-        // Several maxima side by side: one alone would wait for itself at every pixel.
-        constexpr size_t kLanes = 16;
-        std::array<float, kLanes> lanes{};
-        for (int y = 0; y < frame.height; y++) {
-            const float* row = frame.depthView.row(y);  // padded with its last value to a multiple of kLanes
-            for (int x = 0; x < frame.width; x += int(kLanes))
-                for (size_t i = 0; i < kLanes; i++) {
-                    const float z = row[x + int(i)];
-                    lanes[i] = z < kFar && z > lanes[i] ? z : lanes[i];
-                }
-        }
-        const float farthest = *std::max_element(lanes.begin(), lanes.end());
-        return farthest > 0 ? farthest : 1.0f;
-    }
 
     Params params_;
     SharpenKernel sharpen_;
@@ -127,6 +109,25 @@ class Master : public Method {
     std::vector<PlaneF> terms_;
 };
 }  // namespace
+
+float masterFarDepth(const Frame& frame) {
+    static constexpr float kFar = 1e9f;
+    if (frame.camera && frame.camera->farClip > 0) return float(frame.camera->farClip);
+    // Several maxima side by side: one alone would wait for itself at every pixel.
+    constexpr size_t kLanes = 16;
+    std::array<float, kLanes> lanes{};
+    for (int y = 0; y < frame.height; y++) {
+        const float* row = frame.depthView.row(y);  // padded with its last value to a multiple of kLanes
+        for (int x = 0; x < frame.width; x += int(kLanes))
+            for (size_t i = 0; i < kLanes; i++) {
+                const float z = row[x + int(i)];
+                lanes[i] = z < kFar && z > lanes[i] ? z : lanes[i];
+            }
+    }
+    const float farthest = *std::max_element(lanes.begin(), lanes.end());
+    return farthest > 0 ? farthest : 1.0f;
+}
+DepthUnit masterDepthUnit(const Params& params) { return params.chosen("depthUnit", kDepthUnits); }
 
 MethodDescriptor masterDescriptor() {
     return {

@@ -19,10 +19,14 @@
 #include "methods/temporal/temporal_kernels.h"
 
 namespace aa {
+struct Frame;
 struct MethodDescriptor;
+class Params;
 MethodDescriptor masterDescriptor();
 
 enum class DepthUnit { normalised, zfar, world };  // 2z / (z + far), z / far, scene units
+DepthUnit masterDepthUnit(const Params& params);
+float masterFarDepth(const Frame& frame);  // the camera's far plane, or the largest depth that is not background
 inline constexpr int kMasterScratchRows = 48;
 struct MasterArgs {
     TemporalIn in;  // encoded colour as it is; alpha of the history: the Sobel value, filtered over time

@@ -1,5 +1,6 @@
 #include "methods/temporal/raptor.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -68,11 +69,8 @@ class Raptor : public Method {
         args.in.feedbackCeiling = temporal::feedbackCeiling(p, history_.framesSinceReset());
         args.in.dilation = temporal::dilation(p);
         args.in.filter = temporal::historyFilter(p);
-        for (int j = -1; j <= 1; j++)
-            for (int i = -1; i <= 1; i++)
-                args.filter[(j + 1) * 3 + i + 1] = float(filterWeight(p.chosen("currentFilter", kCurrentFilters),
-                                                                      p.choice("filterDomain") == "printed", i, j,
-                                                                      {args.in.jitterXPx, args.in.jitterYPx}));
+        const auto filter = raptorFilter(p, args.in.jitterXPx, args.in.jitterYPx);
+        std::copy(filter.begin(), filter.end(), args.filter);
         args.constraint = p.chosen("constraint", kConstraints);
         args.luminanceDifference = p.chosen("lumaDiff", kLuminanceDifferences);
         args.temporalFiltering = p.flag("temporalFiltering");
@@ -101,6 +99,16 @@ class Raptor : public Method {
     TemporalDebugLayers debug_;
 };
 }  // namespace
+
+std::array<float, 9> raptorFilter(const Params& params, float jitterXPx, float jitterYPx) {
+    const CurrentFilter filter = params.chosen("currentFilter", kCurrentFilters);
+    const bool printed = params.choice("filterDomain") == "printed";
+    std::array<float, 9> weights;
+    for (int j = -1; j <= 1; j++)
+        for (int i = -1; i <= 1; i++)
+            weights[size_t((j + 1) * 3 + i + 1)] = float(filterWeight(filter, printed, i, j, {jitterXPx, jitterYPx}));
+    return weights;
+}
 
 MethodDescriptor raptorDescriptor() {
     return {

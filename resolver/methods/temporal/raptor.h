@@ -18,11 +18,17 @@
 // that the book prints is `raptor:lumaDiff=printed,filterDomain=printed,historyClamp=off` (docs/published_steps.md).
 // Input and output: linear light; depth planar; motion in px, current - previous.
 #pragma once
+#include <array>
+
 #include "methods/temporal/temporal_kernels.h"
 
 namespace aa {
+class Params;
 struct MethodDescriptor;
 MethodDescriptor raptorDescriptor();
+
+// Weights of the 3x3 current samples (RaptorArgs::filter) in a frame of this jitter.
+std::array<float, 9> raptorFilter(const Params& params, float jitterXPx, float jitterYPx);
 
 enum class RaptorConstraint { none, clamp, clip, varianceClip, varianceClipClamp };
 enum class LuminanceDifference { off, corrected, printed };

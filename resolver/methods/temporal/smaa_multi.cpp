@@ -9,10 +9,9 @@
 namespace aa {
 namespace {
 
-using SamplePair = std::array<size_t, 2>;
 // Indices of the shot's sub-samples at a position and at its opposite; nothing when one of them is not there.
-std::optional<SamplePair> opposites(const ShotInfo& shot, glm::dvec2 positionPx) {
-    SamplePair found{};
+std::optional<SmaaSamples> opposites(const ShotInfo& shot, glm::dvec2 positionPx) {
+    SmaaSamples found{};
     for (size_t i = 0; i < 2; i++) {
         const glm::dvec2 wanted = i == 0 ? positionPx : -positionPx;
         size_t k = 0;
@@ -32,12 +31,26 @@ std::optional<SamplePair> opposites(const ShotInfo& shot, glm::dvec2 positionPx)
 }
 constexpr glm::dvec2 kTwo{0.25, 0.25};                                  // d3d2
 constexpr glm::dvec2 kFourEven{0.375, -0.125}, kFourOdd{0.125, 0.375};  // d3d4
+}  // namespace
+
+SmaaSamples smaaS2xSamples(const ShotInfo& shot) {
+    if (const auto pair = opposites(shot, kTwo)) return *pair;
+    refuse(shot, "smaaS2x", "2x");
+}
+std::array<SmaaSamples, 2> smaa4xSamples(const ShotInfo& shot) {
+    if (const auto even = opposites(shot, kFourEven), odd = opposites(shot, kFourOdd); even && odd)
+        return {*even, *odd};
+    if (const auto both = opposites(shot, kTwo)) return {*both, *both};
+    refuse(shot, "smaa4x", "2x or 4x");
+}
+
+namespace {
 // Two sub-samples of a frame, each through SMAA 1x with its edges moved back, averaged.
 class TwoSamples {
   public:
     explicit TwoSamples(const Params& p) : linear_(p.choice("blendSpace") == "linear"), smaa_(p) {}
     // Averages into `out` and, when asked, the motion blended with the same weights into `velocity`.
-    void resolve(const Frame& frame, const ShotInfo& shot, SamplePair samples, bool debug, const Exec& exec, Rgb& out,
+    void resolve(const Frame& frame, const ShotInfo& shot, SmaaSamples samples, bool debug, const Exec& exec, Rgb& out,
                  Rgb* velocity) {
         debugLayers_.clear();
         smaa_.keepDebugLayers = debug;
@@ -86,12 +99,7 @@ class TwoSamples {
 
 class SmaaS2x : public Method {
   public:
-    SmaaS2x(const Params& p, const ShotInfo& shot) : shot_(shot), two_(p) {
-        if (const auto pair = opposites(shot, kTwo))
-            samples_ = *pair;
-        else
-            refuse(shot, "smaaS2x", "2x");
-    }
+    SmaaS2x(const Params& p, const ShotInfo& shot) : shot_(shot), samples_(smaaS2xSamples(shot)), two_(p) {}
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         two_.resolve(frame, shot_, samples_, keepDebugLayers, exec, out, nullptr);
     }
@@ -100,7 +108,7 @@ class SmaaS2x : public Method {
 
   private:
     ShotInfo shot_;
-    SamplePair samples_{};
+    SmaaSamples samples_;
     TwoSamples two_;
 };
 
@@ -192,17 +200,11 @@ class SmaaT2x : public Method {
 // pattern frames alternate between two opposite ones of the four, which are nearly the same places without jitter.
 class Smaa4x : public Method {
   public:
-    Smaa4x(const Params& p, const ShotInfo& shot) : shot_(shot), two_(p), pair_("smaa4x", p) {
-        if (const auto even = opposites(shot, kFourEven), odd = opposites(shot, kFourOdd); even && odd)
-            even_ = *even, odd_ = *odd;
-        else if (const auto both = opposites(shot, kTwo))
-            even_ = odd_ = *both;
-        else
-            refuse(shot, "smaa4x", "2x or 4x");
-    }
+    Smaa4x(const Params& p, const ShotInfo& shot)
+        : shot_(shot), samples_(smaa4xSamples(shot)), two_(p), pair_("smaa4x", p) {}
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         pair_.begin(frame);
-        two_.resolve(frame, shot_, frame.number % 2 == 0 ? even_ : odd_, keepDebugLayers, exec, pair_.color(),
+        two_.resolve(frame, shot_, samples_[frame.number % 2 == 0 ? 0 : 1], keepDebugLayers, exec, pair_.color(),
                      &pair_.velocity());
         pair_.resolve(frame, keepDebugLayers, exec, out);
     }
@@ -216,7 +218,7 @@ class Smaa4x : public Method {
 
   private:
     ShotInfo shot_;
-    SamplePair even_{}, odd_{};
+    std::array<SmaaSamples, 2> samples_;  // of even and of odd frames
     TwoSamples two_;
     VelocityWeightedPair pair_;
 };

@@ -19,7 +19,7 @@ class T2msaa : public Method {
         args.in = temporal::frameView(frame, frame.colorLinear);
         args.in.out = view(out);
         history_.begin(frame, "t2msaa", args.in);
-        const auto pair = samplesOf(frame, history_.framesSinceReset());
+        const auto pair = t2msaaSamples(frame, offsetPx_, history_.framesSinceReset());
         for (size_t i = 0; i < 2; i++) {
             const SubSample& s = frame.subSamples[pair[i]];
             args.sample[i] = view(s.colorLinear);
@@ -55,23 +55,6 @@ class T2msaa : public Method {
     }
 
   private:
-    // The recorded sub-samples nearest to the thesis's two of this frame.
-    std::array<size_t, 2> samplesOf(const Frame& frame, int parity) const {
-        if (frame.subSamples.size() == 2) return {0, 1};
-        const double d = parity % 2 ? -offsetPx_ : offsetPx_;
-        std::array<size_t, 2> chosen{};
-        for (size_t i = 0; i < 2; i++) {
-            const glm::dvec2 base(i == 0 ? 0.25 : -0.25), wanted = base + glm::dvec2(d, -d);
-            double nearest = 1e9;
-            for (size_t k = 0; k < frame.subSamplePositionsPx.size(); k++) {
-                const glm::dvec2 e = frame.jitterPx + frame.subSamplePositionsPx[k] - wanted;
-                const double distance = e.x * e.x + e.y * e.y;
-                if (distance < nearest && !(i == 1 && k == chosen[0])) nearest = distance, chosen[i] = k;
-            }
-        }
-        return chosen;
-    }
-
     Params params_;
     double offsetPx_;
     ColourHistory history_;
@@ -118,6 +101,22 @@ MethodDescriptor t2msaa() {
     return d;
 }
 }  // namespace
+
+std::array<size_t, 2> t2msaaSamples(const Frame& frame, double offsetPx, int framesSinceReset) {
+    if (frame.subSamples.size() == 2) return {0, 1};
+    const double d = framesSinceReset % 2 ? -offsetPx : offsetPx;
+    std::array<size_t, 2> chosen{};
+    for (size_t i = 0; i < 2; i++) {
+        const glm::dvec2 base(i == 0 ? 0.25 : -0.25), wanted = base + glm::dvec2(d, -d);
+        double nearest = 1e9;
+        for (size_t k = 0; k < frame.subSamplePositionsPx.size(); k++) {
+            const glm::dvec2 e = frame.jitterPx + frame.subSamplePositionsPx[k] - wanted;
+            const double distance = e.x * e.x + e.y * e.y;
+            if (distance < nearest && !(i == 1 && k == chosen[0])) nearest = distance, chosen[i] = k;
+        }
+    }
+    return chosen;
+}
 
 MethodDescriptor t2msaaDescriptor() { return t2msaa(); }
 }  // namespace aa

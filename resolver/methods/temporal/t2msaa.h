@@ -12,12 +12,19 @@
 // (jitter + position) that lie nearest to where the thesis samples, which may be up to an eighth of a pixel off:
 // (.25, .25) and (-.25, -.25), plus (+d, -d) in even and (-d, +d) in odd frames.
 #pragma once
+#include <array>
+#include <cstddef>
+
 #include "kernels/display_args.h"
 #include "methods/temporal/temporal_kernels.h"
 
 namespace aa {
+struct Frame;
 struct MethodDescriptor;
 MethodDescriptor t2msaaDescriptor();
+
+// Numbers of the recorded sub-samples that are nearest to the thesis's two of this frame; `offsetPx`: d.
+std::array<size_t, 2> t2msaaSamples(const Frame& frame, double offsetPx, int framesSinceReset);
 
 struct T2msaaArgs {
     TemporalIn in;    // color unused; history alpha = mean depth of the previous frame

@@ -1,7 +1,32 @@
+#include "methods/geometry/dmsaa.h"
+
 #include "gpu/forms.h"
+#include "gpu/forms/geometry/geometry_form.h"
 
 namespace aa::gpu {
+namespace {
 
-std::vector<Form> dmsaaForms() { return {}; }
+class DmsaaForm : public GeometryForm {
+  public:
+    DmsaaForm(Session& session, const Params& p, const ShotInfo& shot)
+        : GeometryForm(session, p, "dmsaa", {}),
+          shader_("geometry/dmsaa", constants(shot, {{10, int(p.choiceIndex("vecMode"))},
+                                                     {11, p.realf("depthThreshold")},
+                                                     {12, p.realf("gain")}})) {}
+
+  private:
+    void record(Current& current, Image& out) override {
+        current.recorder().dispatch(shader_, current.width(), current.height(), bindings(current, out),
+                                    push(current.frame()));
+    }
+    Shader shader_;
+};
+}  // namespace
+
+std::vector<Form> dmsaaForms() {
+    return {{"dmsaa", [](Session& s, const Params& p, const ShotInfo& shot) -> std::unique_ptr<GpuMethod> {
+                 return std::make_unique<DmsaaForm>(s, p, shot);
+             }}};
+}
 
 }  // namespace aa::gpu

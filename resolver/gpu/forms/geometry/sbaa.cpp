@@ -1,7 +1,33 @@
+#include "methods/geometry/sbaa.h"
+
 #include "gpu/forms.h"
+#include "gpu/forms/geometry/geometry_form.h"
 
 namespace aa::gpu {
+namespace {
 
-std::vector<Form> sbaaForms() { return {}; }
+class SbaaForm : public GeometryForm {
+  public:
+    SbaaForm(Session& session, const Params& p, const ShotInfo& shot)
+        : GeometryForm(session, p, "sbaa", {.normals = true, .ids = true, .colours = true, .camera = true}),
+          shader_("geometry/sbaa", constants(shot, {{10, p.integer("surfaces")},
+                                                    {11, p.realf("mergeNormal")},
+                                                    {12, p.realf("mergeDepth")},
+                                                    {13, p.flag("ids")}})) {}
+
+  private:
+    void record(Current& current, Image& out) override {
+        current.recorder().dispatch(shader_, current.width(), current.height(), bindings(current, out),
+                                    push(current.frame()));
+    }
+    Shader shader_;
+};
+}  // namespace
+
+std::vector<Form> sbaaForms() {
+    return {{"sbaa", [](Session& s, const Params& p, const ShotInfo& shot) -> std::unique_ptr<GpuMethod> {
+                 return std::make_unique<SbaaForm>(s, p, shot);
+             }}};
+}
 
 }  // namespace aa::gpu

@@ -1,7 +1,39 @@
+#include "methods/geometry/sraa.h"
+
 #include "gpu/forms.h"
+#include "gpu/forms/geometry/geometry_form.h"
 
 namespace aa::gpu {
+namespace {
 
-std::vector<Form> sraaForms() { return {}; }
+class SraaForm : public GeometryForm {
+  public:
+    SraaForm(Session& session, const Params& p, const ShotInfo& shot, const SraaArgs& a)
+        : GeometryForm(session, p, "sraa:distance=plane",
+                       {.normals = true, .ids = a.ids != SraaIds::off, .camera = !a.plainDepth}),
+          shader_("geometry/sraa", constants(shot, {{10, a.radius},
+                                                    {11, a.maxMetric},
+                                                    {12, a.plainDepth},
+                                                    {13, a.ids},
+                                                    {14, a.spatial},
+                                                    {15, a.depth},
+                                                    {16, a.normal},
+                                                    {17, a.sharpness},
+                                                    {18, a.depthSigma}})) {}
+
+  private:
+    void record(Current& current, Image& out) override {
+        current.recorder().dispatch(shader_, current.width(), current.height(), bindings(current, out),
+                                    push(current.frame()));
+    }
+    Shader shader_;
+};
+}  // namespace
+
+std::vector<Form> sraaForms() {
+    return {{"sraa", [](Session& s, const Params& p, const ShotInfo& shot) -> std::unique_ptr<GpuMethod> {
+                 return std::make_unique<SraaForm>(s, p, shot, sraaArgs(p));
+             }}};
+}
 
 }  // namespace aa::gpu
