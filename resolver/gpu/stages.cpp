@@ -37,11 +37,11 @@ class SharpenStage : public ImageStage {
   public:
     SharpenStage(Session& session, const std::string& filter, Space space)
         : ImageStage(session),
-          shader_("stages/sharpen", {{10, filter == "xu"     ? Sharpen::xu
-                                          : filter == "norm" ? Sharpen::norm
-                                                             : Sharpen::lumaPost},
-                                     {11, space == Space::encoded ? SharpenRange::display
-                                                                  : SharpenRange::neighbourhood}}) {}
+          shader_("stages/sharpen",
+                  {{10, filter == "xu"     ? Sharpen::xu
+                        : filter == "norm" ? Sharpen::norm
+                                           : Sharpen::lumaPost},
+                   {11, space == Space::encoded ? SharpenRange::display : SharpenRange::neighbourhood}}) {}
     const Image& record(Current& current, const Image& image, const Image*) override {
         Image& sharpened = shown(image);
         const Binding images[] = {read(image), written(sharpened)};
@@ -93,7 +93,8 @@ class FillStage : public ImageStage {
 
 class MotionBlurStage : public ImageStage {
   public:
-    MotionBlurStage(Session& session, float scale) : ImageStage(session), shader_("stages/motion_blur", {{10, scale}}) {}
+    MotionBlurStage(Session& session, float scale)
+        : ImageStage(session), shader_("stages/motion_blur", {{10, scale}}) {}
     const Image& record(Current& current, const Image& image, const Image*) override {
         Image& blurred = shown(image);
         const Binding images[] = {read(image), read(current[Input::motion]), written(blurred)};

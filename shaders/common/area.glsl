@@ -1,5 +1,5 @@
-// Areas under a revectorised edge, shared by the morphological methods ([Reshetov 2009], [Jimenez 2012]). x is the weight
-// of a pixel for its neighbour's colour, y that of the neighbour for the pixel's.
+// Areas under a revectorised edge, shared by the morphological methods ([Reshetov 2009], [Jimenez 2012]). x is the
+// weight of a pixel for its neighbour's colour, y that of the neighbour for the pixel's.
 #ifndef AA_AREA
 #define AA_AREA
 

@@ -1,4 +1,4 @@
-// The current colours of a workgroup's 8 x 8 pixels and of one more on each side, as colourAt() gives them, in shared
+// The current colours of a workgroup's pixels and of one more on each side, as colourAt() gives them, in shared
 // memory: a 3 x 3 window un-jittered from textures would read 36 texels per pixel, this reads 2.
 //
 // Every invocation, those beyond the picture too, calls loadColourTile(), or the two functions of which it consists;
@@ -7,19 +7,19 @@
 #define AA_COLOUR_TILE
 #include "temporal.glsl"
 
-const int COLOUR_SIDE = 10, TEXEL_SIDE = COLOUR_SIDE + 1;  // and one more, for bilinear filtering
+const int COLOUR_SIDE = AA_GROUP + 2, TEXEL_SIDE = COLOUR_SIDE + 1;  // and one more, for bilinear filtering
 shared vec3 texelTile[TEXEL_SIDE * TEXEL_SIDE];
 shared vec3 colourTile[COLOUR_SIDE * COLOUR_SIDE];
 
 void fetchTexelTile() {
-    const ivec2 first = ivec2(gl_WorkGroupID.xy) * 8 - 1 + ivec2(floor(frame.readOffset));
-    for (int k = int(gl_LocalInvocationIndex); k < TEXEL_SIDE * TEXEL_SIDE; k += 64)
+    const ivec2 first = ivec2(gl_WorkGroupID.xy) * AA_GROUP - 1 + ivec2(floor(frame.readOffset));
+    for (int k = int(gl_LocalInvocationIndex); k < TEXEL_SIDE * TEXEL_SIDE; k += AA_GROUP * AA_GROUP)
         texelTile[k] = texel(currentImage, first + ivec2(k % TEXEL_SIDE, k / TEXEL_SIDE)).rgb;
 }
 // After a barrier; before the next one.
 void unjitterColourTile() {
     const vec2 f = fract(frame.readOffset);
-    for (int k = int(gl_LocalInvocationIndex); k < COLOUR_SIDE * COLOUR_SIDE; k += 64) {
+    for (int k = int(gl_LocalInvocationIndex); k < COLOUR_SIDE * COLOUR_SIDE; k += AA_GROUP * AA_GROUP) {
         const int a = k / COLOUR_SIDE * TEXEL_SIDE + k % COLOUR_SIDE, b = a + TEXEL_SIDE;
         const vec3 top = lerpExact(texelTile[a], texelTile[a + 1], f.x);
         const vec3 bottom = lerpExact(texelTile[b], texelTile[b + 1], f.x);

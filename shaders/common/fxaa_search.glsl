@@ -2,8 +2,8 @@
 //
 //   constant             default (preset 12)   means
 //   10 STEPS             5                     distances in use
-//   11 DISTANCE_0 ...    2 5 9 17 41           cumulative, in half pixels; the last is a jump whose end is never sampled
-//   22 DISTANCE_11       0
+//   11 DISTANCE_0 ...    2 5 9 17 41           cumulative, in half pixels; the last is a jump whose end is not
+//   22 DISTANCE_11       0                     sampled
 #ifndef AA_FXAA_SEARCH
 #define AA_FXAA_SEARCH
 #include "fxaa.glsl"

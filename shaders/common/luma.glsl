@@ -3,8 +3,8 @@
 #define AA_LUMA
 #include "image.glsl"
 
-// By number, of encoded colour unless said: BT.601, BT.709, green, FXAA 1's [Lottes 2009], sqrt(BT.601) of linear colour
-// [Lottes 2011], BT.601 of the square roots of linear colour [Strugar 2018], log2(1 + 15 Y) / 4 of linear colour
+// By number, of encoded colour unless said: BT.601, BT.709, green, FXAA 1's [Lottes 2009], sqrt(BT.601) of linear
+// colour [Lottes 2011], BT.601 of the square roots of linear colour [Strugar 2018], log2(1 + 15 Y) / 4 of linear colour
 // [Stanard n.d.], NFAA's.
 const int LUMA_REC601 = 0, LUMA_REC709 = 1, LUMA_GREEN = 2, LUMA_RED_GREEN = 3, LUMA_SQRT_LINEAR = 4,
           LUMA_LINEAR_OF_SQRT = 5, LUMA_LOG2_LINEAR = 6, LUMA_NFAA = 7;

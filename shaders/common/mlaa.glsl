@@ -4,8 +4,8 @@
 //
 //   binding                    format           holds
 //   0  colourImage   texture   RGBA 16F / 32F   the picture, encoded
-//   1  topBits       buffer                     (width + 31) / 32 words per row: pixel and the one above differ
-//   2  leftBits      buffer                     (height + 31) / 32 words per column: pixel and its left neighbour differ
+//   1  topBits       buffer                     a pixel and the one above differ: (width + 31) / 32 words per row
+//   2  leftBits      buffer                     a pixel and its left neighbour differ: (height + 31) / 32 per column
 //
 //   push constants             unit
 //   size                       px

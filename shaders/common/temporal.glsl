@@ -17,7 +17,6 @@
 //   2  CLAMP_OUTSIDE             false            a history position outside: the edge's colour, not rejected
 //   3  HARDWARE_FILTER           false            bilinear by the texture unit
 //   4  KEEP_REJECTION            false
-//   5, 6                         8, 8             the workgroup's width and height in pixels
 //
 //   push constants               unit             of this frame
 //   size                         px
@@ -36,7 +35,10 @@
 #include "colour.glsl"
 #include "reproject.glsl"
 
-layout(local_size_x = 8, local_size_y = 8, local_size_x_id = 5, local_size_y_id = 6) in;
+#ifndef AA_GROUP  // side of the workgroup, px; a shader that wants another one says so before it includes this
+#define AA_GROUP 8
+#endif
+layout(local_size_x = AA_GROUP, local_size_y = AA_GROUP) in;
 layout(binding = 0) uniform sampler2D currentImage;
 layout(binding = 1) uniform sampler2D motionImage;
 layout(binding = 2) uniform sampler2D depthImage;

@@ -28,9 +28,9 @@ layout(constant_id = 11) const float EPSILON = 0.1;
 layout(constant_id = 12) const float LONG_THRESHOLD = 0.2;
 layout(constant_id = 13) const bool PRESERVE_HIGHLIGHTS = false;
 
-const int REACH_PX = 8;                // that the blur along a long edge reads to either side
-const float EQUAL_LUMAS = 0.5 / 255.0; // half a code: the ratio of a shift goes to 1, its value at 0
-const float FADE = 1.0 / 255.0;        // of a mask or of the shares of a shift
+const int REACH_PX = 8;                 // that the blur along a long edge reads to either side
+const float EQUAL_LUMAS = 0.5 / 255.0;  // half a code: the ratio of a shift goes to 1, its value at 0
+const float FADE = 1.0 / 255.0;         // of a mask or of the shares of a shift
 const ivec2 ALONG_X = ivec2(1, 0), ALONG_Y = ivec2(0, 1);
 
 float saturate(float x) { return clamp(x, 0.0, 1.0); }
@@ -58,8 +58,8 @@ vec2 meanOf16(ivec2 p, ivec2 d) {
     for (int i = 1; i <= REACH_PX; i++) sum = sum + (edgeAt(p - i * d) + edgeAt(p + i * d));
     return sum * (1.0 / 16.0);
 }
-// The share of the pixel's own colour in its mix with a neighbour that gives it the luma of the blur: 1 + (blur - own) /
-// (own - neighbour). Where both have one luma that is 1, no shift; nearly equal lumas have no meaningful ratio and go
+// The share of the pixel's own colour in its mix with a neighbour that gives it the luma of the blur: 1 + (blur - own)
+// / (own - neighbour). Where both have one luma that is 1, no shift; nearly equal lumas have no meaningful ratio and go
 // there continuously.
 float shareOfOwn(float blurMinusOwn, float ownMinusNeighbour) {
     return saturate(1.0 + blurMinusOwn * ownMinusNeighbour /

@@ -1,8 +1,8 @@
 // dlaa, first pass: strength of edges by a high-pass, and luma.
 //
 // Source: [Andreev 2011], public ports (docs/sources.md); then spatial/dlaa.comp.
-// Colours: encoded. Bindings 0 and 1 and push constants: common/spatial.glsl; resultImage is RG 32F: strength in [0, 1],
-// luma.
+// Colours: encoded. Bindings 0 and 1 and push constants: common/spatial.glsl; resultImage is RG 32F: strength in
+// [0, 1], luma.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "../common/colour.glsl"

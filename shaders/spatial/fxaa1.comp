@@ -85,7 +85,8 @@ void main() {
     const vec3 shifted = shiftedColour(p, line.across, edgeShift(ends, line.own < line.side));
 
     // 5. low-pass
-    const float around = (l.n - l.m) + (l.s - l.m) + (l.w - l.m) + (l.e - l.m), contrast = abs(around * 0.25) / rangeOf(l);
+    const float around = (l.n - l.m) + (l.s - l.m) + (l.w - l.m) + (l.e - l.m);
+    const float contrast = abs(around * 0.25) / rangeOf(l);
     const float share = min(SUBPIX_CAP, max(0.0, contrast - SUBPIX_TRIM) / (1.0 - SUBPIX_TRIM));
     storeResult(p, shifted + (lowPass(p) - shifted) * share);
 }

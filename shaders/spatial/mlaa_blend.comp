@@ -52,8 +52,8 @@ void main() {
         if (SIMULTANEOUS) {
             shares = sharedOut(shares);
             const vec3 own = colourAt(p);
-            const vec3 moved = shares.x * (colourAt(p + ivec2(-1, 0)) - own) + shares.y * (colourAt(p + ivec2(1, 0)) - own);
-            const vec3 sum = c - own + moved;
+            const vec3 left = colourAt(p + ivec2(-1, 0)), right = colourAt(p + ivec2(1, 0));
+            const vec3 sum = c - own + (shares.x * (left - own) + shares.y * (right - own));
             c = own + (verticalShares(p) != vec2(0.0) ? sum * 0.5 : sum);
         } else
             c = blended(c, shares, acrossHorizontalLines(p + ivec2(-1, 0)), acrossHorizontalLines(p + ivec2(1, 0)));

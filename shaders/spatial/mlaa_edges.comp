@@ -29,6 +29,7 @@ void main() {
     const ivec2 p = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(p, frame.size))) return;
     const vec3 c = colourAt(p);
-    if (differ(c, colourAt(p + ivec2(0, -1)))) atomicOr(topBits[p.y * wordsOf(ROWS) + (p.x >> 5)], 1u << (p.x & 31));
-    if (differ(c, colourAt(p + ivec2(-1, 0)))) atomicOr(leftBits[p.x * wordsOf(COLUMNS) + (p.y >> 5)], 1u << (p.y & 31));
+    const int topWord = p.y * wordsOf(ROWS) + (p.x >> 5), leftWord = p.x * wordsOf(COLUMNS) + (p.y >> 5);
+    if (differ(c, colourAt(p + ivec2(0, -1)))) atomicOr(topBits[topWord], 1u << (p.x & 31));
+    if (differ(c, colourAt(p + ivec2(-1, 0)))) atomicOr(leftBits[leftWord], 1u << (p.y & 31));
 }

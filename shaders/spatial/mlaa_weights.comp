@@ -9,9 +9,8 @@
 // Bindings 0 to 2 and push constants: common/mlaa.glsl.
 //
 //   binding                  format           holds
-//   3  weightsImage  image   RGBA 16F / 32F   top edge: share of the upper pixel that the pixel takes, share of the pixel
-//                                             that the upper one takes; left edge: the same with the left pixel; 0: no
-//                                             edge
+//   3  weightsImage  image   RGBA 16F / 32F   top edge: share that the pixel takes of the one above, and the one above
+//                                             of the pixel; left edge: the same with the left neighbour; 0: no edge
 //
 //   constant               default   means
 //   10 HEIGHTS_COLOUR      0         where the silhouette meets a crossing edge
@@ -32,8 +31,8 @@ struct Line {
 };
 ivec2 pixelOf(int axis, int line, int at) { return axis == ROWS ? ivec2(at, line) : ivec2(line, at); }
 float lumaAt(ivec2 p) { return lumaOf(colourAt(p), LUMA_REC601); }
-// As a share of the crossing edge's length: where the line's last pixel (`own`) and the one beyond the crossing edge, if
-// that has a line of its own one row farther, get one luma.
+// As a share of the crossing edge's length: where the line's last pixel (`own`) and the one beyond the crossing edge,
+// if that has a line of its own one row farther, get one luma.
 float meetingHeight(ivec2 own, ivec2 beyond, ivec2 across) {
     const float gained = lumaAt(beyond + across) - lumaAt(own), lost = lumaAt(own - across) - lumaAt(beyond);
     const float sum = gained + lost;

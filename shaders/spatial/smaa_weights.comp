@@ -24,8 +24,9 @@
 //
 //   push constants       unit
 //   size                 px
-//   offset               px   (y, x) of the pixel centres from the place where the picture was sampled, y down: where
-//                             top and left edges are moved to
+//   offset               px, y down   how far top and left edges are moved back: minus the y and minus the x of the
+//                                     place where the picture was sampled, from the pixel centre (with TABLE the
+//                                     table holds it)
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "../common/area.glsl"

@@ -1,8 +1,8 @@
 // accumReject: running mean along the motion, forgotten where the surface was not visible before; no colour constraint.
 // A reference among the temporal methods: what identity (depth, object ids) alone can do.
 //
-//  1. q = p - motion   2. rejected where q is outside, where the previous frame shows only nearer surfaces around q, or no
-//  pixel of this object   3. N = N(q) + 1, capped at 1e5 at rest and 16 in motion; out = h + (c - h) / N
+//  1. q = p - motion   2. rejected where q is outside, where the previous frame shows only nearer surfaces around q, or
+//  no pixel of this object   3. N = N(q) + 1, capped at 1e5 at rest and 16 in motion; out = h + (c - h) / N
 // The mean is a compensated pair of floats, so that 1e5 frames lose nothing. With depth test 0 a pixel at rest accepts
 // any pixel of the previous 3x3 (accum_reject_farthest.comp) that is as far as it: the jitter alone moves a silhouette.
 //

@@ -1,7 +1,7 @@
 // fsr2n: a temporal upscaler's accumulation at native resolution, after AMD's FSR 2; results are "FSR2-like", not FSR 2.
 //
-//  1. depth clip: where the surfaces that fsr2n_scatter.comp has splatted hold something nearer, the pixel was hidden; by
-//     how much is graded by the separation that the depth's resolution can tell
+//  1. depth clip: where the surfaces that fsr2n_scatter.comp has splatted hold something nearer, the pixel was hidden;
+//     by how much is graded by the separation that the depth's resolution can tell
 //  2. one-pixel ridges of luma are locked: their history survives the colour box while the window's luma stays
 //  3. current colour: Lanczos-2 over 3x3 around the jittered samples, deringed. Colour box: Gaussian mean and deviation
 //     in YCoCg, cut with the window's bounds

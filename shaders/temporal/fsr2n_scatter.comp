@@ -4,8 +4,8 @@
 // Bindings 0 to 6, push constants and constants 0 to 4: common/temporal.glsl (depth and motion alone are read), and
 //
 //   binding                      format   holds
-//   7  nearestImage    image     R 32UI   bits of a view depth; cleared to NO_DEPTH before. Positive floats are ordered as
-//                                         integers, so the least is taken atomically and the order does not matter
+//   7  nearestImage    image     R 32UI   bits of a view depth, cleared to those of 2^127 before. Positive floats are
+//                                         ordered as integers, so the least is taken atomically, in whatever order
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "../common/temporal.glsl"

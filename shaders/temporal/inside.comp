@@ -9,8 +9,8 @@
 //
 // Source: [Pedersen 2016] (docs/sources.md).
 // Colours: displayed (encoded) values in [0, 1], in and out.
-// Bindings 0 to 6, push constants and constants 0 to 4: common/temporal.glsl. No other images. Step 8 draws its noise by
-// `frameNumber`.
+// Bindings 0 to 6, push constants and constants 0 to 4: common/temporal.glsl. No other images.
+// Step 8 draws its noise by `frameNumber`.
 //
 //   constant                  default
 //   10 K_MIN                  0.88     weight of the history where its luminance differs most, 0..1
@@ -52,8 +52,9 @@ float lumaOf(vec3 c) { return YCOCG ? c.x : luminance(c, LUMINANCE); }
 
 // Four bilinear taps at (+-s, +-s).
 vec3 diagonalTap(vec3 window[9], int i, int j, float s) {
-    const vec3 near = mix(window[4], window[4 + i], s), far = mix(window[4 + 3 * j], window[4 + 3 * j + i], s);
-    return mix(near, far, s);
+    const vec3 near = lerpExact(window[4], window[4 + i], s);
+    const vec3 far = lerpExact(window[4 + 3 * j], window[4 + 3 * j + i], s);
+    return lerpExact(near, far, s);
 }
 Box fourTapBox(vec3 window[9], float s, out vec3 mean) {
     const vec3 a = diagonalTap(window, -1, -1, s), b = diagonalTap(window, 1, -1, s),

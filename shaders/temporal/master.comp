@@ -8,7 +8,8 @@
 //  3. feedback by the luminance difference, 0.925 .. 0.979; blend -> history
 //  4. (pass 3, sharpen_history.comp) the blend sharpened, never fed back
 //
-// A workgroup reads each texel once into shared memory; T is done for one pixel more on each side, whose average 1 takes.
+// Workgroups are 16 x 16 and use 25 KB of shared memory: each texel is read once into it. T is done for one pixel more
+// on each side, over which 1 averages.
 //
 // Source: [Oliveros 2018, 4.3] (docs/sources.md), by equation below.
 // Colours: display-encoded, [0, 1], in and out. Alpha of the history is the Sobel value, filtered over time.
@@ -40,6 +41,7 @@
 //   25 MIN_ALIAS          0           floor of A
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#define AA_GROUP 16
 #include "../common/temporal.glsl"
 #include "../common/clip.glsl"
 #include "../common/depth_unit.glsl"
@@ -72,15 +74,15 @@ vec3 lerp(vec3 a, vec3 b, float t) { return a + (b - a) * t; }
 vec4 lerp(vec4 a, vec4 b, float t) { return a + (b - a) * t; }
 
 // ---- the workgroup's tile -------------------------------------------------------------------------------------------
-// Its pixels and MARGIN more on each side, for step T reaches one pixel and the averages over its values another one;
-// one more on the right and at the bottom, for bilinear reading. All tiles have the same cells.
-const int GROUP = int(gl_WorkGroupSize.x), MARGIN = 2, SIDE = GROUP + 2 * MARGIN + 1, CELLS = SIDE * SIDE;
-shared vec4 texelTile[CELLS];     // colour and Sobel value at the texels of the jittered frame
-shared vec3 colourTile[CELLS];    // at p - jitter
-shared float sobelTile[CELLS];    // likewise
-shared float filteredTile[CELLS]; // the same after step T; of one pixel on each side
-shared float depthTile[CELLS];    // planar view z
-shared float unitTile[CELLS];     // the same in DEPTH_UNIT
+// Its pixels and MARGIN more on each side: step T looks one pixel far, and step 1 one pixel far at its values. One more
+// on the right and at the bottom, for bilinear reading. All tiles have the same cells.
+const int GROUP = AA_GROUP, MARGIN = 2, SIDE = GROUP + 2 * MARGIN + 1, CELLS = SIDE * SIDE;
+shared vec4 texelTile[CELLS];      // colour and Sobel value at the texels of the jittered frame
+shared vec3 colourTile[CELLS];     // at p - jitter
+shared float sobelTile[CELLS];     // likewise
+shared float filteredTile[CELLS];  // the same after step T; of one pixel on each side
+shared float depthTile[CELLS];     // planar view z
+shared float unitTile[CELLS];      // the same in DEPTH_UNIT
 shared vec2 motionTile[CELLS];
 shared uint objectTile[CELLS];
 
@@ -94,8 +96,8 @@ void loadTile() {
         const ivec2 p = first + ivec2(k % SIDE, k / SIDE);
         const ivec2 read = clampTexel(p + whole, frame.size), nearest = clampTexel(p + frame.texelOffset, frame.size);
         texelTile[k] = vec4(texelFetch(currentImage, read, 0).rgb, USE_SOBEL ? texelFetch(sobelImage, read, 0).r : 0.0);
-        depthTile[k] = texelFetch(depthImage, nearest, 0).r;
-        unitTile[k] = inDepthUnit(depthTile[k]);
+        const float depth = texelFetch(depthImage, nearest, 0).r;
+        depthTile[k] = depth, unitTile[k] = inDepthUnit(depth);
         motionTile[k] = texelFetch(motionImage, nearest, 0).rg;
         if (USE_MODEL) objectTile[k] = texelFetch(objectImage, nearest, 0).r;
     }
@@ -172,8 +174,9 @@ float modelAverage(ivec2 p) {
 // Eqs 4.12, 4.13: the mean of the plus-shaped window where little is aliased, of the 3x3 where much is.
 float sobelAverage(ivec2 p, float model) {
     const int c = cellOf(p), n = c - SIDE, s = c + SIDE;
-    const float plus = filteredTile[c] + ((filteredTile[c - 1] + filteredTile[c + 1]) + (filteredTile[n] + filteredTile[s]));
-    const float square = plus + ((filteredTile[n - 1] + filteredTile[n + 1]) + (filteredTile[s - 1] + filteredTile[s + 1]));
+    const float beside = (filteredTile[c - 1] + filteredTile[c + 1]) + (filteredTile[n] + filteredTile[s]);
+    const float corners = (filteredTile[n - 1] + filteredTile[n + 1]) + (filteredTile[s - 1] + filteredTile[s + 1]);
+    const float plus = filteredTile[c] + beside, square = plus + corners;
     return lerp(plus * (1.0 / 5.0), square * (1.0 / 9.0), clamp(model + filteredTile[c], 0.0, 1.0));
 }
 struct DepthWindow {  // deviations from the centre's depth
@@ -207,8 +210,7 @@ vec2 depthVariances(ivec2 p, Reprojection q) {
     const DepthWindow window = depthWindow(p);
     float past = pastDepth - depth;
     if (COMPENSATE) past = pastDepth - inDepthUnit(expectedPreviousDepth(depthTile[cellOf(p)], p));
-    const float threshold =
-        RELATIVE_THRESHOLD ? DEPTH_THRESHOLD * max(depth + window.mean, 1.0) : DEPTH_THRESHOLD;
+    const float threshold = DEPTH_THRESHOLD * (RELATIVE_THRESHOLD ? max(depth + window.mean, 1.0) : 1.0);
     const vec2 variances = pseudoVariances(window, past, threshold);
     return vec2(USE_DEPTH ? variances.x : 0.0, !USE_DEPTH_TEMPORAL ? 0.0 : q.inside ? variances.y : 1.0);
 }

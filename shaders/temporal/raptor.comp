@@ -13,8 +13,8 @@
 // Bindings 0 to 6, push constants and constants 0 to 4: common/temporal.glsl, and
 //
 //   binding               format   holds
-//   7  CurrentFilter      buffer   weights of the 3x3 current samples about this frame's jitter, row-major; their sum may
-//                                  be 0: then the centre alone
+//   7  CurrentFilter      buffer   weights of the 3x3 current samples about this frame's jitter, row-major; their sum
+//                                  may be 0: then the centre alone
 //
 //   constant                  default
 //   10 CONSTRAINT             4        0 none, 1 clamp, 2 clip, 3 variance clip, 4 clamp then variance clip

@@ -2,10 +2,10 @@
 //
 //  1. c = mean of the two sub-sample colours   2. q = p - motion of the pixel itself, history bilinear
 //  3. rejection: border, mean depth (one-sided), magnification   4. rejected: c, N = 1
-//  5. a = 1 / (N + 1), under motion at least 0.25 + blur term; blend with weights 1 / (1 + luma601); N grows only while a
-//     is above that limit
-// The geometry moves by (-d, +d) and (+d, -d) px in alternate frames. Which two of the recorded sub-samples a frame takes
-// is in the buffer Samples.
+//  5. a = 1 / (N + 1), under motion at least 0.25 + blur term; blend with weights 1 / (1 + luma601); N grows only while
+//     a is above that limit
+// The geometry moves by (-d, +d) and (+d, -d) px in alternate frames. The buffer Samples says which two of the recorded
+// sub-samples a frame takes.
 //
 // Source: [Stejmar n.d., 4.4.2, listing 4.19] (docs/sources.md).
 // Colours: sub-samples linear BT.709, >= 0; blend and result displayed values in [0, 1] with ENCODED, else linear.

@@ -6,9 +6,8 @@
 namespace aa::gpu {
 namespace {
 
-constexpr int kGroup = 16;  // of pass 2: less of its tile is margin than with 8
-// What Recorder::dispatch(), which counts workgroups of 8, takes for those that cover `pixels`.
-int inGroups(int pixels) { return (pixels + kGroup - 1) / kGroup * 8; }
+// What Recorder::dispatch(), which counts workgroups of 8, takes for workgroups of 16 that cover `pixels`.
+int inGroupsOf16(int pixels) { return (pixels + 15) / 16 * 8; }
 
 class MasterForm : public TemporalForm {
   public:
@@ -18,13 +17,10 @@ class MasterForm : public TemporalForm {
   private:
     void makeShaders() {
         const Params& p = params();
-        sobelOfTexels_ = Shader("temporal/master_sobel", {{10, p.realf("wU")},
-                                                          {11, p.realf("wL")},
-                                                          {12, masterDepthUnit(p)},
-                                                          {13, temporal::luminance(p)}});
-        resolve_ = Shader("temporal/master", constants({{5, kGroup},
-                                                        {6, kGroup},
-                                                        {10, p.realf("kmin")},
+        sobelOfTexels_ =
+            Shader("temporal/master_sobel",
+                   {{10, p.realf("wU")}, {11, p.realf("wL")}, {12, masterDepthUnit(p)}, {13, temporal::luminance(p)}});
+        resolve_ = Shader("temporal/master", constants({{10, p.realf("kmin")},
                                                         {11, p.realf("kmax")},
                                                         {12, temporal::clipTarget(p)},
                                                         {13, temporal::luminance(p)},
@@ -58,11 +54,11 @@ class MasterForm : public TemporalForm {
             current.recorder().dispatch(sobelOfTexels_, push.width, push.height, images, size);
         }
         std::vector<Binding> images = bindings(current, out);
-        images.insert(images.end(), {read(sobel_), read(current[Input::objectId]), read(depth_.previous()),
-                                     written(depth_.next())});
+        images.insert(images.end(),
+                      {read(sobel_), read(current[Input::objectId]), read(depth_.previous()), written(depth_.next())});
         TemporalPush own = push;
         own.perDepth[3] = farDepth;
-        current.recorder().dispatch(resolve_, inGroups(push.width), inGroups(push.height), images, own);
+        current.recorder().dispatch(resolve_, inGroupsOf16(push.width), inGroupsOf16(push.height), images, own);
         sharpening_.record(current, blend().next(), out);
         depth_.swap();
     }

@@ -8,16 +8,13 @@ namespace aa::gpu {
 class HistorySharpening {
   public:
     explicit HistorySharpening(SharpenKernel kernel) {
-        if (kernel != SharpenKernel::none)
-            shader_ = Shader("temporal/sharpen_history", {{10, sharpenGain(kernel)}});
+        if (kernel != SharpenKernel::none) shader_ = Shader("temporal/sharpen_history", {{10, sharpenGain(kernel)}});
     }
     // False: the method writes what is shown by itself.
     bool wanted() const { return !shader_.name().empty(); }
     void record(Current& current, const Image& blend, Image& out) {
         if (!wanted()) return;
-        const struct {
-            int32_t width, height;
-        } size{blend.width(), blend.height()};
+        const struct { int32_t width, height; } size{blend.width(), blend.height()};
         const Binding images[] = {read(blend), written(out)};
         current.recorder().dispatch(shader_, blend.width(), blend.height(), images, size);
     }

@@ -14,8 +14,7 @@ class TaaSimplestForm : public TemporalForm {
 
   private:
     void recordTemporal(Current& current, const TemporalPush& push, Image& out) override {
-        if (shader_.name().empty())
-            shader_ = Shader("temporal/taa_simplest", constants({{10, params().realf("k")}}));
+        if (shader_.name().empty()) shader_ = Shader("temporal/taa_simplest", constants({{10, params().realf("k")}}));
         current.recorder().dispatch(shader_, push.width, push.height, bindings(current, out), push);
     }
     Shader shader_;

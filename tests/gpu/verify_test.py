@@ -1,0 +1,70 @@
+"""The shaders against the kernels on whole shots, as a user compares them; validation is on."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+
+from gpu import PROGRAM, ROOT, GpuTest, main, need_device
+
+TEMPORAL = 3e-5  # largest difference, over all frames of a history
+SEARCHED = 1e-4  # share of pixels that a search may decide otherwise at a tie
+
+
+def study_presets() -> list[str]:
+    """Methods with options or stages as the study runs them."""
+    source = "".join(
+        (ROOT / "scenes/reproduce" / name).read_text(encoding="utf-8")
+        for name in ("catalogue.py", "shots.py", "studies.py")
+    )
+    written = r"\b[A-Za-z0-9]+(?::[A-Za-z0-9]+=[A-Za-z0-9.,=]+)?(?:\+[a-z]+=[A-Za-z0-9:.=]+)?"
+    return sorted({w.rstrip(".,") for w in re.findall(written, source) if ":" in w or "+" in w})
+
+
+class Verify(GpuTest):
+    def test_shots(self) -> None:
+        for scene, frames in (("half_planes", 4), ("thin_lines", 4), ("moving", 8)):
+            shot = self.folder / scene
+            self.synth(scene, shot, (96, 64), frames, "--subsamples", "d3d8", "--subsample-color")
+            presets = [m for m in study_presets() if self.serves(shot, m)]
+            self.assertGreater(len(presets), 3, presets)
+            found = {**self.verify(shot, []), **self.verify(shot, presets)}
+            self.assertGreater(len(found), 38)
+            for name, m in found.items():
+                with self.subTest(f"{scene} {name}"):
+                    self.assertEqual(m["notFinite"], 0)
+                    if m["family"] == "spatial":
+                        self.assertLessEqual(m["shareAboveCode"], SEARCHED)
+                    else:
+                        self.assertLessEqual(m["max"], TEMPORAL)
+
+    def serves(self, shot: object, method: str) -> bool:
+        command = [str(PROGRAM), "run", str(shot), "-m", method, "--frames", "1", "--write", "none"]
+        done = subprocess.run(
+            [*command, "-o", str(self.folder / "probe"), "-q"], capture_output=True, check=False
+        )
+        return done.returncode == 0
+
+    def test_fast_is_near(self) -> None:
+        shot = self.folder / "shot"
+        self.synth("moving", shot, (96, 64), 4)
+        for name, m in self.verify(shot, ["karis", "uncharted"], "--gpu-precision", "fast").items():
+            with self.subTest(name):
+                self.assertLess(m["rms"], 2e-3)
+                self.assertGreater(m["max"], 1e-6)  # it is not the exact one
+
+    def test_one_image(self) -> None:
+        shot, out = self.folder / "shot", self.folder / "out"
+        self.synth("half_planes", shot, (96, 64), 1)
+        self.aaresolve("run", shot, "-m", "noaa", "-o", out, "-q")
+        picture = next((out / "noaa").glob("*.exr"))
+        cpu, gpu = self.folder / "cpu.exr", self.folder / "gpu.exr"
+        self.aaresolve("filter", "smaa1x", picture, cpu)
+        said = self.aaresolve("filter", "smaa1x", picture, gpu, "--device", "vulkan")
+        self.assertIn(" ms on ", said.stdout)
+        self.assertIn("psnr", self.aaresolve("compare", cpu, gpu).stdout)
+
+
+if __name__ == "__main__":
+    need_device()
+    main()
