@@ -54,20 +54,21 @@ float logWeight(SurfacePoint own, int k, ivec2 p, ivec2 d) {
     if (IDS != IDS_OFF && texelFetch(sampleObjectImage, ivec3(p, k), 0).r != texel(objectImage, q) &&
         (IDS == IDS_ALWAYS || relative > DEPTH_SIGMA))
         return UNUSABLE;
-    float geometry = 0.0;
+    precise float geometry = 0.0;  // precise: differences of large logs are what weighs
     if (!emptyOwn) {
-        float apart = relative;
+        precise float apart = relative;
         if (!PLAIN_DEPTH && hasNormal(own.normal)) {
             const vec3 v = between(separation(p, offset, stepPx), own.depth, other.depth);
             apart = abs(dotInOrder(own.normal, v)) / own.depth;
         }
         const float cosine = dotInOrder(validNormal(own.normal), validNormal(other.normal));
-        const float turned = 1.0 - clamp(cosine, 0.0, 1.0);
+        precise float turned = 1.0 - clamp(cosine, 0.0, 1.0);
         geometry = MAX_METRIC ? greater(1.0 - cosine, apart) * SHARPNESS
                               : apart * apart * DEPTH + turned * turned * NORMAL;
     }
-    const float spatial = MAX_METRIC ? 0.0 : (stepPx.x * stepPx.x + stepPx.y * stepPx.y) * SPATIAL;
-    return greater(UNUSABLE, -(spatial + geometry));
+    precise float spatial = MAX_METRIC ? 0.0 : (stepPx.x * stepPx.x + stepPx.y * stepPx.y) * SPATIAL;
+    precise float logOfWeight = -(spatial + geometry);
+    return greater(UNUSABLE, logOfWeight);
 }
 // Colour of sub-sample k, from the pixel's own, by the shaded pixels around it. Logs are taken from the largest, so that
 // the sum is at least 1 however unlike all pixels are; without any usable one the pixel's own colour stands.

@@ -16,7 +16,7 @@
 //   10 K_MIN                  0.88     weight of the history where its luminance differs most, 0..1
 //   11 K_MAX                  0.97     and where it is the current colour's
 //   12 NEIGHBOURHOOD          0        of the box: 0 rounded, 1 3x3, 2 plus, 3 four taps
-//   13 CLIP_TARGET            0        history to the box: 0 its centre, 1 the mean, 2 the current colour; 3 clamp
+//   13 CLIP_TARGET            0        clipped toward 0 the box centre, 1 the mean, 2 the current colour; 3 clamped
 //   14 UNJITTER_COLOUR        1        step 1; 0: the sample as it is
 //   15 UNJITTER_NEIGHBOURHOOD 0        the box's colours, too
 //   16 UNJITTER_REPROJECTION  0        the motion, too; only without dilation

@@ -31,9 +31,9 @@ class Sraa : public Method {
     explicit Sraa(const Params& p) : args_(sraaArgs(p)) {}
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
-        const GeometryViews geometry(
-            frame, {.normals = true, .ids = args_.ids != SraaIds::off, .camera = !args_.plainDepth},
-            "sraa:distance=plane");
+        const GeometryViews geometry(frame,
+                                     {.normals = true, .ids = args_.ids != SraaIds::off, .camera = !args_.plainDepth},
+                                     "sraa:distance=plane");
         SraaArgs a = args_;
         a.color = view(frame.colorLinear), a.out = view(out), a.geometry = &geometry.args();
         layers_.clear();
