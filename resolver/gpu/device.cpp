@@ -100,6 +100,8 @@ std::string lacksOf(const vk::raii::PhysicalDevice& device, const vk::PhysicalDe
     const auto features = device.getFeatures();
     if (!features.shaderStorageImageWriteWithoutFormat) return "shaderStorageImageWriteWithoutFormat";
     if (!features.shaderStorageImageExtendedFormats) return "shaderStorageImageExtendedFormats";
+    if (properties.limits.maxComputeSharedMemorySize < 32768) return "32 KB of shared memory";
+    if (properties.limits.maxComputeWorkGroupInvocations < 256) return "workgroups of 256 invocations";
     for (const auto& family : device.getQueueFamilyProperties())
         if (family.queueFlags & vk::QueueFlagBits::eCompute) return {};
     return "a compute queue";

@@ -1,6 +1,27 @@
 #include "kernels/dispatch.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <vector>
+
 namespace aa {
+
+void parallelRows(int height, int grain, const std::function<void(int, int)>& rows) {
+    tbb::parallel_for(
+        tbb::blocked_range<int>(0, height, size_t(grain)), [&](const auto& r) { rows(r.begin(), r.end()); },
+        tbb::simple_partitioner{});
+}
+
+struct Scratch::Memory {
+    tbb::enumerable_thread_specific<std::vector<double>> rows;
+};
+Scratch::Scratch(int rows, int stride)
+    : memory_(new Memory{tbb::enumerable_thread_specific<std::vector<double>>(size_t(kRingMargin) +
+                                                                              size_t(rows) * size_t(stride))}) {}
+Scratch::~Scratch() = default;
+void* Scratch::local() { return memory_->rows.local().data(); }
 
 bool isaSupported(Isa isa) {
 #ifdef AA_SANITIZED

@@ -3,12 +3,9 @@
 // NAME.kernel.cpp is compiled once per instruction set (-march=x86-64-v2|v3|v4, AA_ARCH=v2|v3|v4) and exports one table
 // of RowKernels (kernels/table.h). All three instruction sets and both float precisions give the same bits.
 #pragma once
-#include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-
+#include <functional>
+#include <memory>
 #include <string_view>
-#include <vector>
 
 #include "kernels/table.h"
 
@@ -17,6 +14,9 @@ namespace aa {
 bool isaSupported(Isa isa);  // whether this processor runs it
 std::string_view name(Isa isa);
 
+// Blocks of `grain` rows on all threads of the caller's arena. TBB stands behind dispatch.cpp alone: its headers cost
+// each file that includes them as much to compile as all else.
+void parallelRows(int height, int grain, const std::function<void(int y0, int y1)>& rows);
 // Runs a row function over [0, height) in blocks of rows; the result cannot depend on the split.
 template <class Fn>
 void forRows(const Exec& exec, int height, const Fn& rows, int grain = 8) {
@@ -24,9 +24,7 @@ void forRows(const Exec& exec, int height, const Fn& rows, int grain = 8) {
         rows(0, height);
         return;
     }
-    tbb::parallel_for(
-        tbb::blocked_range<int>(0, height, size_t(grain)), [&](const auto& r) { rows(r.begin(), r.end()); },
-        tbb::simple_partitioner{});
+    parallelRows(height, grain, [&](int y0, int y1) { rows(y0, y1); });
 }
 // The form of a kernel that serves the precision asked for: fn(args, y0, y1).
 template <class Args>
@@ -44,11 +42,13 @@ void runKernel(const RowKernel<Args>& kernel, const Exec& exec, const Args& args
 // Working memory of a kernel's calls, one per thread: `rows` rows of a plane's stride in any precision.
 class Scratch {
   public:
-    Scratch(int rows, int stride) : memory_(size_t(kRingMargin) + size_t(rows) * size_t(stride)) {}
-    void* local() { return memory_.local().data(); }
+    Scratch(int rows, int stride);
+    ~Scratch();
+    void* local();
 
   private:
-    tbb::enumerable_thread_specific<std::vector<double>> memory_;
+    struct Memory;
+    std::unique_ptr<Memory> memory_;
 };
 
 }  // namespace aa

@@ -1,8 +1,8 @@
 // How far apart two surface points are: depth, normal, or SADP, the sum of absolute dot products [Reshetov 2012].
 //
-// The vector between two points is formed from the difference of their depths, which is exact for close points, and from
-// their distance on the image plane, never from the difference of two far positions: float keeps its direction at any
-// distance from the camera.
+// The vector between two points is formed from the difference of their depths, which is exact for close points, and
+// from their distance on the image plane, never from the difference of two far positions: float keeps its direction at
+// any distance from the camera.
 //
 // precise: what is compared must not depend on which products a driver fuses into sums.
 #ifndef AA_DISSIMILARITY
@@ -80,8 +80,8 @@ bool surfacesMayDiffer(SurfacePoint a, SurfacePoint b, Separation s, float limit
     return !(along2 < most2 && length2 >= coincident2 && hasNormal(a.normal) && hasNormal(b.normal));
 }
 
-// Whether two points belong to one surface [Salvi 2012]: their normals agree and one lies near the other's tangent plane.
-// Two backgrounds are one surface. Without normals on both sides only the depths are compared.
+// Whether two points belong to one surface [Salvi 2012]: their normals agree and one lies near the other's tangent
+// plane. Two backgrounds are one surface. Without normals on both sides only the depths are compared.
 const float SAME_SURFACE_COSINE = 0.95, SAME_SURFACE_DISTANCE = 0.01;  // the latter relative to the depth
 bool sameSurface(SurfacePoint a, SurfacePoint b, Separation s, float leastCosine, float mostDistance) {
     const bool emptyA = isBackground(a.depth), emptyB = isBackground(b.depth);

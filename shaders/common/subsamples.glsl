@@ -1,8 +1,8 @@
-// What every shader binds that reads the geometry of sub-samples, and what it knows of its frame. A shader that includes
-// this adds its own bindings from 10 on and its own constants from 10 on.
+// What every shader binds that reads the geometry of sub-samples, and what it knows of its frame. A shader that
+// includes this adds its own bindings from 10 on and its own constants from 10 on.
 //
-// The centre sample of a pixel lies at its centre plus the frame's jitter; sub-sample k lies offsetsPx[k] beside it, as a
-// GPU jitters all samples of a pixel together. Functions take a sample by its number: CENTRE, or 0 and up.
+// The centre sample of a pixel lies at its centre plus the frame's jitter; sub-sample k lies offsetsPx[k] beside it, as
+// a GPU jitters all samples of a pixel together. Functions take a sample by its number: CENTRE, or 0 and up.
 //
 //   binding                           format           holds (where a method reads it: any texture otherwise)
 //   0  colourImage        texture     RGBA 16F / 32F   centre samples: linear BT.709, >= 0

@@ -1,4 +1,5 @@
-// dmsaa: deferred MSAA filter. The colour is fetched beside the pixel centre, toward the sub-samples whose depth differs.
+// dmsaa: deferred MSAA filter. The colour is fetched beside the pixel centre, toward the sub-samples whose depth
+// differs.
 //
 //  1. shift = sum of the offsets of the differing sub-samples, scaled (VECTOR), at most 1 px on each axis
 //  2. result = colour at the centre + shift
@@ -8,8 +9,8 @@
 // are read.
 //
 //   constant             default   unit
-//   10 VECTOR            0                           shift by the sum: 0 per sample, 1 per differing sample, 2 as long as
-//                                                    their share
+//   10 VECTOR            0                           shift by the sum: 0 per sample, 1 per differing sample, 2 as
+//                                                    long as their share
 //   11 DEPTH_THRESHOLD   0.02      of the nearer's   least depth difference
 //   12 GAIN              1                           factor on the shift
 #version 460

@@ -11,9 +11,9 @@
 //
 //   binding                      format           holds
 //   0  colourImage     texture   RGBA 16F / 32F   centre samples
-//   1  edgeImage       texture   RG 32F           signed distance along x or along y, px, positive to the right or down,
-//                                                 from the pixel centre to the nearest edge of the triangle seen there;
-//                                                 0.5 or more: the edge does not cut this pixel
+//   1  edgeImage       texture   RG 32F           signed distance along x or along y, px, positive to the right or
+//                                                 down, from the pixel centre to the nearest edge of the triangle
+//                                                 seen there; 0.5 or more: the edge does not cut this pixel
 //   2  resultImage     image     RGBA 16F / 32F   the blend
 //
 //   constant                default   gbaa   d2e

@@ -1,5 +1,5 @@
-// gpaa: geometric post-process anti-aliasing. Every edge of the geometry is drawn over the finished picture as a line of
-// one pixel, and blends each pixel that it crosses with the neighbour beyond it.
+// gpaa: geometric post-process anti-aliasing. Every edge of the geometry is drawn over the finished picture as a line
+// of one pixel, and blends each pixel that it crosses with the neighbour beyond it.
 //
 //  1. gpaa_draw.comp: which segment each pixel follows
 //  2. s = distance from the pixel centre to the segment, along y for a mostly horizontal one and along x otherwise

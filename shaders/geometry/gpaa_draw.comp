@@ -5,8 +5,8 @@
 //   axis     across the segment: y for a mostly horizontal one, x otherwise
 //   s        distance along that axis from the pixel centre to the segment, px; touched where |s| < 0.5
 //   test     a segment behind the surface that the pixel shows is hidden (DEPTH_TEST)
-// Of several segments the last in the list wins (KEEP_NEAREST off), or the nearest to the centre, the first of equals: a
-// first dispatch with MARK_NEAREST finds how near, a second one which. Atomic maxima: the order of the work does not
+// Of several segments the last in the list wins (KEEP_NEAREST off), or the nearest to the centre, the first of equals:
+// a first dispatch with MARK_NEAREST finds how near, a second one which. Atomic maxima: the order of the work does not
 // matter.
 //
 // Source: [Persson 2011] (docs/sources.md).
@@ -16,7 +16,7 @@
 //   1  Segments        buffer    {float x0, y0, z0, x1, y1, z1}   px in the un-jittered picture, y down; view z
 //   2  winnerImage     image     R 32UI    number of the segment + 1, or with KEEP_NEAREST all its bits inverted; 0 at
 //                                          first: none
-//   3  nearestImage    image     R 32UI    bits of the largest 0.5 - |s|; 0 at first (KEEP_NEAREST; otherwise any image)
+//   3  nearestImage    image     R 32UI    bits of the largest 0.5 - |s|; 0 at first (KEEP_NEAREST; any otherwise)
 //
 //   constant            default
 //   10 DEPTH_TEST       1        0 off, 1 hidden behind the pixel, 2 behind the pixel and its neighbour beyond the edge
@@ -88,8 +88,8 @@ void main() {
     const vec2 a = vec2(s.x0, s.y0) - frame.jitter, b = vec2(s.x1, s.y1) - frame.jitter;
     if (a == b || !isFinite(a.x) || !isFinite(a.y) || !isFinite(b.x) || !isFinite(b.y)) return;
 
-    // Along the major axis pixel by pixel, and a pixel beyond the ends; at each the nearest row or column and those beside
-    // it. More of all that where coordinates are so large that they round.
+    // Along the major axis pixel by pixel, and a pixel beyond the ends; at each the nearest row or column and those
+    // beside it. More of all that where coordinates are so large that they round.
     const bool horizontal = abs(s.x1 - s.x0) > abs(s.y1 - s.y0);
     const vec2 from = horizontal ? a : a.yx, to = horizontal ? b : b.yx;
     const vec2 size = vec2(horizontal ? frame.size : frame.size.yx);
@@ -100,7 +100,8 @@ void main() {
     const float slope = (to.y - from.y) / (to.x - from.x);
     for (int major = first + int(gl_LocalInvocationID.y); major <= last; major += 8) {
         const float nearest = floor(from.y + (float(major) + 0.5 - from.x) * slope);
-        const int low = int(clamp(nearest - margin, 0.0, size.y)), high = int(clamp(nearest + margin, -1.0, size.y - 1.0));
+        const int low = int(clamp(nearest - margin, 0.0, size.y));
+        const int high = int(clamp(nearest + margin, -1.0, size.y - 1.0));
         for (int minor = low; minor <= high; minor++)
             touch(s, number, horizontal ? ivec2(major, minor) : ivec2(minor, major));
     }

@@ -1,6 +1,6 @@
-// msaa, csaa: multisampling and coverage sampling, emulated from sub-sample geometry. Every surface in a pixel is shaded
-// once: the centre sample's surface has the pixel's colour, any other the colour of its sub-sample nearest to the pixel
-// centre.
+// msaa, csaa: multisampling and coverage sampling, emulated from sub-sample geometry. Every surface in a pixel is
+// shaded once: the centre sample's surface has the pixel's colour, any other the colour of its sub-sample nearest to
+// the pixel centre.
 //
 //  1. a pixel of one surface keeps its colour
 //  2. group the slots (the sub-samples that hold a colour) into surfaces, by distance from the pixel centre
@@ -18,8 +18,8 @@
 //   binding                             format           holds
 //   10 keptImage            texture     RGBA 16F / 32F   what a pixel of one surface keeps: the colours, or displayed
 //                                                        values (ENCODED)
-//   11 Slots                buffer      {int byDistance, nearest}   byDistance: of the i-th entry, the i-th slot from the
-//                                                        pixel centre; nearest: of sub-sample i, the slot
+//   11 Slots                buffer      {int byDistance, nearest}   byDistance: the i-th slot from the pixel centre, in
+//                                                        entry i; nearest: the slot nearest to sub-sample i
 //   12 surfaceColourImage   image       RGBA 16F / 32F   FILTERED: the result, one layer per sub-sample; otherwise any
 //                                                        image of several layers
 //
@@ -27,8 +27,8 @@
 //   10 SLOTS             8         4          sub-samples that hold a colour
 //   11 SLOT_MASK         0xff      0x0f       which: bit k is sub-sample k
 //   12 BY_GEOMETRY       true      true       surfaces are objects split by geometry, not whole objects
-//   13 CENTROID          false     false      shade a partly covered surface at a covered sub-sample even if it covers the
-//                                             centre
+//   13 CENTROID          false     false      shade a partly covered surface at a covered sub-sample even if it covers
+//                                             the centre
 //   14 ENCODED           false     false      average displayed values
 //   15 INVERSE_LUMINANCE false     false      weigh colours by 1 / (1 + luminance)
 //   16 FILTERED          false     false      no mean: surfaceColourImage

@@ -1,5 +1,5 @@
-// rsaa: resampling anti-aliasing. One shade per pixel, several geometry samples; the pixel's colour is fetched beside its
-// centre, at an offset learned for the pattern of sub-samples that lie on another surface.
+// rsaa: resampling anti-aliasing. One shade per pixel, several geometry samples; the pixel's colour is fetched beside
+// its centre, at an offset learned for the pattern of sub-samples that lie on another surface.
 //
 //  1. measure: dissimilarity of every sub-sample to the centre sample (common/dissimilarity.glsl)
 //  2. cluster: similar or different, by one k-means iteration from the centroids 0 and the largest dissimilarity; all
@@ -15,8 +15,8 @@
 //   10 maskImage    texture     R 32UI    MASK_PASS: bit k = 1: sub-sample k is on the centre sample's surface
 //   11 Shifts       buffer      {float u, v}   the learned offset of each of the 2^SAMPLES masks, px, y down
 //                                         (resolver/methods/geometry/rsaa_lut_data.cpp)
-//   12 Neighbours   buffer      {int x1, y1, x2, y2, x3, y3, count}   of each sub-sample: the pixels, from its own, that
-//                                         may show its surface
+//   12 Neighbours   buffer      {int x1, y1, x2, y2, x3, y3, count}   of each sub-sample: the pixels, from its own,
+//                                         that may show its surface
 //
 //   constant             default
 //   10 MEASURE           0         DISSIMILARITY_...
@@ -95,8 +95,8 @@ uint cluster(ivec2 p) {
 }
 
 // ---- tune -----------------------------------------------------------------------------------------------------------
-// Keeps a different sub-sample only when a neighbouring pixel shows its surface: else resampling toward it would fetch a
-// third surface.
+// Keeps a different sub-sample only when a neighbouring pixel shows its surface: else resampling toward it would fetch
+// a third surface.
 bool shownByNeighbour(ivec2 p, int k) {
     float limit = LEAST;
     if (TUNE_ADAPTIVE) limit = greater(limit, fromCentre(p, k) * 0.5);

@@ -3,7 +3,8 @@
 //
 // Weight of pixel q for sub-sample i:
 //   product  exp(-|xq - xi|^2 / 2 sx^2) exp(-dz^2 / 2 sz^2) exp(-dn^2 / 2 sn^2), dz = distance of q's point from i's
-//            tangent plane relative to i's depth (PLAIN_DEPTH: relative depth difference), dn = 1 - cosine of the normals
+//            tangent plane relative to i's depth (PLAIN_DEPTH: relative depth difference), dn = 1 - cosine of the
+//            normals
 //   max      exp(-T max(1 - cosine, dz))
 // Surface and background share nothing; nor do objects, by IDS. Pixels outside the picture are left out; a sub-sample
 // without any usable pixel takes the pixel's own colour.
@@ -70,8 +71,8 @@ float logWeight(SurfacePoint own, int k, ivec2 p, ivec2 d) {
     precise float logOfWeight = -(spatial + geometry);
     return greater(UNUSABLE, logOfWeight);
 }
-// Colour of sub-sample k, from the pixel's own, by the shaded pixels around it. Logs are taken from the largest, so that
-// the sum is at least 1 however unlike all pixels are; without any usable one the pixel's own colour stands.
+// Colour of sub-sample k, from the pixel's own, by the shaded pixels around it. Logs are taken from the largest, so
+// that the sum is at least 1 however unlike all pixels are; without any usable one the pixel's own colour stands.
 vec3 reconstruct(int k, ivec2 p, vec3 centre) {
     const SurfacePoint own = surfacePoint(p, k);
     float logs[MOST_TAPS], largest = UNUSABLE;

@@ -1,9 +1,9 @@
 // resolve: a reconstruction filter over the shaded sub-samples of the pixel and its neighbours. msaa and csaa end with
 // it, where their samples are not simply averaged.
 //
-// out = sum w c / sum w over the filter's taps; colours are clamped to >= 0 before, the result after. The host makes the
-// taps (resolver/methods/reference/resolve_filters.h, resolveTaps): box, tent, Gaussian, cubics, Blackman-Harris, sinc,
-// Lanczos and quincunx differ in nothing else.
+// out = sum w c / sum w over the filter's taps; colours are clamped to >= 0 before, the result after. The host makes
+// the taps (resolver/methods/reference/resolve_filters.h, resolveTaps): box, tent, Gaussian, cubics, Blackman-Harris,
+// sinc, Lanczos and quincunx differ in nothing else.
 //
 // Source: [Pettineo 2012] (docs/sources.md). Colours: linear BT.709, or displayed values (CLAMP_TO_DISPLAY).
 //

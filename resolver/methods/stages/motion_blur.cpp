@@ -30,7 +30,7 @@ class MotionBlurStage : public Stage {
         if (length > longest) vx *= longest / length, vy *= longest / length;
         // Not (length >= 2): NaN, and infinities, whose scaled components are NaN, keep their pixel.
         const int n = length >= 2 && std::isfinite(vx) && std::isfinite(vy)
-                          ? std::min(int(std::min(length, longest)), kMaxSamples)
+                          ? std::clamp(int(std::min(length, longest)), 1, kMaxSamples)
                           : 1;
         float sum[3];
         for (size_t c = 0; c < 3; c++) sum[c] = image.c[c].at(x, y);

@@ -27,5 +27,11 @@ TEST(MotionBlur, RestAndBrokenMotionKeepThePixel) {
         EXPECT_TRUE(m.out.samePixels(f.colorLinear)) << v;
     }
 }
+TEST(MotionBlur, APictureOfOnePixelKeepsIt) {  // half of it is shorter than one step
+    RunningMethod m = running("taaSimplest+motionBlur=1", 1, 1);
+    const Frame f = temporalFrame(0, 1, 1, noisePicture(3), {7, 0});
+    m.resolve(f, {}, {});
+    EXPECT_TRUE(m.out.samePixels(f.colorLinear));
+}
 }  // namespace
 }  // namespace aa
