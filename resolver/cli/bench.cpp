@@ -1,3 +1,5 @@
+#include "cli/bench.h"
+
 #include <time.h>
 
 #include <algorithm>
@@ -7,7 +9,6 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "cli/bench.h"
 #include "image/error.h"
 #include "methods/driver.h"
 

@@ -75,10 +75,9 @@ Row time(const MethodSpec& spec, const Frames& all, gpu::Session& session, int r
 void printHead(const gpu::Session& session, const BenchOptions& o) {
     std::printf("%s, %s, %d frames after %d to warm up; bytes: every image that a pass binds, once\n",
                 session.device().info().name.c_str(), session.fast() ? "fast" : "exact", o.runs, kWarmUp);
-    if (session.device().info().isCpu())
-        std::puts("software on the processor: these are no card's times");
-    std::printf("%-28s %10s %9s %17s %9s %9s %7s %9s  %s\n", "method", "size", "ms", "quartiles", "B/px read", "written",
-                "GB/s", "of copy", "state MB");
+    if (session.device().info().isCpu()) std::puts("software on the processor: these are no card's times");
+    std::printf("%-28s %10s %9s %17s %9s %9s %7s %9s  %s\n", "method", "size", "ms", "quartiles", "B/px read",
+                "written", "GB/s", "of copy", "state MB");
 }
 void print(const Row& r, double copyRate) {
     double read = 0, written = 0;
@@ -94,7 +93,10 @@ void print(const Row& r, double copyRate) {
     std::fflush(stdout);
 }
 nlohmann::ordered_json json(const Spread& s) {
-    return {{"medianMs", 1e3 * s.median}, {"lowQuartileMs", 1e3 * s.low}, {"highQuartileMs", 1e3 * s.high}, {"minMs", 1e3 * s.least}};
+    return {{"medianMs", 1e3 * s.median},
+            {"lowQuartileMs", 1e3 * s.low},
+            {"highQuartileMs", 1e3 * s.high},
+            {"minMs", 1e3 * s.least}};
 }
 nlohmann::ordered_json json(const Row& r, double copyRate) {
     nlohmann::ordered_json j = {{"method", r.text}, {"size", {r.width, r.height}}, {"time", json(r.total)}};
@@ -114,12 +116,9 @@ void benchDevice(const BenchOptions& o, const std::vector<MethodSpec>& methods) 
     if (o.markdown) throw UsageError("--markdown: no effect with --device; tests/gpu/page.py makes docs/gpu.md");
     const auto session = o.work.session();
     const gpu::DeviceInfo& info = session->device().info();
-    nlohmann::ordered_json all = {{"device", info.name},
-                                  {"deviceKind", info.kind},
-                                  {"driver", info.driver},
-                                  {"precision", session->fast() ? "fast" : "exact"},
-                                  {"frames", o.runs},
-                                  {"rows", nlohmann::ordered_json::array()}};
+    nlohmann::ordered_json all = {{"device", info.name},   {"deviceKind", info.kind},
+                                  {"driver", info.driver}, {"precision", session->fast() ? "fast" : "exact"},
+                                  {"frames", o.runs},      {"rows", nlohmann::ordered_json::array()}};
     if (!o.json) printHead(*session, o);
     const MethodSpec copy = parseMethod("noaa");
     std::vector<MethodSpec> both = methods;

@@ -49,8 +49,7 @@ void filter(const Options& o) {
     const Frame frame = frameOf(image, display, exec);
     const ShotInfo info{.width = frame.width, .height = frame.height, .isStatic = true};
     const auto session = o.work.session();
-    if (session && !o.debugLayers.empty())
-        throw UsageError("--debug-layers: the shaders keep none; use --device cpu");
+    if (session && !o.debugLayers.empty()) throw UsageError("--debug-layers: the shaders keep none; use --device cpu");
     RunningMethod running(spec, session ? gpu::create(*session, spec, info) : spec.create(info));
     running.method->keepDebugLayers = !o.debugLayers.empty();
     double seconds = 0;

@@ -102,6 +102,7 @@ std::string lacksOf(const vk::raii::PhysicalDevice& device, const vk::PhysicalDe
     if (!features.shaderStorageImageExtendedFormats) return "shaderStorageImageExtendedFormats";
     if (properties.limits.maxComputeSharedMemorySize < 32768) return "32 KB of shared memory";
     if (properties.limits.maxComputeWorkGroupInvocations < 256) return "workgroups of 256 invocations";
+    if (properties.limits.maxPerStageDescriptorStorageImages < 8) return "8 storage images in a shader";
     for (const auto& family : device.getQueueFamilyProperties())
         if (family.queueFlags & vk::QueueFlagBits::eCompute) return {};
     return "a compute queue";
@@ -296,11 +297,15 @@ std::unique_ptr<DeviceState> open(std::string_view text, DeviceOptions options) 
     s->memory = s->physical.getMemoryProperties();
     s->limits = s->physical.getProperties().limits;
     if (options.validate) {
-        using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
-        using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
-        s->messenger = {s->loader.instance,
-                        vk::DebugUtilsMessengerCreateInfoEXT({}, Severity::eWarning | Severity::eError,
-                                                             Type::eValidation, onComplaint, s.get())};
+        // The C structure: later headers take other types of function in the C++ one.
+        VkDebugUtilsMessengerCreateInfoEXT wanted{};
+        wanted.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
+        wanted.messageSeverity =
+            VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+        wanted.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
+        wanted.pfnUserCallback = onComplaint;
+        wanted.pUserData = s.get();
+        s->messenger = {s->loader.instance, vk::DebugUtilsMessengerCreateInfoEXT(wanted)};
     }
     s->guarded(
         [&] {
@@ -782,9 +787,10 @@ void Recorder::wait() {
                     vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
                 const uint64_t mask = s.d.timestampBits >= 64 ? ~uint64_t(0) : (uint64_t(1) << s.d.timestampBits) - 1;
                 for (size_t i = 0; i < s.timed.size(); i++)
-                    s.times.push_back({s.timed[i].shader, 1e-9 * double(s.d.limits.timestampPeriod) *
-                                                       double((ticks[2 * i + 1] - ticks[2 * i]) & mask),
-                                       s.timed[i].bytesRead, s.timed[i].bytesWritten});
+                    s.times.push_back(
+                        {s.timed[i].shader,
+                         1e-9 * double(s.d.limits.timestampPeriod) * double((ticks[2 * i + 1] - ticks[2 * i]) & mask),
+                         s.timed[i].bytesRead, s.timed[i].bytesWritten});
             }
         },
         "its work");

@@ -31,8 +31,7 @@ TEST_F(GpuDevice, ImagesComeBackAsTheyWentUp) {
         for (size_t i = 0; i < sent.size(); i++) sent[i] = std::byte(i * 7 % 60);  // no NaN in any format
         Recorder recorder(*device);
         recorder.upload(image, [&](std::byte* to) { std::memcpy(to, sent.data(), sent.size()); });
-        recorder.download(image,
-                          [&](const std::byte* from) { found.assign(from, from + ptrdiff_t(image.bytes())); });
+        recorder.download(image, [&](const std::byte* from) { found.assign(from, from + ptrdiff_t(image.bytes())); });
         recorder.run();
         EXPECT_EQ(found, sent) << int(format);
     }

@@ -128,21 +128,35 @@ bool Inputs::offers(Input which) const {
     const Frame& f = *frame_;
     const auto all = [&](auto member) { return !f.subSamples.empty() && !(f.subSamples[0].*member).empty(); };
     switch (which) {
-        case Input::colour: return !f.colorLinear.empty();
-        case Input::encoded: return !f.colorEncoded.empty();
-        case Input::albedo: return !f.albedoLinear.empty();
-        case Input::albedoEncoded: return !f.albedoEncoded.empty();
-        case Input::depth: return !f.depthView.empty();
-        case Input::normal: return !f.normalWorld.empty();
-        case Input::objectId: return !f.objectId.empty();
-        case Input::mask: return !f.subSampleMask.empty();
-        case Input::motion: return !f.motionXPx.empty();
-        case Input::edges: return !f.edgeXPx.empty();
+        case Input::colour:
+            return !f.colorLinear.empty();
+        case Input::encoded:
+            return !f.colorEncoded.empty();
+        case Input::albedo:
+            return !f.albedoLinear.empty();
+        case Input::albedoEncoded:
+            return !f.albedoEncoded.empty();
+        case Input::depth:
+            return !f.depthView.empty();
+        case Input::normal:
+            return !f.normalWorld.empty();
+        case Input::objectId:
+            return !f.objectId.empty();
+        case Input::mask:
+            return !f.subSampleMask.empty();
+        case Input::motion:
+            return !f.motionXPx.empty();
+        case Input::edges:
+            return !f.edgeXPx.empty();
         case Input::subColour:
-        case Input::subEncoded: return all(&SubSample::colorLinear);
-        case Input::subNormal: return all(&SubSample::normalWorld);
-        case Input::subDepth: return all(&SubSample::depthView);
-        case Input::subId: return all(&SubSample::objectId);
+        case Input::subEncoded:
+            return all(&SubSample::colorLinear);
+        case Input::subNormal:
+            return all(&SubSample::normalWorld);
+        case Input::subDepth:
+            return all(&SubSample::depthView);
+        case Input::subId:
+            return all(&SubSample::objectId);
     }
     return false;
 }

@@ -11,9 +11,7 @@
 namespace aa::gpu {
 
 Session::Session(const Settings& settings)
-    : settings_(settings),
-      device_(settings.device, {settings.validate, settings.shaders}),
-      uploads_(device_) {
+    : settings_(settings), device_(settings.device, {settings.validate, settings.shaders}), uploads_(device_) {
     for (auto& i : inputs_) i = std::make_unique<Inputs>(*this);
 }
 Session::~Session() = default;

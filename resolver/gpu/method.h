@@ -86,7 +86,7 @@ class Session {
     Settings settings_;
     Device device_;
     std::array<std::unique_ptr<Inputs>, kShared> inputs_;  // the latest first
-    std::set<Input> asked_;                                 // of frames that are done
+    std::set<Input> asked_;                                // of frames that are done
     std::mutex mutex_;
     Recorder uploads_;
 };

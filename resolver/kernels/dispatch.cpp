@@ -18,8 +18,8 @@ struct Scratch::Memory {
     tbb::enumerable_thread_specific<std::vector<double>> rows;
 };
 Scratch::Scratch(int rows, int stride)
-    : memory_(new Memory{tbb::enumerable_thread_specific<std::vector<double>>(size_t(kRingMargin) +
-                                                                              size_t(rows) * size_t(stride))}) {}
+    : memory_(new Memory{
+          tbb::enumerable_thread_specific<std::vector<double>>(size_t(kRingMargin) + size_t(rows) * size_t(stride))}) {}
 Scratch::~Scratch() = default;
 void* Scratch::local() { return memory_->rows.local().data(); }
 

@@ -31,7 +31,7 @@
 //   segmentsPerRow               of workgroups: a multiple of 8
 //   perspective         0 or 1   1: 1 / depth is linear along a segment; 0: depth is
 //
-// Eight invocations share a segment: (segment, share) = (x + segmentsPerRow * row of workgroups, y in the workgroup).
+// Workgroups: segmentsPerRow / 8 x ceil(count / segmentsPerRow). Eight invocations, those of one x, share a segment.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "../common/edge_segment.glsl"

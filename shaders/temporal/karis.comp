@@ -67,7 +67,7 @@ float filterWeight(ivec2 offset, vec3 c) {
 // Public UE4: speed raises the current colour's weight to 0.2; nearly equal luminance takes the current colour.
 float karisWeight(float alpha, vec2 motion, float current, float history) {
     const float speed = sqrt(motion.x * motion.x + motion.y * motion.y);
-    const float moving = mix(alpha, 0.2, clamp(speed * (1.0 / 40.0), 0.0, 1.0));
+    const float moving = lerpExact(alpha, 0.2, clamp(speed * (1.0 / 40.0), 0.0, 1.0));
     return max(moving, clamp(history * 0.01 / max(abs(current - history), 1e-4), 0.0, 1.0));
 }
 // Falcor: less of the current colour where history lies near the end of a wide box.

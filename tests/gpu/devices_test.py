@@ -15,7 +15,18 @@ class Devices(GpuTest):
         self.synth("moving", self.shot, (16, 12), 2)
 
     def run_on(self, device: str, *more: object) -> tuple[object, ...]:
-        return ("run", self.shot, "-m", "karis", "-o", self.folder / "out", "-q", *more, "--device", device)
+        return (
+            "run",
+            self.shot,
+            "-m",
+            "karis",
+            "-o",
+            self.folder / "out",
+            "-q",
+            *more,
+            "--device",
+            device,
+        )
 
     def test_chosen_by_number_and_name(self) -> None:
         devices = json.loads(self.aaresolve("devices", "--json").stdout)

@@ -37,7 +37,9 @@ class Translate(GpuTest):
                     run("spirv-cross", spirv, "--hlsl", "--shader-model", 60, "--output", hlsl), ""
                 )
                 self.assertEqual(
-                    run("glslangValidator", "-D", "-V", "-S", "comp", "-e", "main", hlsl, "-o", back),
+                    run(
+                        "glslangValidator", "-D", "-V", "-S", "comp", "-e", "main", hlsl, "-o", back
+                    ),
                     "",
                 )
                 self.assertEqual(
