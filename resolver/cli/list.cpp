@@ -135,6 +135,9 @@ nlohmann::ordered_json describe(const MethodDescriptor& m) {
             } catch (const UsageError&) {  // a choice that has no effect at the defaults
             }
     if (!m.patterns.empty()) j["patterns"] = m.patterns;
+    for (const PublishedMemory& p : m.publishedMemory)
+        j["publishedMemory"].push_back(
+            {{"subSamples", p.subSamples}, {"megabytesAt1080p", p.megabytes}, {"source", p.source}});
     j["parameters"] = nlohmann::ordered_json::array();
     for (const auto& p : m.params) {
         nlohmann::ordered_json q = {{"name", p.name}, {"type", name(p.type)}};

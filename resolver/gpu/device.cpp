@@ -374,14 +374,14 @@ Image::Image(const Device& of, int width, int height, Format format, int layers)
             state_->image = {
                 d.device,
                 vk::ImageCreateInfo({}, vk::ImageType::e2D, vulkan(format), {uint32_t(width), uint32_t(height), 1}, 1,
-                                    uint32_t(layers), vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal,
+                                    uint32_t(this->layers()), vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal,
                                     Usage::eSampled | Usage::eStorage | Usage::eTransferSrc | Usage::eTransferDst)};
             state_->memory =
                 d.allocate(state_->image.getMemoryRequirements(), vk::MemoryPropertyFlagBits::eDeviceLocal);
             state_->image.bindMemory(*state_->memory, 0);
             state_->view = {d.device,
                             vk::ImageViewCreateInfo({}, *state_->image,
-                                                    layers > 1 ? vk::ImageViewType::e2DArray : vk::ImageViewType::e2D,
+                                                    layers > 0 ? vk::ImageViewType::e2DArray : vk::ImageViewType::e2D,
                                                     vulkan(format), {}, allLayers())};
             d.now([&](const vk::raii::CommandBuffer& c) {
                 c.pipelineBarrier(

@@ -47,22 +47,24 @@ class Device;
 class Image {
   public:
     Image();
-    Image(const Device& device, int width, int height, Format format, int layers = 1);
+    // `layers` 0: a picture, which shaders see as image2D or sampler2D; else an array of so many (image2DArray ...).
+    Image(const Device& device, int width, int height, Format format, int layers = 0);
     Image(Image&&) noexcept;
     Image& operator=(Image&&) noexcept;
     ~Image();
     bool empty() const { return !state_; }
     int width() const { return width_; }
     int height() const { return height_; }
-    int layers() const { return layers_; }
+    int layers() const { return layers_ > 0 ? layers_ : 1; }
+    bool isArray() const { return layers_ > 0; }
     Format format() const { return format_; }
-    size_t bytes() const { return size_t(width_) * size_t(height_) * size_t(layers_) * bytesPerTexel(format_); }
+    size_t bytes() const { return size_t(width_) * size_t(height_) * size_t(layers()) * bytesPerTexel(format_); }
     struct State;
     const State& state() const { return *state_; }
 
   private:
     std::unique_ptr<State> state_;
-    int width_ = 0, height_ = 0, layers_ = 1;
+    int width_ = 0, height_ = 0, layers_ = 0;
     Format format_ = Format::rgba32f;
 };
 

@@ -169,11 +169,13 @@ const Image& Inputs::get(Input which, Recorder& recorder) {
     std::vector<Rgb> converted;
     const auto planes = planesOf(f, which, converted);
     const auto ids = planes.empty() ? idsOf(f, which) : std::vector<const PlaneU*>{};
+    const bool array = which == Input::subColour || which == Input::subEncoded || which == Input::subNormal ||
+                       which == Input::subDepth || which == Input::subId;
     const size_t layers = planes.empty() ? ids.size() : planes.size();
     const Format format = formatOf(which, session_);
     if (image.width() != f.width || image.height() != f.height || image.layers() != int(layers) ||
         image.format() != format)
-        image = Image(session_.device(), f.width, f.height, format, int(layers));
+        image = Image(session_.device(), f.width, f.height, format, array ? int(layers) : 0);
     const size_t bytes = image.bytes() / layers;
     recorder.upload(image, [&](std::byte* to) {
         for (size_t i = 0; i < layers; i++, to += bytes)

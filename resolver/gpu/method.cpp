@@ -75,7 +75,7 @@ const Image& GpuMethod::recordFrame(const Frame& frame) {
     Current current(*inputs, recorder_);
     fitted(out_, frame.width, frame.height, session_.colour());
     record(current, out_);
-    const Image* shown = &out_;
+    const Image* shown = shownImage() ? shownImage() : &out_;
     for (const auto& stage : stages_) shown = &stage->record(current, *shown, rejectionImage());
     return *shown;
 }
@@ -87,9 +87,9 @@ const std::vector<PassTime>& GpuMethod::run(const Frame& frame) {
 void GpuMethod::resolve(const Frame& frame, const Exec&, Rgb& out) {
     const Image& shown = recordFrame(frame);
     if (out.width() != frame.width || out.height() != frame.height) out = Rgb(frame.width, frame.height);
-    recorder_.download(shown, [&](const std::byte* texels) {
+    recorder_.download(shown, [&, format = shown.format()](const std::byte* texels) {
         PlaneF* const planes[] = {&out.c[0], &out.c[1], &out.c[2]};
-        session_.fast() ? planar<half>(texels, 4, planes) : planar<float>(texels, 4, planes);
+        format == Format::rgba16f ? planar<half>(texels, 4, planes) : planar<float>(texels, 4, planes);
     });
     if (const Image* rejection = keepRejection ? rejectionImage() : nullptr) {
         if (rejection_.width() != frame.width || rejection_.height() != frame.height)
@@ -109,7 +109,8 @@ std::optional<double> GpuMethod::deviceSeconds() const {
     return sum;
 }
 Image& GpuMethod::fitted(Image& image, int width, int height, Format format, int layers) {
-    if (image.width() == width && image.height() == height && image.layers() == layers && image.format() == format)
+    if (image.width() == width && image.height() == height && image.format() == format &&
+        image.isArray() == (layers > 0) && image.layers() == std::max(layers, 1))
         return image;
     if (!image.empty()) bytes_ -= image.bytes();
     image = Image(session_.device(), width, height, format, layers);

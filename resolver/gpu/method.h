@@ -137,11 +137,13 @@ class GpuMethod : public Method {
   protected:
     // Where history was not used (Rejection), R32F; written by methods that have one when keepRejection is set.
     virtual const Image* rejectionImage() const { return nullptr; }
+    // After record(): the image that is shown, where it is another than `out`.
+    virtual const Image* shownImage() const { return nullptr; }
 
     const Params& params() const { return params_; }
     Session& session() const { return session_; }
     // An image of this size that the method keeps; made anew, of zeros, where it has another.
-    Image& fitted(Image& image, int width, int height, Format format, int layers = 1);
+    Image& fitted(Image& image, int width, int height, Format format, int layers = 0);
     Buffer& fitted(Buffer& buffer, size_t bytes);
 
   private:

@@ -51,6 +51,13 @@ class Method {
 
 inline constexpr int kAnyReachPx = -1;
 
+// Memory beside the picture that a published GPU implementation reports at 1920 x 1080.
+struct PublishedMemory {
+    int subSamples;  // per pixel; 0: it does not depend on them
+    double megabytes;
+    std::string_view source;
+};
+
 struct MethodDescriptor {
     std::string_view id, title, family;  // family: reference, spatial, geometry, temporal
     std::string_view summary;            // one sentence
@@ -76,6 +83,7 @@ struct MethodDescriptor {
     int reachPx = 0;
     // Sub-sample patterns (shot/patterns.h) that serve the method, the best first; empty: any.
     std::vector<std::string_view> patterns = {};
+    std::vector<PublishedMemory> publishedMemory = {};
     CodePlace writtenAt = {};  // the file of this descriptor: leave it out, the compiler fills it
 };
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "image/png.h"
+#include "methods/method.h"
 #include "report/canvas.h"
 #include "report/caption.h"
 #include "report/colour_map.h"
@@ -128,6 +129,11 @@ std::string reportHtml(const RunResults& run, const std::vector<Pictures>& pictu
     for (const PassInfo& p : allPasses())  // colour is there without any method
         if (p.pass != Pass::color)
             data["passBytes"][std::string(p.name)] = bytesPerPixel(p.pass, size_t(run.subSamples));
+    data["publishedMemory"] = json::object();
+    for (const MethodDescriptor& m : registry())
+        for (const PublishedMemory& p : m.publishedMemory)
+            if (p.subSamples == 0 || p.subSamples == run.subSamples)
+                data["publishedMemory"][std::string(m.id)] = {{"megabytes", p.megabytes}, {"source", p.source}};
     data["pictures"] = json::array();
     size_t bytes = 0, last = 0;
     for (const Pictures& p : pictures) {

@@ -18,13 +18,13 @@ namespace aa {
 struct FrameResult {
     int frame = 0;
     double seconds = 0;                       // of this resolve on the processor; 0: it did not run there
-    std::optional<double> deviceSeconds{};    // on RunResults::device, by its own clock
     std::optional<FrameMetrics> metrics;      // only when the frame has ground truth
     bool judged = true;                       // counts in the pooled figures; of a static shot only the last frame does
     std::string image;                        // relative path of the written image; empty when none was
     std::optional<TemporalFrame> temporal{};  // of a sequence, after the warm-up
     // Squared error where this method, or the one that it fills, rejected its history; not of a frame without history.
     std::optional<FrameSum> rejected{};
+    std::optional<double> deviceSeconds{};  // on RunResults::device, by its own clock
 };
 
 // Figures over the judged frames that have truth: means over the frames, but those of squared error, which come from

@@ -7,7 +7,8 @@
 //   2  depthImage      texture   R 32F            planar view z > 0, background 1e10 (unused: any texture)
 //   3  historyImage    texture   RGBA 16F / 32F   what `nextImage` was a frame ago
 //   4  nextImage       image     RGBA 16F / 32F   the blend, this frame's history for the next
-//   5  resultImage     image     RGBA 16F / 32F   what is shown
+//   5  resultImage     image     RGBA 16F / 32F   what is shown (SEPARATE_RESULT; otherwise nextImage is, and any
+//                                                 image stands here)
 //   6  rejectionImage  image     R 32F            REJECTED_... where the history was not used, 0 = it was
 //                                                 (KEEP_REJECTION; otherwise any image)
 //
@@ -17,6 +18,7 @@
 //   2  CLAMP_OUTSIDE             false            a history position outside: the edge's colour, not rejected
 //   3  HARDWARE_FILTER           false            bilinear by the texture unit
 //   4  KEEP_REJECTION            false
+//   5  SEPARATE_RESULT           true             what is shown is stored beside the blend, be it the same
 //
 //   push constants               unit             of this frame
 //   size                         px
@@ -51,6 +53,7 @@ layout(constant_id = 1) const int HISTORY_FILTER = 0;
 layout(constant_id = 2) const bool CLAMP_OUTSIDE = false;
 layout(constant_id = 3) const bool HARDWARE_FILTER = false;
 layout(constant_id = 4) const bool KEEP_REJECTION = false;
+layout(constant_id = 5) const bool SEPARATE_RESULT = true;
 layout(push_constant) uniform Frame {
     ivec2 size;
     ivec2 texelOffset;
@@ -130,7 +133,7 @@ void storeRejection(ivec2 p, float reason) {
 void storeRejection(ivec2 p, bool inside) { storeRejection(p, inside ? REJECTED_NOT : REJECTED_OUTSIDE); }
 void storeBlend(ivec2 p, vec3 next, float alpha, vec3 shown) {
     imageStore(nextImage, p, vec4(next, alpha));
-    imageStore(resultImage, p, vec4(shown, 1.0));
+    if (SEPARATE_RESULT) imageStore(resultImage, p, vec4(shown, 1.0));
 }
 
 #endif

@@ -27,7 +27,6 @@
 //   11 K_MAX              0.979       and where it is the current one's
 //   12 CLIP_TARGET        centre      toward what history is clipped (clip.glsl)
 //   13 LUMINANCE          quarter     of the feedback (colour.glsl)
-//   14 SHARPENED          true        resultImage is step 4's to write
 //   15 USE_SOBEL          true        terms of A, each for itself
 //   16 USE_MODEL          true
 //   17 USE_DEPTH          true
@@ -55,7 +54,6 @@ layout(constant_id = 10) const float K_MIN = 0.925;
 layout(constant_id = 11) const float K_MAX = 0.979;
 layout(constant_id = 12) const int CLIP_TARGET = CLIP_AABB_CENTRE;
 layout(constant_id = 13) const int LUMINANCE = LUMINANCE_QUARTER;
-layout(constant_id = 14) const bool SHARPENED = true;
 layout(constant_id = 15) const bool USE_SOBEL = true;
 layout(constant_id = 16) const bool USE_MODEL = true;
 layout(constant_id = 17) const bool USE_DEPTH = true;
@@ -222,8 +220,7 @@ float aliasedValue(ivec2 p, Reprojection q) {
 }
 
 void storeResult(ivec2 p, vec3 result, float sobel) {
-    imageStore(nextImage, p, vec4(result, sobel));
-    if (!SHARPENED) imageStore(resultImage, p, vec4(result, 1.0));
+    storeBlend(p, result, sobel, result);
     imageStore(keptDepthImage, p, vec4(unitTile[cellOf(p)], 0.0, 0.0, 0.0));
 }
 

@@ -27,7 +27,6 @@
 //   17 GAMMA                  1        half width of the variance box in sigma
 //   18 K_MIN                  0.88     step 10: weight of the history where its luminance differs most, 0..1
 //   19 K_MAX                  0.97     and where it is the current colour's
-//   20 SHARPENED              1        raptor_sharpen.comp writes the result; 0: this pass does
 //   DILATION 0, HISTORY_FILTER 1
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -46,7 +45,6 @@ layout(constant_id = 16) const bool SIGNED_DIVISOR = false;
 layout(constant_id = 17) const float GAMMA = 1.0;
 layout(constant_id = 18) const float K_MIN = 0.88;
 layout(constant_id = 19) const float K_MAX = 0.97;
-layout(constant_id = 20) const bool SHARPENED = true;
 
 const int CONSTRAINT_NONE = 0, CONSTRAINT_CLAMP = 1, CONSTRAINT_CLIP = 2, CONSTRAINT_VARIANCE_CLIP = 3;
 const int LUMINANCE_DIFFERENCE_OFF = 0, LUMINANCE_DIFFERENCE_CORRECTED = 1;
@@ -68,10 +66,7 @@ float weighted(float weight, float lumaCurrent, float lumaHistory) {
     const float w = min(weight, frame.feedbackCeiling), wh = w * (1.0 + lumaCurrent);
     return LUMINANCE_WEIGHTS ? wh / ((1.0 - w) * (1.0 + lumaHistory) + wh) : w;
 }
-void storeResult(ivec2 p, vec3 result) {
-    imageStore(nextImage, p, vec4(result, 1.0));
-    if (!SHARPENED) imageStore(resultImage, p, vec4(result, 1.0));
-}
+void storeResult(ivec2 p, vec3 result) { storeBlend(p, result, 1.0, result); }
 
 void main() {
     const ivec2 p = ivec2(gl_GlobalInvocationID.xy);

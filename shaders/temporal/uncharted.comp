@@ -16,7 +16,6 @@
 //   12 NEIGHBOURHOOD rounded  window of the box (neighbourhood.glsl)
 //   13 CLIP_TARGET   centre   toward what history is clipped (clip.glsl)
 //   14 LUMINANCE     quarter  of the feedback (colour.glsl)
-//   15 SHARPENED     true     resultImage is step 4's to write
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "../common/temporal.glsl"
@@ -29,12 +28,8 @@ layout(constant_id = 11) const float K_MAX = 0.979;
 layout(constant_id = 12) const int NEIGHBOURHOOD = NEIGHBOURHOOD_ROUNDED;
 layout(constant_id = 13) const int CLIP_TARGET = CLIP_AABB_CENTRE;
 layout(constant_id = 14) const int LUMINANCE = LUMINANCE_QUARTER;
-layout(constant_id = 15) const bool SHARPENED = true;
 
-void storeResult(ivec2 p, vec3 result) {
-    imageStore(nextImage, p, vec4(result, 1.0));
-    if (!SHARPENED) imageStore(resultImage, p, vec4(result, 1.0));
-}
+void storeResult(ivec2 p, vec3 result) { storeBlend(p, result, 1.0, result); }
 
 void main() {
     const ivec2 p = ivec2(gl_GlobalInvocationID.xy);

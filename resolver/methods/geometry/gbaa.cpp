@@ -44,7 +44,8 @@ MethodDescriptor gbaaDescriptor() {
         .create = [](const Params& p, const ShotInfo&) -> std::unique_ptr<Method> {
             return std::make_unique<EdgeBlend>(false, p.flag("searchNeighbours"));
         },
-        .reachPx = 2};
+        .reachPx = 2,
+        .publishedMemory = {{0, 7.9, "[Stejmar n.d., table 5.6]"}}};
 }
 
 MethodDescriptor d2eDescriptor() {

@@ -110,7 +110,8 @@ MethodDescriptor fxaa1Descriptor() {
         .params = {choiceParam("preset", "3", kFxaa1Presets, "thresholds and search length; above 3 only longer",
                                "[Lottes 2009]")},
         .create = [](const Params& p, const ShotInfo&) { return std::make_unique<Fxaa1>(p); },
-        .reachPx = 36};  // preset 5 reads 32 px along the edge and its neighbours
+        .reachPx = 36,  // preset 5 reads 32 px along the edge and its neighbours
+        .publishedMemory = {{0, 0, "[Stejmar n.d., table 5.6]"}}};
 }
 
 MethodDescriptor fxaaCsDescriptor() {
@@ -134,7 +135,8 @@ MethodDescriptor fxaaCsDescriptor() {
         .create = [](const Params& p, const ShotInfo&) { return std::make_unique<FxaaCs>(p); },
         .outputSpace =
             [](const Params& p) { return p.choice("blendSpace") == "linear" ? Space::linear : Space::encoded; },
-        .reachPx = 30};  // as fxaa311
+        .reachPx = 30,  // as fxaa311
+        .publishedMemory = {{0, 9.9, "[Stejmar n.d., table 5.6]"}}};
 }
 
 MethodDescriptor fxaaConsoleDescriptor() {

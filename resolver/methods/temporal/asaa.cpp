@@ -110,6 +110,7 @@ MethodDescriptor asaaDescriptor() {
                        "blurMode=thesis"),
                    temporal::depthToleranceParam(), temporal::bothSidesParam(),
                    temporal::magnificationParam("1", "[Stejmar n.d., figures 4.10 and 4.11]; decisions 18")},
-        .create = [](const Params& p, const ShotInfo&) { return std::make_unique<Asaa>(p); }};
+        .create = [](const Params& p, const ShotInfo&) { return std::make_unique<Asaa>(p); },
+        .publishedMemory = {{0, 86.5, "[Stejmar n.d., table 5.6]"}}};
 }
 }  // namespace aa

@@ -64,8 +64,8 @@ AA_INLINE void storeResult(const KarisArgs& a, bool pq, long o, vec3<R> result) 
     store3(result, a.in.out.c, o);
 }
 
-template <class R, class YCoCg, class Pq>
-AA_INLINE void karisPixel(const KarisArgs& a, YCoCg ycocg, Pq pq, const KarisWindow<Elem<R>>& window, int x, int y) {
+template <class R, class YCoCg>
+AA_INLINE void karisPixel(const KarisArgs& a, YCoCg ycocg, bool pq, const KarisWindow<Elem<R>>& window, int x, int y) {
     const bool filtered = a.filtered, spread = a.box != BoxKind::minmax;
     using T = Elem<R>;
     const TemporalIn& in = a.in;
@@ -141,7 +141,8 @@ __attribute__((flatten)) void karisRows(const KarisArgs& a, int y0, int y1) {
     RingMaker<Elem<R>> maker(a.scratch, in.stride, in.width, in.height);
     for (auto& channel : rings.c) maker.make(channel);
     maker.make(rings.weight);
-    const auto rows = [&](auto ycocg, auto pq) __attribute__((always_inline)) {
+    const bool pq = a.pq != nullptr;  // outside of the window's loop, hence no copy of the kernel
+    const auto rows = [&](auto ycocg) __attribute__((always_inline)) {
         if (!in.history) {
             for (int y = y0; y < y1; y++)
                 for (int x = 0; x < in.width; x += N<R>) {
@@ -164,7 +165,7 @@ __attribute__((flatten)) void karisRows(const KarisArgs& a, int y0, int y1) {
             for (int x = 0; x < in.width; x += N<R>) karisPixel<R>(a, ycocg, pq, window, x, y);
         }
     };
-    withOptions<R>(rows, a.ycocg, a.pq != nullptr);
+    withOptions<R>(rows, a.ycocg);
 }
 
 void fillPqTables(PqTables& t) { fillTables(t); }

@@ -74,6 +74,7 @@ MethodDescriptor t2msaa() {
     d.output = Space::encoded;
     d.outputSpace = [](const Params& p) { return p.choice("space") == "encoded" ? Space::encoded : Space::linear; };
     d.temporal = true;
+    d.publishedMemory = {{0, 67.2, "[Stejmar n.d., table 5.6]"}};
     d.params = {
         temporal::unjitterParam(false, "conventions 7.0; the shift between frames is the filter"),
         realParam("offset", "0.25", 0.0625, 0.375,

@@ -1,7 +1,7 @@
 // The report's page: everything is drawn from the JSON in #data, which `aaresolve report` wrote. No network, no storage.
 "use strict";
 (() => {
-  const { run, order, words, protocol, space, pictures, errorScale, errorColours, figures, passBytes } = JSON.parse(document.getElementById("data").textContent);
+  const { run, order, words, protocol, space, pictures, errorScale, errorColours, figures, passBytes, publishedMemory: published } = JSON.parse(document.getElementById("data").textContent);
   const $ = (id) => document.getElementById(id);
   const methods = run.methods;
   const measured = (m) => m.frames.filter((f) => f.metrics);
@@ -180,8 +180,7 @@
   const megabytes1080 = (bytesPerPixel) => bytesPerPixel * 1920 * 1080 / 1048576;
   const stateOf = (m) => megabytes1080(m.stateBytes / (run.shot.resolution[0] * run.shot.resolution[1]));
   const passMemory = (m) => megabytes1080(m.passes.reduce((sum, p) => sum + (passBytes[p] || 0), 0));
-  // Extra memory at 1920 x 1080 that a GPU implementation reports: [Stejmar n.d., table 5.6].
-  const publishedMemory = (m) => ({ gbaa: 7.9, fxaa1: 0, fxaacs: 9.9, t2msaa: 67.2, asaa: 86.5 })[m.id] ?? (m.id === "msaa" ? { 2: 39.6, 4: 91, 8: 209.6 }[S] : undefined) ?? null;
+  const publishedMemory = (m) => published[m.id]?.megabytes ?? null;
   sortableTable($("price-figures"), order, [
     { title: "Passes, s per frame", better: "low", get: (m, i) => priceOf(i)?.render ?? null, small: (m) => m.passes.join(", ") },
     methods.some((m) => m.nsPerPixel > 0) && { title: "Method, ms per frame", better: "low", get: (m) => m.secondsMedian * 1000 || null },
@@ -191,7 +190,8 @@
     { title: "Published extra, MB", better: "low", get: publishedMemory, show: (m) => (publishedMemory(m) == null ? "–" : publishedMemory(m).toFixed(1)) },
   ].filter(Boolean));
   $("price-note").textContent = "Kept: history and working memory of the method, scaled from this picture's size. Passes: what it reads beside colour, in 32-bit floats" +
-    (S ? ` with ${S} sub-samples per pixel` : "") + ". Published: extra memory of a GPU implementation (Linköping thesis, table 5.6), which packs its buffers more tightly and counts its render targets.";
+    (S ? ` with ${S} sub-samples per pixel` : "") + ". Published: extra memory of a GPU implementation" +
+    (Object.keys(published).length ? " (" + [...new Set(Object.values(published).map((p) => p.source))].join(", ") + ")" : "") + ", which packs its buffers more tightly and counts its render targets.";
 
   // ---- charts ----
   const hues = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#b8a800"]; // [Okabe 2008]

@@ -18,7 +18,7 @@ GeometryPush GeometryForm::push(const Frame& frame) const {
 }
 
 Image& GeometryForm::unread(Format format, int layers) {
-    return fitted(unread_[format == Format::r32ui][layers - 1], 1, 1, format, layers);
+    return fitted(unread_[format == Format::r32ui][layers], 1, 1, format, layers);
 }
 
 std::vector<Binding> GeometryForm::bindings(Current& current, Image& out, std::initializer_list<Binding> own) {
@@ -31,13 +31,13 @@ std::vector<Binding> GeometryForm::bindings(Current& current, Image& out, std::i
     current.recorder().upload(fitted(offsets_, bytesOf(offsetsPx).size()), bytesOf(offsetsPx));
     std::vector<Binding> all = {read(current[Input::colour]),
                                 written(out),
-                                image(reads_.depth, Input::depth, Format::r32f, 1),
-                                image(reads_.normals, Input::normal, Format::r32f, 1),
-                                image(reads_.ids, Input::objectId, Format::r32ui, 1),
-                                image(reads_.depth, Input::subDepth, Format::r32f, 2),
-                                image(reads_.normals, Input::subNormal, Format::r32f, 2),
-                                image(reads_.ids, Input::subId, Format::r32ui, 2),
-                                image(reads_.colours, Input::subColour, Format::r32f, 2),
+                                image(reads_.depth, Input::depth, Format::r32f, 0),
+                                image(reads_.normals, Input::normal, Format::r32f, 0),
+                                image(reads_.ids, Input::objectId, Format::r32ui, 0),
+                                image(reads_.depth, Input::subDepth, Format::r32f, 1),
+                                image(reads_.normals, Input::subNormal, Format::r32f, 1),
+                                image(reads_.ids, Input::subId, Format::r32ui, 1),
+                                image(reads_.colours, Input::subColour, Format::r32f, 1),
                                 memory(offsets_)};
     all.insert(all.end(), own.begin(), own.end());
     return all;

@@ -32,8 +32,8 @@ class GeometryForm : public GpuMethod {
     std::vector<Binding> bindings(Current& current, Image& out, std::initializer_list<Binding> own = {});
     // Constant 0 and the form's own.
     static std::vector<Constant> constants(const ShotInfo& shot, std::vector<Constant> own);
-    // One texel of two layers that nobody reads.
-    Image& unread(Format format, int layers = 1);
+    // One texel that nobody reads, of a picture or (1) of an array.
+    Image& unread(Format format, int layers = 0);
 
   private:
     std::string reader_;

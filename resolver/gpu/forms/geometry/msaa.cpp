@@ -51,7 +51,7 @@ class MsaaForm : public GeometryForm {
         recorder.upload(fitted(slotBuffer_, bytesOf(slots_).size()), bytesOf(slots_));
         Image& surfaceColours = filtered() ? fitted(surfaceColours_, current.width(), current.height(),
                                                     session().colour(), std::max(2, samples_))
-                                           : unread(Format::r32f, 2);
+                                           : unread(Format::r32f, 1);
         const Image& kept = current[encoded_ ? Input::encoded : Input::colour];
         recorder.dispatch(group_, current.width(), current.height(),
                           bindings(current, out, {read(kept), memory(slotBuffer_), written(surfaceColours)}),

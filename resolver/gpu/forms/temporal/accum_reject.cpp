@@ -49,6 +49,7 @@ class AccumRejectForm : public TemporalForm {
         depth_.swap();
         residual_.swap();
     }
+    bool showsBlend() const override { return true; }
     Shader shader_, farthestShader_;
     TwoImages depth_, residual_;
     Image farthest_, id_;  // of the last frame

@@ -55,6 +55,7 @@ class Fsr2nForm : public TemporalForm {
         luma_.swap();
     }
     float lockDecay_;
+    bool showsBlend() const override { return true; }
     Shader scatter_, shader_;
     Image nearest_;
     TwoImages luma_;

@@ -29,6 +29,7 @@ class InsideForm : public TemporalForm {
         }
         current.recorder().dispatch(shader_, push.width, push.height, bindings(current, out), push);
     }
+    bool showsBlend() const override { return params().realf("motionBlur") == 0; }
     Shader shader_;
 };
 }  // namespace

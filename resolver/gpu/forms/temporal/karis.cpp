@@ -30,6 +30,7 @@ class KarisForm : public TemporalForm {
                                                           {21, pq_}}));
         current.recorder().dispatch(shader_, push.width, push.height, bindings(current, out), push);
     }
+    bool showsBlend() const override { return !pq_; }
     bool pq_;
     Shader shader_;
 };

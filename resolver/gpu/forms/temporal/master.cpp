@@ -24,7 +24,6 @@ class MasterForm : public TemporalForm {
                                                         {11, p.realf("kmax")},
                                                         {12, temporal::clipTarget(p)},
                                                         {13, temporal::luminance(p)},
-                                                        {14, sharpening_.wanted()},
                                                         {15, p.flag("sobel")},
                                                         {16, p.flag("model")},
                                                         {17, p.flag("depth")},
@@ -62,6 +61,8 @@ class MasterForm : public TemporalForm {
         sharpening_.record(current, blend().next(), out);
         depth_.swap();
     }
+    bool showsBlend() const override { return !sharpening_.wanted(); }
+    bool storesResult() const override { return false; }
     Shader sobelOfTexels_, resolve_;
     HistorySharpening sharpening_;
     Image sobel_;

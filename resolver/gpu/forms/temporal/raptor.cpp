@@ -14,7 +14,7 @@ class RaptorForm : public TemporalForm {
   private:
     void recordTemporal(Current& current, const TemporalPush& push, Image& out) override {
         const Params& p = params();
-        const bool sharpened = p.realf("sharpen") > 0;
+        const bool sharpened = !showsBlend();
         if (shader_.name().empty()) {
             const bool weighted = p.flag(p.choice("lumaDiff") == "off" ? "inverseLuminance" : "lumaDiffWeights");
             shader_ = Shader("temporal/raptor", constants({{10, int(p.choiceIndex("constraint"))},
@@ -26,8 +26,7 @@ class RaptorForm : public TemporalForm {
                                                            {16, p.choice("contrastDivisor") == "printed"},
                                                            {17, p.realf("gamma")},
                                                            {18, p.realf("kmin")},
-                                                           {19, p.realf("kmax")},
-                                                           {20, sharpened}}));
+                                                           {19, p.realf("kmax")}}));
             if (sharpened) sharpen_ = Shader("temporal/raptor_sharpen", {{10, p.realf("sharpen")}});
         }
         const auto filter = raptorFilter(p, push.jitterX, push.jitterY);
@@ -40,6 +39,8 @@ class RaptorForm : public TemporalForm {
         const Binding shown[] = {read(blend().next()), written(out)};
         current.recorder().dispatch(sharpen_, push.width, push.height, shown, size);
     }
+    bool showsBlend() const override { return params().realf("sharpen") == 0; }
+    bool storesResult() const override { return false; }
     Shader shader_, sharpen_;
     Buffer filter_;
 };

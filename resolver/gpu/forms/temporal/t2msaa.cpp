@@ -64,6 +64,7 @@ class T2msaaForm : public TemporalForm {
         depth_.swap();
         count_.swap();
     }
+    bool showsBlend() const override { return true; }
     Shader shader_;
     TwoImages depth_, count_;
     Buffer samples_;

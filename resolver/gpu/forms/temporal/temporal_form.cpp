@@ -16,7 +16,7 @@ TemporalForm::TemporalForm(Session& session, const Params& params, std::string_v
 
 std::vector<Constant> TemporalForm::constants(std::vector<Constant> own) const {
     const Params& p = params();
-    std::vector<Constant> all = {{3, session().fast()}, {4, keepRejection}};
+    std::vector<Constant> all = {{3, session().fast()}, {4, keepRejection}, {5, storesResult()}};
     if (has("dilation")) all.push_back({0, temporal::dilation(p)});
     if (has("history")) all.push_back({1, temporal::historyFilter(p)});
     if (has("outside")) all.push_back({2, p.choice("outside") == "clamp"});
@@ -33,7 +33,7 @@ std::vector<Binding> TemporalForm::bindings(Current& current, Image& out) {
             read(depth),
             linear ? filtered(blend_.previous()) : read(blend_.previous()),
             written(blend_.next()),
-            written(out),
+            written(storesResult() ? out : unused_),
             written(rejection_)};
 }
 
@@ -65,6 +65,7 @@ void TemporalForm::record(Current& current, Image& out) {
     const TemporalPush push = begin(frame);
     for (Image& image : blend_.images)
         fitted(image, frame.width, frame.height, wide_ ? Format::rgba32f : session().colour());
+    if (!storesResult()) fitted(unused_, 1, 1, session().colour());
     fitted(rejection_, keepRejection ? frame.width : 1, keepRejection ? frame.height : 1, Session::value);
     if (!history_.fresh() && !narrow_.name().empty()) {
         struct {

@@ -30,13 +30,18 @@ class TemporalForm : public GpuMethod {
     // afterwards.
     virtual void recordTemporal(Current& current, const TemporalPush& push, Image& out) = 0;
 
+    // Whether what is shown is the blend itself, so that one store serves both. Asked after the constructor.
+    virtual bool showsBlend() const { return false; }
+    // Whether the shaders store it beside the blend: not where a later pass makes what is shown either.
+    virtual bool storesResult() const { return !showsBlend(); }
     // Bindings 0 to 6. Where a method has no use for depth, any image stands there.
     std::vector<Binding> bindings(Current& current, Image& out);
-    // Constants 0 to 4 and the form's own.
+    // Constants 0 to 5 and the form's own.
     std::vector<Constant> constants(std::vector<Constant> own = {}) const;
     const History& history() const { return history_; }
     TwoImages& blend() { return blend_; }
     const Image* rejectionImage() const override { return &rejection_; }
+    const Image* shownImage() const override { return showsBlend() ? &blend_.images[1 - blend_.now] : nullptr; }
     // Whether the method has such a parameter.
     bool has(std::string_view name) const { return params().all().count(name) > 0; }
 
@@ -46,7 +51,7 @@ class TemporalForm : public GpuMethod {
     Space space_;
     History history_;  // counts frames and checks their size
     TwoImages blend_;
-    Image rejection_;
+    Image rejection_, unused_;
     Shader narrow_;      // of a history that is kept in 32 bits and rounded to fewer
     bool wide_ = false;  // it is
     uint32_t lastNumber_ = 0;

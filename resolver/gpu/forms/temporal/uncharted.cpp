@@ -17,6 +17,7 @@ class TaaSimplestForm : public TemporalForm {
         if (shader_.name().empty()) shader_ = Shader("temporal/taa_simplest", constants({{10, params().realf("k")}}));
         current.recorder().dispatch(shader_, push.width, push.height, bindings(current, out), push);
     }
+    bool showsBlend() const override { return true; }
     Shader shader_;
 };
 
@@ -33,11 +34,12 @@ class UnchartedForm : public TemporalForm {
                                                               {11, p.realf("kmax")},
                                                               {12, temporal::neighbourhood(p)},
                                                               {13, temporal::clipTarget(p)},
-                                                              {14, temporal::luminance(p)},
-                                                              {15, sharpening_.wanted()}}));
+                                                              {14, temporal::luminance(p)}}));
         current.recorder().dispatch(shader_, push.width, push.height, bindings(current, out), push);
         sharpening_.record(current, blend().next(), out);
     }
+    bool showsBlend() const override { return !sharpening_.wanted(); }
+    bool storesResult() const override { return false; }
     Shader shader_;
     HistorySharpening sharpening_;
 };
