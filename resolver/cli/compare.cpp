@@ -6,6 +6,7 @@
 #include <set>
 
 #include "cli/cli.h"
+#include "gpu/metrics.h"
 #include "image/colour.h"
 #include "image/error.h"
 #include "image/io.h"
@@ -109,12 +110,37 @@ Both loadBoth(const Pair& pair, const Options& o, const Exec& exec) {
     prepare(b, both.encodedB, both.linearB);
     return both;
 }
+// The device that measures what has a shader.
+struct Measuring {
+    std::shared_ptr<gpu::Session> session;       // null: none
+    std::unique_ptr<gpu::Metrics> metrics = {};  // of the latest size
+    double seconds = 0;
+    std::string name() const { return session->device().info().name; }
+};
+bool hasShader(const Metric& metric) { return gpu::Metrics::measures(metric.figures[0].name); }
+FrameMetrics deviceFiguresOf(const Both& p, const std::set<const Metric*>& wanted, Measuring& device) {
+    const int width = p.encodedA.width(), height = p.encodedA.height();
+    if (!device.metrics || device.metrics->width() != width || device.metrics->height() != height) {
+        device.metrics.reset();  // its memory first
+        device.metrics = std::make_unique<gpu::Metrics>(*device.session, width, height);
+    }
+    std::set<std::string_view> names;
+    for (const Metric* metric : wanted)
+        if (hasShader(*metric)) names.insert(metric->figures[0].name);
+    const gpu::Metrics::Result found = device.metrics->measure(p.encodedA, p.encodedB, names);
+    device.seconds += found.deviceSeconds.value_or(0);
+    FrameMetrics figures = frameMetrics(found.squares);
+    for (const auto& [name, figure] : found.others) figures.others.emplace(name, figure.mean);
+    return figures;
+}
 // Figures of `wanted` metrics; `b` is the reference.
-FrameMetrics figuresOf(const Both& p, const std::set<const Metric*>& wanted, const Exec& exec) {
-    FrameMetrics figures = frameMetrics(squaredError(p.encodedA, p.encodedB, exec));
+FrameMetrics figuresOf(const Both& p, const std::set<const Metric*>& wanted, const Exec& exec, Measuring& device) {
+    FrameMetrics figures =
+        device.session ? deviceFiguresOf(p, wanted, device) : frameMetrics(squaredError(p.encodedA, p.encodedB, exec));
     const bool linear = !p.linearA.empty() && !p.linearB.empty();
     const ImagePair images{p.encodedA, p.encodedB, linear ? &p.linearA : nullptr, linear ? &p.linearB : nullptr};
     for (const Metric* metric : wanted) {
+        if (device.session && hasShader(*metric)) continue;
         if (!metric->isPossible(images))
             throw UsageError(std::string(metric->figures[0].name) + " needs linear images: two EXR files");
         addFigures(figures, *metric, images, exec);
@@ -149,6 +175,9 @@ void compare(const Options& o, Context& context) {
     for (const auto& t : thresholds) wanted.insert(findFigure(t.figure->name).metric);
     const auto pairs = pairsOf(o);
     if (!o.map.empty() && pairs.size() > 1) makeWritableFolder(o.map);
+    Measuring device{.session = o.work.session()};
+    if (device.session && device.session->fast())
+        throw UsageError("compare: --gpu-precision fast: pictures are compared in 32 bits alone");
 
     SquaredError squares;
     std::map<std::string, double, std::less<>> others;
@@ -157,7 +186,7 @@ void compare(const Options& o, Context& context) {
     withThreads(o.work.threads, [&] {
         for (const auto& pair : pairs) {
             const Both both = loadBoth(pair, o, exec);
-            frames.push_back(figuresOf(both, wanted, exec));
+            frames.push_back(figuresOf(both, wanted, exec, device));
             const FrameMetrics& f = frames.back();
             squares.mse += f.mse / count, squares.reference += f.reference / count;
             for (const auto& [name, value] : f.others) others[name] += value / count;
@@ -178,6 +207,8 @@ void compare(const Options& o, Context& context) {
             {"a", o.a}, {"b", o.b}, {"frames", pairs.size()}, {"pooled", numbers(pooled, figures)}};
         for (size_t i = 0; i < pairs.size() && pairs.size() > 1; i++)
             j["perFrame"][pairs[i].name] = numbers(frames[i], figures);
+        if (device.session) j["device"]["name"] = device.name();
+        if (device.seconds > 0) j["device"]["seconds"] = device.seconds;
         j["failures"] = failures;
         std::cout << j.dump(1) << "\n";
     } else {
@@ -190,6 +221,11 @@ void compare(const Options& o, Context& context) {
         if (pairs.size() > 1)
             for (size_t i = 0; i < pairs.size(); i++) line(pairs[i].name, frames[i]);
         line(pairs.size() > 1 ? "pooled" : pairs[0].name, pooled);
+        if (device.session) {
+            std::printf("on %s", device.name().c_str());
+            if (device.seconds > 0) std::printf(": %.4f ms", 1e3 * device.seconds);
+            std::printf("\n");
+        }
     }
     for (const auto& f : failures) std::fprintf(stderr, "aaresolve: compare: %s\n", f.c_str());
     if (!failures.empty()) context.exitCode = 1;
@@ -212,6 +248,7 @@ void addCompare(CommandLine& line, Context& context) {
     c.flag("--q8", o->q8, "round both to 8-bit codes first");
     c.flag("--json", o->json, "as JSON");
     addWorkOptions(c, o->work);
+    addDeviceOptions(c, o->work);
     c.run([o, &context] { compare(*o, context); });
 }
 

@@ -19,8 +19,9 @@ void addWorkOptions(Command& command, WorkOptions& work) {
 }
 
 void addDeviceOptions(Command& command, WorkOptions& work) {
-    command.option("--device", work.device,
-                   "cpu, vulkan, vulkan:NUMBER or vulkan:NAME (`aaresolve devices`): where the methods run");
+    command.option(
+        "--device", work.device,
+        "cpu, vulkan, vulkan:NUMBER or vulkan:NAME (`aaresolve devices`): where methods run and pictures are compared");
     command
         .option("--gpu-precision", work.gpuPrecision,
                 "exact = 32-bit images, filtered in the shader as on the processor; fast = 16-bit colours, motion "

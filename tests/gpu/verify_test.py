@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import subprocess
 
@@ -62,7 +63,15 @@ class Verify(GpuTest):
         self.aaresolve("filter", "smaa1x", picture, cpu)
         said = self.aaresolve("filter", "smaa1x", picture, gpu, "--device", "vulkan")
         self.assertIn(" ms on ", said.stdout)
-        self.assertIn("psnr", self.aaresolve("compare", cpu, gpu).stdout)
+        figures = ("--json", "--metrics", "ssimRgb,flip")
+        compared = [
+            json.loads(self.aaresolve("compare", picture, cpu, *figures, *device).stdout)["pooled"]
+            for device in ((), ("--device", "vulkan"))
+        ]
+        for name in ("mse", "ssimRgb", "flip"):
+            self.assertAlmostEqual(compared[0][name], compared[1][name], delta=1e-6)
+        equal = self.aaresolve("compare", cpu, gpu, "--json")
+        self.assertLess(json.loads(equal.stdout)["pooled"]["mse"], 1e-10)
 
 
 if __name__ == "__main__":
