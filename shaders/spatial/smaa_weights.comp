@@ -116,15 +116,13 @@ struct Axis {
     int table;            // its first area
 };
 // Two pixels of a row or column, p and p + along: whether each has an edge of the line, and whether the line is crossed
-// before it, by an edge of that pixel or of the one across the line. One gather reads all four pixels.
+// before it, by an edge of that pixel or of the one across the line.
 struct TwoPixels {
     bvec2 onLine, crossed;
 };
 TwoPixels twoPixels(Axis a, ivec2 p) {
-    const vec2 corner = vec2(p + a.along);  // where the four meet
-    const uvec4 g = textureGather(edgesImage, corner / vec2(textureSize(edgesImage, 0)));
-    const bool row = a.along.x == 1;
-    const uvec2 own = uvec2(row ? g.x : g.z, g.y), beyond = uvec2(g.w, row ? g.z : g.x);
+    const uvec2 own = uvec2(texel(edgesImage, p), texel(edgesImage, p + a.along));
+    const uvec2 beyond = uvec2(texel(edgesImage, p - a.across), texel(edgesImage, p + a.along - a.across));
     return TwoPixels(notEqual(own & a.side, uvec2(0u)), notEqual((own | beyond) & a.crossing, uvec2(0u)));
 }
 // How many more pixels the line goes on beyond p, up to `cap`.

@@ -63,7 +63,7 @@ class Verify(GpuTest):
         self.aaresolve("filter", "smaa1x", picture, cpu)
         said = self.aaresolve("filter", "smaa1x", picture, gpu, "--device", "vulkan")
         self.assertIn(" ms on ", said.stdout)
-        figures = ("--json", "--metrics", "ssimRgb,flip")
+        figures = ("--json", "--metrics", "mse,ssimRgb,flip")
         compared = [
             json.loads(self.aaresolve("compare", picture, cpu, *figures, *device).stdout)["pooled"]
             for device in ((), ("--device", "vulkan"))
