@@ -46,6 +46,8 @@ def main(build: str, jobs: int) -> int:
     chosen, headers = [], {}
     for e in entries:
         name = e["file"]
+        if Path(name).resolve().is_relative_to(Path(build).resolve()):
+            continue  # generated when the program is built
         if "_test.cpp" in name or "/tests/" in name or name.endswith((".cxx", "cmake_pch.hxx.cxx")):
             continue
         if "AA_ARCH=" in e["command"] and f"AA_ARCH={sets[0]}" not in e["command"]:

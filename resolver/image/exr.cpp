@@ -224,6 +224,7 @@ bool isExr(const fs::path& file) {
 }
 
 struct ExrFile::Input {
+    explicit Input(const char* name) : file(name) {}
     Imf::MultiPartInputFile file;
 };
 ExrFile::~ExrFile() = default;

@@ -61,7 +61,8 @@ Params::Params(std::string_view method, const std::vector<ParamSpec>& table,
     : method_(method), table_(table) {
     checkTable(writtenAt);
     for (const auto& p : table_) values_[std::string(p.name)] = std::string(p.defaultValue);
-    for (const auto& [key, text] : given) {
+    for (const auto& [name, text] : given) {
+        const std::string& key = name;  // which a lambda may take
         const std::string where = std::string(method) + ": parameter '" + key + "'";
         const auto p = std::find_if(table_.begin(), table_.end(), [&](const auto& s) { return s.name == key; });
         if (p == table_.end()) {

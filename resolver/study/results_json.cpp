@@ -352,7 +352,7 @@ void members(V all, S& run) {
         std::optional<int> bits;
         if (run.protocol.eightBit) bits = 8;
         v.orNull("quantiseBits", bits);
-        if constexpr (kReads<decltype(v)>) {
+        if constexpr (!std::is_const_v<S>) {  // reading
             if (bits && *bits != 8) throw std::runtime_error("quantiseBits: expected 8 or null");
             run.protocol.eightBit = bits.has_value();
         }
