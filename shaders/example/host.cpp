@@ -1,5 +1,5 @@
 // shaders/temporal/karis.comp in a program of its own: nothing here knows aaresolve. What an engine does each frame, on
-// files: bind seven images, push the frame's numbers, dispatch, swap the history.
+// files: bind seven images and a buffer, push the frame's numbers, dispatch, swap the history.
 //
 //   glslangValidator -V --target-env vulkan1.1 ../temporal/karis.comp -o karis.spv
 //   g++ -std=c++20 -O2 host.cpp -o host $(pkg-config --cflags --libs OpenEXR) -lvulkan
@@ -13,6 +13,7 @@
 #include <ImfMultiPartInputFile.h>
 #include <ImfOutputFile.h>
 
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
@@ -119,9 +120,10 @@ int main(int argc, char** argv) {
     // set as karis has them; all others keep their defaults.
     vk::raii::Sampler sampler(device, vk::SamplerCreateInfo({}, vk::Filter::eNearest, vk::Filter::eNearest));
     std::vector<vk::DescriptorSetLayoutBinding> slots;
-    for (uint32_t i = 0; i < 7; i++)
-        slots.emplace_back(i, i < 4 ? vk::DescriptorType::eCombinedImageSampler : vk::DescriptorType::eStorageImage, 1,
-                           vk::ShaderStageFlagBits::eCompute);
+    for (uint32_t i = 0; i < 8; i++)
+        slots.emplace_back(i, i < 4   ? vk::DescriptorType::eCombinedImageSampler
+                              : i < 7 ? vk::DescriptorType::eStorageImage
+                                      : vk::DescriptorType::eStorageBuffer, 1, vk::ShaderStageFlagBits::eCompute);
     vk::raii::DescriptorSetLayout setLayout(device, vk::DescriptorSetLayoutCreateInfo({}, slots));
     const vk::PushConstantRange range(vk::ShaderStageFlagBits::eCompute, 0, sizeof(Push));
     vk::raii::PipelineLayout layout(device, vk::PipelineLayoutCreateInfo({}, *setLayout, range));
@@ -130,8 +132,16 @@ int main(int argc, char** argv) {
     const vk::SpecializationMapEntry entries[] = {{0, 0, 4}, {1, 4, 4}};
     const vk::SpecializationInfo special(2, entries, sizeof(constants), constants);
     vk::raii::Pipeline pipeline(device, nullptr, vk::ComputePipelineCreateInfo({}, {{}, vk::ShaderStageFlagBits::eCompute, *module, "main", &special}, *layout));
-    const vk::DescriptorPoolSize sizes[] = {{vk::DescriptorType::eCombinedImageSampler, 8}, {vk::DescriptorType::eStorageImage, 6}};
+    const vk::DescriptorPoolSize sizes[] = {{vk::DescriptorType::eCombinedImageSampler, 8}, {vk::DescriptorType::eStorageImage, 6},
+                                             {vk::DescriptorType::eStorageBuffer, 2}};
     vk::raii::DescriptorPool sets(device, vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 2, sizes));
+
+    // Binding 7: the weights of the 3 x 3 samples, which follow the jitter.
+    vk::raii::Buffer weights(device, {{}, 9 * sizeof(float), vk::BufferUsageFlagBits::eStorageBuffer});
+    vk::raii::DeviceMemory weightsMemory =
+        memoryOf(weights.getMemoryRequirements(), vk::MemoryPropertyFlagBits::eHostVisible | vk::MemoryPropertyFlagBits::eHostCoherent);
+    weights.bindMemory(*weightsMemory, 0);
+    float* const weight = static_cast<float*>(weightsMemory.mapMemory(0, VK_WHOLE_SIZE));
 
     int previous = historyA, next = historyB, number = 0;
     for (const auto& f : shot["frames"]) {
@@ -145,8 +155,14 @@ int main(int argc, char** argv) {
             const vk::DescriptorImageInfo image(*sampler, *views[bound[i]], vk::ImageLayout::eGeneral);
             device.updateDescriptorSets(vk::WriteDescriptorSet(*set, i, 0, slots[i].descriptorType, image), {});
         }
+        const vk::DescriptorBufferInfo buffer(*weights, 0, VK_WHOLE_SIZE);
+        device.updateDescriptorSets(vk::WriteDescriptorSet(*set, 7, 0, slots[7].descriptorType, {}, buffer), {});
         Push push{.width = width, .height = height, .jitterX = f["jitter"][0], .jitterY = f["jitter"][1],
                   .firstFrame = number == 0, .frameNumber = uint32_t(number)};
+        for (int k = 0; k < 9; k++) {
+            const double x = k % 3 - 1 + double(push.jitterX), y = k / 3 - 1 + double(push.jitterY);
+            weight[k] = float(std::exp(-2.29 * (x * x + y * y)));
+        }
         now([&](auto& c) {
             c.bindPipeline(vk::PipelineBindPoint::eCompute, *pipeline);
             c.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *layout, 0, *set, {});

@@ -7,7 +7,10 @@
 //
 // Sources: [Karis 2014], [Salvi 2016], [Falcor 2022], [Donut 2021] (docs/sources.md).
 // Colours: linear BT.709, >= 0, in and out. Donut's box and history hold PQ values.
-// Bindings 0 to 6, push constants and constants 0 to 4: common/temporal.glsl. No other images.
+// Bindings 0 to 6, push constants and constants 0 to 5: common/temporal.glsl.
+//
+//   7  weights          buffer   9 float    of the 3x3 samples by distance, row-major: exp(-2.29 d^2), d = |offset + jitter|
+//                                           in px; once a frame on the host, as the engine does (read where FILTERED)
 //
 //   constant             karis  salvi  falcor  donut
 //   10 ALPHA             0.04   0.1    0.1     0.1      weight of the current colour
@@ -30,6 +33,7 @@
 #include "../common/feedback.glsl"
 #include "../common/math.glsl"
 
+layout(std430, binding = 7) readonly buffer Weights { float weights[9]; };
 layout(constant_id = 10) const float ALPHA = 0.04;
 layout(constant_id = 11) const bool FILTERED = true;
 layout(constant_id = 12) const bool TONE_WEIGHTED = true;
@@ -60,10 +64,7 @@ float toneWeight(float y) {
     if (!TONE_WEIGHTED) return 1.0;
     return TONE_HDR4 ? 4.0 / (4.0 + max(0.0, y)) : 1.0 / (1.0 + max(0.0, y));
 }
-float filterWeight(ivec2 offset, vec3 c) {
-    const vec2 d = vec2(offset) + frame.jitter;
-    return exp2Clamped(-2.29 * 1.4426950408889634 * dot(d, d)) * toneWeight(lumaOf(c));
-}
+float filterWeight(int k, vec3 c) { return weights[k] * toneWeight(lumaOf(c)); }
 // Public UE4: speed raises the current colour's weight to 0.2; nearly equal luminance takes the current colour.
 float karisWeight(float alpha, vec2 motion, float current, float history) {
     const float speed = sqrt(motion.x * motion.x + motion.y * motion.y);
@@ -94,14 +95,14 @@ void main() {
     vec3 current = centre;
     if (FILTERED) {
         vec3 sum = vec3(0.0);
-        float weights = filterWeight(ivec2(0), centre);
+        float total = 0.0;
         for (int k = 0; k < 9; k++) {
             if (k == 4) continue;
-            const float w = filterWeight(ivec2(k % 3 - 1, k / 3 - 1), window[k]);
+            const float w = filterWeight(k, window[k]);
             sum = sum + (window[k] - centre) * w;
-            weights = weights + w;
+            total = total + w;
         }
-        current = centre + sum * (1.0 / max(weights, 1e-20));
+        current = centre + sum * (1.0 / max(total + filterWeight(4, centre), 1e-20));
     }
 
     // 2. box

@@ -89,8 +89,6 @@ class Forms : public ::testing::TestWithParam<std::string> {
         const auto has = [&](const char* words) { return GetParam().find(words) != std::string::npos; };
         if (has("historyBits=8")) return 1.5 / 255;
         if (has("historyBits=16f") || has("dither=on")) return 2e-3;
-        // Its anti-flicker divides by the difference of two luminances: a hundred times the last digit.
-        if (has("karis")) return 1e-4;
         return 3e-5;
     }
 };

@@ -28,8 +28,8 @@ FAULTS = (
         "temporal/karis",
         "karis",
         "temporal/karis.comp",
-        "vec2(offset) + frame.jitter;",
-        "vec2(offset) - frame.jitter;",
+        "return weights[k] * toneWeight",
+        "return weights[8 - k] * toneWeight",
     ),
     (
         "jitter's sign where the frame is un-jittered",

@@ -45,11 +45,7 @@ class Karis : public Method {
         args.neighbourhood = temporal::neighbourhood(p);
         args.gamma = p.realf("gamma");
         args.antiFlicker = p.chosen("antiFlicker", kAntiFlickers);
-        for (int j = -1; j <= 1; j++)
-            for (int i = -1; i <= 1; i++) {
-                const double dx = i + double(args.in.jitterXPx), dy = j + double(args.in.jitterYPx);
-                args.filter[(j + 1) * 3 + i + 1] = float(std::exp(-2.29 * (dx * dx + dy * dy)));  // [Karis 2014]
-            }
+        karisFilter(args.in.jitterXPx, args.in.jitterYPx, args.filter);
         args.in.debug = debug_.begin(*this, frame.width, frame.height);
         temporal::runTemporal(karisKernelsFor(exec).resolve, exec, args, kRowsPerCall, kKarisScratchRows);
         history_.end(temporal::historyStorage(p), exec);
@@ -120,6 +116,14 @@ MethodDescriptor descriptor(const Preset& d) {
             .morePasses = temporal::dilationPasses};
 }
 }  // namespace
+
+void karisFilter(float jitterXPx, float jitterYPx, float (&filter)[9]) {
+    for (int j = -1; j <= 1; j++)
+        for (int i = -1; i <= 1; i++) {
+            const double dx = i + double(jitterXPx), dy = j + double(jitterYPx);
+            filter[(j + 1) * 3 + i + 1] = float(std::exp(-2.29 * (dx * dx + dy * dy)));  // [Karis 2014]
+        }
+}
 
 MethodDescriptor karisDescriptor() {
     return descriptor({"karis", "UE4 TAA (Karis)",

@@ -38,6 +38,8 @@ struct KarisArgs {
     AntiFlicker antiFlicker;
     void* scratch;  // kKarisScratchRows rows
 };
+// KarisArgs::filter for the jitter of the colours as they are read, px.
+void karisFilter(float jitterXPx, float jitterYPx, float (&filter)[9]);
 struct KarisKernels {
     RowKernel<KarisArgs> resolve;
     void (*fillPqTables)(PqTables&);  // the same bits on every instruction set

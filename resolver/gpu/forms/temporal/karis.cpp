@@ -28,11 +28,17 @@ class KarisForm : public TemporalForm {
                                                           {19, int(p.choiceIndex("antiFlicker"))},
                                                           {20, p.flag("inverseLuminance")},
                                                           {21, pq_}}));
-        current.recorder().dispatch(shader_, push.width, push.height, bindings(current, out), push);
+        float filter[9];
+        karisFilter(push.jitterX, push.jitterY, filter);
+        current.recorder().upload(fitted(filter_, sizeof filter), std::as_bytes(std::span(filter)));
+        std::vector<Binding> all = bindings(current, out);
+        all.push_back(memory(filter_));
+        current.recorder().dispatch(shader_, push.width, push.height, all, push);
     }
     bool showsBlend() const override { return !pq_; }
     bool pq_;
     Shader shader_;
+    Buffer filter_;
 };
 
 template <bool pq>
