@@ -102,10 +102,7 @@ void framesFor(std::optional<Frames>& frames, const BenchFrames& o, const Method
                const std::vector<MethodSpec>& methods, const Exec& exec) {
     const bool synthetic = o.shot.empty();
     const std::string pattern = synthetic ? patternFor(method) : "", scene = synthetic ? sceneFor(o, method) : "";
-    if (frames && frames->info.width == o.width && frames->info.height == o.height &&
-        (!synthetic || (frames->subsamples == pattern && frames->scene == scene)))
-        return;
-    if (frames && !synthetic) return;
+    if (frames && (!synthetic || (frames->subsamples == pattern && frames->scene == scene))) return;
     frames.reset();  // frames with many sub-samples are large: one pattern's are in memory at a time
     frames = synthetic ? synthFrames(o, methods, scene, pattern) : shotFrames(o, methods);
     for (auto* sampled : {&frames->jittered, &frames->centre})

@@ -24,8 +24,8 @@ struct Frames {
         return m.method->sampling() == Sampling::jittered ? jittered : centre;
     }
 };
-// Frames that serve `method`, with what all of `methods` read, encoded for the display; those of `before` where they
-// serve. Throws UsageError, InputError.
+// Frames that serve `method`, with what all of `methods` read, encoded for the display; those of `before`, made
+// with the same options, where they serve. Throws UsageError, InputError.
 void framesFor(std::optional<Frames>& before, const BenchFrames& options, const MethodSpec& method,
                const std::vector<MethodSpec>& methods, const Exec& exec);
 

@@ -32,8 +32,6 @@ vk::Format vulkan(Format f) {
             return vk::Format::eR16G16Sfloat;
         case Format::r32f:
             return vk::Format::eR32Sfloat;
-        case Format::r16f:
-            return vk::Format::eR16Sfloat;
         case Format::r32ui:
             return vk::Format::eR32Uint;
         case Format::rgba8:
@@ -189,8 +187,6 @@ size_t bytesPerTexel(Format f) {
         case Format::r32ui:
         case Format::rgba8:
             return 4;
-        case Format::r16f:
-            return 2;
     }
     throw std::logic_error("gpu::Format: unknown");
 }

@@ -37,7 +37,7 @@ std::string refusal(int result, const std::string& device, const std::string& du
 // Real cards before software. Throws DeviceError: no Vulkan in this build, no loader on this machine.
 std::vector<DeviceInfo> listDevices();
 
-enum class Format { rgba32f, rgba16f, rg32f, rg16f, r32f, r16f, r32ui, rgba8 };
+enum class Format { rgba32f, rgba16f, rg32f, rg16f, r32f, r32ui, rgba8 };
 size_t bytesPerTexel(Format format);
 
 class DeviceState;  // Vulkan's objects: device_state.h

@@ -5,22 +5,17 @@
 
 #include <cstring>
 
+#include "gpu/gpu_testing.h"
+
 using namespace aa;
 using namespace aa::gpu;
 using testing::HasSubstr;
 
 namespace {
 
-class GpuDevice : public testing::Test {
+class GpuDevice : public DeviceTest {
   protected:
-    void SetUp() override {
-        try {
-            if (listDevices().empty()) GTEST_SKIP() << "no Vulkan device here";
-        } catch (const DeviceError& e) {
-            GTEST_SKIP() << e.what();
-        }
-        device = std::make_unique<Device>("vulkan");
-    }
+    void open() override { device = std::make_unique<Device>("vulkan"); }
     std::unique_ptr<Device> device;
 };
 

@@ -52,55 +52,52 @@ void fill(const PlaneU& plane, std::byte* to) {
 }
 std::vector<const PlaneF*> planesOf(const Rgb& colour) { return {&colour.c[0], &colour.c[1], &colour.c[2]}; }
 
-// The planes behind an input that is a picture of floats, layer by layer; empty for ids.
-std::vector<std::vector<const PlaneF*>> planesOf(const Frame& f, Input which, std::vector<Rgb>& converted) {
-    std::vector<std::vector<const PlaneF*>> layers;
+// One layer of an input: planes of floats, or one of ids.
+struct Layer {
+    std::vector<const PlaneF*> planes;
+    const PlaneU* ids = nullptr;
+    bool empty() const { return ids ? ids->empty() : planes[0]->empty(); }
+};
+bool isArray(Input which) { return which >= Input::subColour; }
+// What lies behind an input. That of subEncoded is yet to be encoded.
+std::vector<Layer> layersOf(const Frame& f, Input which) {
+    const auto ofSamples = [&](const auto& layerOf) {
+        std::vector<Layer> layers;
+        for (const SubSample& s : f.subSamples) layers.push_back(layerOf(s));
+        return layers;
+    };
     switch (which) {
         case Input::colour:
-            return {planesOf(f.colorLinear)};
+            return {{planesOf(f.colorLinear)}};
         case Input::encoded:
-            return {planesOf(f.colorEncoded)};
+            return {{planesOf(f.colorEncoded)}};
         case Input::albedo:
-            return {planesOf(f.albedoLinear)};
+            return {{planesOf(f.albedoLinear)}};
         case Input::albedoEncoded:
-            return {planesOf(f.albedoEncoded)};
+            return {{planesOf(f.albedoEncoded)}};
         case Input::depth:
-            return {{&f.depthView}};
+            return {{{&f.depthView}}};
         case Input::normal:
-            return {planesOf(f.normalWorld)};
+            return {{planesOf(f.normalWorld)}};
         case Input::motion:
-            return {{&f.motionXPx, &f.motionYPx}};
+            return {{{&f.motionXPx, &f.motionYPx}}};
         case Input::edges:
-            return {{&f.edgeXPx, &f.edgeYPx}};
-        case Input::subColour:
-            for (const SubSample& s : f.subSamples) layers.push_back(planesOf(s.colorLinear));
-            return layers;
-        case Input::subEncoded:
-            converted.resize(f.subSamples.size());
-            for (size_t i = 0; i < converted.size(); i++) {
-                encode(f.subSamples[i].colorLinear, f.display, {}, converted[i]);
-                layers.push_back(planesOf(converted[i]));
-            }
-            return layers;
-        case Input::subNormal:
-            for (const SubSample& s : f.subSamples) layers.push_back(planesOf(s.normalWorld));
-            return layers;
-        case Input::subDepth:
-            for (const SubSample& s : f.subSamples) layers.push_back({&s.depthView});
-            return layers;
+            return {{{&f.edgeXPx, &f.edgeYPx}}};
         case Input::objectId:
+            return {{{}, &f.objectId}};
         case Input::mask:
+            return {{{}, &f.subSampleMask}};
+        case Input::subColour:
+        case Input::subEncoded:
+            return ofSamples([](const SubSample& s) { return Layer{planesOf(s.colorLinear)}; });
+        case Input::subNormal:
+            return ofSamples([](const SubSample& s) { return Layer{planesOf(s.normalWorld)}; });
+        case Input::subDepth:
+            return ofSamples([](const SubSample& s) { return Layer{{&s.depthView}}; });
         case Input::subId:
-            return {};
+            return ofSamples([](const SubSample& s) { return Layer{{}, &s.objectId}; });
     }
     return {};
-}
-std::vector<const PlaneU*> idsOf(const Frame& f, Input which) {
-    if (which == Input::objectId) return {&f.objectId};
-    if (which == Input::mask) return {&f.subSampleMask};
-    std::vector<const PlaneU*> layers;
-    for (const SubSample& s : f.subSamples) layers.push_back(&s.objectId);
-    return layers;
 }
 Format formatOf(Input which, const Session& session) {
     switch (which) {
@@ -125,62 +122,33 @@ Format formatOf(Input which, const Session& session) {
 }  // namespace
 
 bool Inputs::offers(Input which) const {
-    const Frame& f = *frame_;
-    const auto all = [&](auto member) { return !f.subSamples.empty() && !(f.subSamples[0].*member).empty(); };
-    switch (which) {
-        case Input::colour:
-            return !f.colorLinear.empty();
-        case Input::encoded:
-            return !f.colorEncoded.empty();
-        case Input::albedo:
-            return !f.albedoLinear.empty();
-        case Input::albedoEncoded:
-            return !f.albedoEncoded.empty();
-        case Input::depth:
-            return !f.depthView.empty();
-        case Input::normal:
-            return !f.normalWorld.empty();
-        case Input::objectId:
-            return !f.objectId.empty();
-        case Input::mask:
-            return !f.subSampleMask.empty();
-        case Input::motion:
-            return !f.motionXPx.empty();
-        case Input::edges:
-            return !f.edgeXPx.empty();
-        case Input::subColour:
-        case Input::subEncoded:
-            return all(&SubSample::colorLinear);
-        case Input::subNormal:
-            return all(&SubSample::normalWorld);
-        case Input::subDepth:
-            return all(&SubSample::depthView);
-        case Input::subId:
-            return all(&SubSample::objectId);
-    }
-    return false;
+    const std::vector<Layer> layers = layersOf(*frame_, which);
+    return !layers.empty() && !layers[0].empty();
 }
 
 const Image& Inputs::get(Input which, Recorder& recorder) {
     Image& image = images_[which];
-    if (!current_.insert(which).second) return image;
+    if (current_.contains(which)) return image;
     const Frame& f = *frame_;
     if (!offers(which)) throw std::logic_error("gpu::Inputs: the frame lacks input " + std::to_string(int(which)));
-    std::vector<Rgb> converted;
-    const auto planes = planesOf(f, which, converted);
-    const auto ids = planes.empty() ? idsOf(f, which) : std::vector<const PlaneU*>{};
-    const bool array = which == Input::subColour || which == Input::subEncoded || which == Input::subNormal ||
-                       which == Input::subDepth || which == Input::subId;
-    const size_t layers = planes.empty() ? ids.size() : planes.size();
+    std::vector<Layer> layers = layersOf(f, which);
+    std::vector<Rgb> encoded(which == Input::subEncoded ? layers.size() : 0);
+    for (size_t i = 0; i < encoded.size(); i++) {
+        encode(f.subSamples[i].colorLinear, f.display, {}, encoded[i]);
+        layers[i].planes = planesOf(encoded[i]);
+    }
     const Format format = formatOf(which, session_);
-    if (image.width() != f.width || image.height() != f.height || image.layers() != int(layers) ||
+    if (image.width() != f.width || image.height() != f.height || image.layers() != int(layers.size()) ||
         image.format() != format)
-        image = Image(session_.device(), f.width, f.height, format, array ? int(layers) : 0);
-    const size_t bytes = image.bytes() / layers;
+        image = Image(session_.device(), f.width, f.height, format, isArray(which) ? int(layers.size()) : 0);
+    const size_t bytes = image.bytes() / layers.size();
     recorder.upload(image, [&](std::byte* to) {
-        for (size_t i = 0; i < layers; i++, to += bytes)
-            planes.empty() ? fill(*ids[i], to) : fill(planes[i], format, to);
+        for (const Layer& layer : layers) {
+            layer.ids ? fill(*layer.ids, to) : fill(layer.planes, format, to);
+            to += bytes;
+        }
     });
+    current_.insert(which);
     return image;
 }
 

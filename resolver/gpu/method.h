@@ -67,7 +67,6 @@ class Session {
     ~Session();
     const Device& device() const { return device_; }
     bool fast() const { return settings_.precision == Precision::fast; }
-    const Settings& settings() const { return settings_; }
     // Formats of images that a method makes: colours and histories, and values that no engine keeps in 16 bits (depth,
     // counts, weights).
     Format colour() const { return fast() ? Format::rgba16f : Format::rgba32f; }
@@ -132,7 +131,6 @@ class GpuMethod : public Method {
     size_t stateBytes() const final;
     const PlaneF* rejection() const final { return rejection_.empty() ? nullptr : &rejection_; }
     std::optional<double> deviceSeconds() const final;
-    const std::vector<PassTime>& passTimes() const { return recorder_.times(); }  // of the last frame
 
   protected:
     // Where history was not used (Rejection), R32F; written by methods that have one when keepRejection is set.

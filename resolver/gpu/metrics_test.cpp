@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "gpu/gpu_testing.h"
 #include "metrics/flip.h"
 
 using namespace aa;
@@ -62,16 +63,9 @@ double largestDifference(const PlaneF& a, const PlaneF& b) {
     return largest;
 }
 
-class GpuMetrics : public testing::Test {
+class GpuMetrics : public DeviceTest {
   protected:
-    void SetUp() override {
-        try {
-            if (listDevices().empty()) GTEST_SKIP() << "no Vulkan device here";
-        } catch (const DeviceError& e) {
-            GTEST_SKIP() << e.what();
-        }
-        session = std::make_unique<Session>(Settings{.device = "vulkan"});
-    }
+    void open() override { session = std::make_unique<Session>(Settings{.device = "vulkan"}); }
     std::unique_ptr<Session> session;
 };
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "gpu/forms.h"
-#include "methods/sharpen_kernels.h"
+#include "methods/sharpen.h"
 #include "methods/stage.h"
 
 namespace aa::gpu {
@@ -38,9 +38,7 @@ class SharpenStage : public ImageStage {
     SharpenStage(Session& session, const std::string& filter, Space space)
         : ImageStage(session),
           shader_("stages/sharpen",
-                  {{10, filter == "xu"     ? Sharpen::xu
-                        : filter == "norm" ? Sharpen::norm
-                                           : Sharpen::lumaPost},
+                  {{10, sharpenByName(filter)},
                    {11, space == Space::encoded ? SharpenRange::display : SharpenRange::neighbourhood}}) {}
     const Image& record(Current& current, const Image& image, const Image*) override {
         Image& sharpened = shown(image);

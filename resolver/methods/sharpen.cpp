@@ -1,6 +1,14 @@
 #include "methods/sharpen.h"
 
+#include <stdexcept>
+
 namespace aa {
+
+Sharpen sharpenByName(const std::string& text) {
+    for (const auto& choice : kSharpens)
+        if (choice.text == text) return choice.value;
+    throw std::logic_error("sharpenByName: expected one of kSharpens, found '" + text + "'");
+}
 
 void sharpen(const Rgb& image, Sharpen filter, Space space, const Exec& exec, Rgb& out) {
     if (out.width() != image.width() || out.height() != image.height()) out = Rgb(image.width(), image.height());

@@ -10,6 +10,10 @@
 
 namespace aa {
 
+inline constexpr Choice<Sharpen> kSharpens[] = {
+    {"xu", Sharpen::xu}, {"norm", Sharpen::norm}, {"lumaPost", Sharpen::lumaPost}};
+Sharpen sharpenByName(const std::string& text);  // one of kSharpens
+
 // `image` needs a filled border of one pixel. `out` is resized to it; its border is not filled.
 void sharpen(const Rgb& image, Sharpen filter, Space space, const Exec& exec, Rgb& out);
 

@@ -23,13 +23,11 @@ class SharpenStage : public Stage {
 };
 
 StageDescriptor sharpenStage() {
-    return {.value = choiceParam("sharpen", "norm", {"xu", "norm", "lumaPost"},
+    return {.value = choiceParam("sharpen", "norm", kSharpens,
                                  "3x3 cross with gain 1 (xu) or 1/4 (norm), or luminance against its 3x3 mean",
                                  "[Oliveros 2018, eq 3.1 and 4.17]; [Castorina 2023]"),
             .create = [](const std::string& value, const MethodSpec&, const ShotInfo&) {
-                return std::make_unique<SharpenStage>(value == "xu"     ? Sharpen::xu
-                                                      : value == "norm" ? Sharpen::norm
-                                                                        : Sharpen::lumaPost);
+                return std::make_unique<SharpenStage>(sharpenByName(value));
             }};
 }
 

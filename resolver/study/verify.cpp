@@ -5,6 +5,7 @@
 
 #include "methods/driver.h"
 #include "shot/frame_stream.h"
+#include "study/feed.h"
 #include "study/prepare.h"
 #include "study/run.h"
 
@@ -37,11 +38,6 @@ void compare(const Rgb& expected, const Rgb& found, int frame, VerifyResult& r, 
         }
     r.mostByFrame.push_back(mostHere);
 }
-double median(std::vector<double> v) {
-    if (v.empty()) return 0;
-    std::nth_element(v.begin(), v.begin() + std::ptrdiff_t(v.size() / 2), v.end());
-    return v[v.size() / 2];
-}
 }  // namespace
 
 std::vector<VerifyResult> verify(const ShotReader& shot, const VerifyOptions& o, gpu::Session& session,
@@ -60,30 +56,29 @@ std::vector<VerifyResult> verify(const ShotReader& shot, const VerifyOptions& o,
     const InputPlan plan = planInput(shot, run);
     FrameStream stream(shot, o.frames, plan.jittered, /*withTruth=*/false, plan.centre);
     std::vector<Sums> sums(o.methods.size());
-    std::vector<std::vector<double>> deviceSeconds(o.methods.size()), cpuSeconds(o.methods.size());
-    std::shared_ptr<Frame> centreFrame;
-    for (bool first = true; auto frame = stream.next(); first = false) {
-        if (first) frame->reset = true;
-        prepareFrame(*frame, processor, o.display, o.exec);
-        if (stream.centre() && stream.centre() != centreFrame)
-            prepareFrame(*stream.centre(), processor, o.display, o.exec);
-        centreFrame = stream.centre();
-        session.share(*frame);
+    Feed feed(
+        stream,
+        [&](int i, Frame& frame) {
+            if (i == 0) frame.reset = true;
+            prepareFrame(frame, processor, o.display, o.exec);
+        },
+        &session);
+    while (const auto item = feed.next()) {
         for (size_t k = 0; k < o.methods.size(); k++) {
-            const Frame& input = plan.readsCentre(o.methods[k]) ? *stream.centre() : *frame;
-            cpuSeconds[k].push_back(processor[k].resolve(input, input.display, o.exec));
-            deviceSeconds[k].push_back(device[k].resolve(input, input.display, o.exec));
-            compare(processor[k].out, device[k].out, frame->number, results[k], sums[k]);
+            const Frame& input = plan.readsCentre(o.methods[k]) ? *item->centre : *item->frame;
+            processor[k].resolve(input, input.display, o.exec);
+            device[k].resolve(input, input.display, o.exec);
+            compare(processor[k].out, device[k].out, item->frame->number, results[k], sums[k]);
         }
-        progress.step("frame " + std::to_string(frame->number));
+        progress.step("frame " + std::to_string(item->frame->number));
         if (progress.interrupted()) break;
     }
+    feed.stop();
     session.forget();
     for (size_t k = 0; k < results.size(); k++) {
         VerifyResult& r = results[k];
         r.rms = sums[k].values ? std::sqrt(sums[k].squares / double(sums[k].values)) : 0;
         r.shareAboveCode = sums[k].pixels ? double(sums[k].above) / double(sums[k].pixels) : 0;
-        r.deviceSeconds = median(deviceSeconds[k]), r.cpuSeconds = median(cpuSeconds[k]);
         r.stateBytes = processor[k].method->stateBytes(), r.deviceStateBytes = device[k].method->stateBytes();
     }
     return results;

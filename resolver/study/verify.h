@@ -26,7 +26,6 @@ struct VerifyResult {
     double shareAboveCode = 0;  // of pixels that differ by more than 1/255 in a channel
     size_t notFinite = 0;       // values that are no number in one form alone
     int worstFrame = 0, worstX = 0, worstY = 0;
-    double deviceSeconds = 0, cpuSeconds = 0;  // medians per frame
     std::vector<double> mostByFrame;
     size_t stateBytes = 0, deviceStateBytes = 0;
 };

@@ -34,8 +34,7 @@ void unjitter(const Frame& frame, TemporalIn& in) {
 void unjitter(const Frame& frame, TemporalIn& in, ExpectedDepth& e, const uint32_t*& objectId) {
     unjitter(frame, in);
     const glm::ivec2 texel = unjitteredTexel(frame);
-    e.perDepth[2] += e.perDepth[0] * float(texel.x) + e.perDepth[1] * float(texel.y);
-    e.constant[2] += e.constant[0] * float(texel.x) + e.constant[1] * float(texel.y);
+    e = readBeside(e, texel);
     if (objectId) objectId += ptrdiff_t(texel.y) * in.stride + texel.x;
 }
 void unjitter(const Rgb& in, glm::dvec2 jitterPx, const Exec& exec, Rgb& out) {
@@ -104,6 +103,11 @@ ExpectedDepth expectedDepth(const Frame& frame, const Camera& before) {
     const glm::dvec3 c = -(rx * rays->constant[0] + ry * rays->constant[1]) - glm::dvec3(0, 0, rw);
     e.known = true;
     for (int i = 0; i < 3; i++) e.perDepth[i] = float(d[i]), e.constant[i] = float(c[i]);
+    return e;
+}
+ExpectedDepth readBeside(ExpectedDepth e, glm::ivec2 texels) {
+    e.perDepth[2] += e.perDepth[0] * float(texels.x) + e.perDepth[1] * float(texels.y);
+    e.constant[2] += e.constant[0] * float(texels.x) + e.constant[1] * float(texels.y);
     return e;
 }
 ExpectedDepth expectedDepth(const Frame& frame) {

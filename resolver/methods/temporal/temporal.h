@@ -72,6 +72,8 @@ void runTemporal(const RowKernel<Args>& kernel, const Exec& exec, const Args& ar
 ExpectedDepth expectedDepth(const Frame& frame);
 // In any other camera.
 ExpectedDepth expectedDepth(const Frame& frame, const Camera& before);
+// Of the depth that is read `texels` beside each pixel.
+ExpectedDepth readBeside(ExpectedDepth expected, glm::ivec2 texels);
 
 // View position of the sample at pixel position p and depth z: x and y = z * (perDepth . (p, 1)) + constant . (p, 1).
 struct ViewRays {

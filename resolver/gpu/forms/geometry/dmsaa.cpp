@@ -6,20 +6,13 @@
 namespace aa::gpu {
 namespace {
 
-class DmsaaForm : public GeometryForm {
+class DmsaaForm : public OneShaderGeometryForm {
   public:
     DmsaaForm(Session& session, const Params& p, const ShotInfo& shot)
-        : GeometryForm(session, p, "dmsaa", {}),
-          shader_("geometry/dmsaa", constants(shot, {{10, int(p.choiceIndex("vecMode"))},
-                                                     {11, p.realf("depthThreshold")},
-                                                     {12, p.realf("gain")}})) {}
-
-  private:
-    void record(Current& current, Image& out) override {
-        current.recorder().dispatch(shader_, current.width(), current.height(), bindings(current, out),
-                                    push(current.frame()));
-    }
-    Shader shader_;
+        : OneShaderGeometryForm(session, p, "dmsaa", {},
+                                Shader("geometry/dmsaa", constants(shot, {{10, int(p.choiceIndex("vecMode"))},
+                                                                          {11, p.realf("depthThreshold")},
+                                                                          {12, p.realf("gain")}}))) {}
 };
 }  // namespace
 

@@ -42,6 +42,20 @@ class GeometryForm : public GpuMethod {
     Image unread_[2][2];
 };
 
+// A method whose one shader binds nothing beyond that.
+class OneShaderGeometryForm : public GeometryForm {
+  protected:
+    OneShaderGeometryForm(Session& session, const Params& params, std::string reader, Reads reads, Shader shader)
+        : GeometryForm(session, params, std::move(reader), reads), shader_(std::move(shader)) {}
+
+  private:
+    void record(Current& current, Image& out) override {
+        current.recorder().dispatch(shader_, current.width(), current.height(), bindings(current, out),
+                                    push(current.frame()));
+    }
+    Shader shader_;
+};
+
 template <class T>
 std::span<const std::byte> bytesOf(const std::vector<T>& values) {
     return std::as_bytes(std::span(values));

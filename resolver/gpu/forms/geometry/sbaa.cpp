@@ -6,21 +6,14 @@
 namespace aa::gpu {
 namespace {
 
-class SbaaForm : public GeometryForm {
+class SbaaForm : public OneShaderGeometryForm {
   public:
     SbaaForm(Session& session, const Params& p, const ShotInfo& shot)
-        : GeometryForm(session, p, "sbaa", {.normals = true, .ids = true, .colours = true, .camera = true}),
-          shader_("geometry/sbaa", constants(shot, {{10, p.integer("surfaces")},
-                                                    {11, p.realf("mergeNormal")},
-                                                    {12, p.realf("mergeDepth")},
-                                                    {13, p.flag("ids")}})) {}
-
-  private:
-    void record(Current& current, Image& out) override {
-        current.recorder().dispatch(shader_, current.width(), current.height(), bindings(current, out),
-                                    push(current.frame()));
-    }
-    Shader shader_;
+        : OneShaderGeometryForm(session, p, "sbaa", {.normals = true, .ids = true, .colours = true, .camera = true},
+                                Shader("geometry/sbaa", constants(shot, {{10, p.integer("surfaces")},
+                                                                         {11, p.realf("mergeNormal")},
+                                                                         {12, p.realf("mergeDepth")},
+                                                                         {13, p.flag("ids")}}))) {}
 };
 }  // namespace
 

@@ -6,27 +6,20 @@
 namespace aa::gpu {
 namespace {
 
-class SraaForm : public GeometryForm {
+class SraaForm : public OneShaderGeometryForm {
   public:
     SraaForm(Session& session, const Params& p, const ShotInfo& shot, const SraaArgs& a)
-        : GeometryForm(session, p, "sraa:distance=plane",
-                       {.normals = true, .ids = a.ids != SraaIds::off, .camera = !a.plainDepth}),
-          shader_("geometry/sraa", constants(shot, {{10, a.radius},
-                                                    {11, a.maxMetric},
-                                                    {12, a.plainDepth},
-                                                    {13, a.ids},
-                                                    {14, a.spatial},
-                                                    {15, a.depth},
-                                                    {16, a.normal},
-                                                    {17, a.sharpness},
-                                                    {18, a.depthSigma}})) {}
-
-  private:
-    void record(Current& current, Image& out) override {
-        current.recorder().dispatch(shader_, current.width(), current.height(), bindings(current, out),
-                                    push(current.frame()));
-    }
-    Shader shader_;
+        : OneShaderGeometryForm(session, p, "sraa:distance=plane",
+                                {.normals = true, .ids = a.ids != SraaIds::off, .camera = !a.plainDepth},
+                                Shader("geometry/sraa", constants(shot, {{10, a.radius},
+                                                                         {11, a.maxMetric},
+                                                                         {12, a.plainDepth},
+                                                                         {13, a.ids},
+                                                                         {14, a.spatial},
+                                                                         {15, a.depth},
+                                                                         {16, a.normal},
+                                                                         {17, a.sharpness},
+                                                                         {18, a.depthSigma}}))) {}
 };
 }  // namespace
 

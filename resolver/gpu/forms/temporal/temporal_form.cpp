@@ -1,5 +1,7 @@
 #include "gpu/forms/temporal/temporal_form.h"
 
+#include <algorithm>
+
 #include "methods/temporal/temporal.h"
 
 namespace aa::gpu {
@@ -42,21 +44,20 @@ TemporalPush TemporalForm::begin(const Frame& frame) {
     TemporalPush push{};
     push.width = frame.width, push.height = frame.height;
     push.jitterX = float(frame.jitterPx.x), push.jitterY = float(frame.jitterPx.y);
-    push.perDepth[2] = 1;
     push.feedbackCeiling = has("warmup") ? temporal::feedbackCeiling(params(), history_.framesSinceReset()) : 1.0f;
     push.firstFrame = history_.fresh();
     push.frameNumber = uint32_t(frame.number);
-    const ExpectedDepth e = expectedDepth(frame);
-    push.depthKnown = e.known;
-    for (int i = 0; i < 3; i++) push.perDepth[i] = e.perDepth[i], push.constant[i] = e.constant[i];
+    ExpectedDepth e = expectedDepth(frame);
     if (has("unjitter") && params().flag("unjitter")) {
         const glm::ivec2 texel = temporal::unjitteredTexel(frame);
         push.texelX = texel.x, push.texelY = texel.y;
-        push.perDepth[2] += push.perDepth[0] * float(texel.x) + push.perDepth[1] * float(texel.y);
-        push.constant[2] += push.constant[0] * float(texel.x) + push.constant[1] * float(texel.y);
+        e = readBeside(e, texel);
         push.readX = -push.jitterX, push.readY = -push.jitterY;
         push.jitterX = push.jitterY = 0;
     }
+    push.depthKnown = e.known;
+    std::copy_n(e.perDepth, 3, push.perDepth);
+    std::copy_n(e.constant, 3, push.constant);
     return push;
 }
 
