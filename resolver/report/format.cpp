@@ -54,6 +54,9 @@ std::string runLine(const RunResults& run) {
     line += "; " + run.machine + ", " + run.isa + ", " + std::to_string(run.threads) +
             (run.threads == 1 ? " thread" : " threads");
     if (run.precision != "fast") line += ", precision " + run.precision;
+    if (run.device)
+        line += std::string("; ") + (run.device->judged ? "methods" : "times beside") + " on " + run.device->name +
+                (run.device->isSoftware() ? " (software)" : "") + ", " + run.device->precision;
     return line;
 }
 
