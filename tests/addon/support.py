@@ -124,11 +124,101 @@ def key(owner, path, values: dict[int, object], index: int = -1) -> None:
         else:
             setattr(owner, path, value)
         owner.keyframe_insert(path, frame=frame, index=index)
-    animated = owner.id_data  # a shape key's curves belong to the block of all keys
-    for curve in animated.animation_data.action.fcurves:
+    for curve in curves_of(owner.id_data):  # a shape key's curves belong to the block of all keys
         curve.extrapolation = "LINEAR"
         for point in curve.keyframe_points:
             point.interpolation = "LINEAR"
+
+
+def curves_of(owner: bpy.types.ID) -> list:
+    """F-curves of the action that animates a data-block."""
+    animation = owner.animation_data
+    action = animation.action
+    if hasattr(action, "fcurves"):
+        return list(action.fcurves)
+    return [  # since 5.0 actions have layers alone
+        curve
+        for layer in action.layers
+        for strip in layer.strips
+        for bag in strip.channelbags
+        if bag.slot == animation.action_slot
+        for curve in bag.fcurves
+    ]
+
+
+# Inputs of shader nodes that were renamed in 4.0.
+_RENAMED_INPUTS = {
+    "Specular": "Specular IOR Level",
+    "Emission": "Emission Color",
+    "Transmission": "Transmission Weight",
+    "Subsurface": "Subsurface Weight",
+    "Sheen": "Sheen Weight",
+    "Clearcoat": "Coat Weight",
+}
+
+
+def shader_input(node: bpy.types.Node, name: str) -> bpy.types.NodeSocket:
+    """Input of a shader node by its name in 3.4, whatever it is called in this version."""
+    socket = node.inputs.get(name) or node.inputs.get(_RENAMED_INPUTS.get(name, name))
+    assert socket is not None, f"{node.bl_idname} has no input '{name}': {node.inputs.keys()}"
+    return socket
+
+
+def add_group_socket(tree: bpy.types.NodeTree, kind: str, name: str, is_output: bool) -> None:
+    """Declares an input or output of a node group, such as ("NodeSocketGeometry", "Geometry")."""
+    if hasattr(tree, "interface"):  # since 4.0
+        tree.interface.new_socket(name, in_out="OUTPUT" if is_output else "INPUT", socket_type=kind)
+    else:
+        (tree.outputs if is_output else tree.inputs).new(kind, name)
+
+
+def geometry_group(name: str) -> bpy.types.NodeTree:
+    """Node group of a geometry-nodes modifier with one geometry in, one out, and a node for each."""
+    tree = bpy.data.node_groups.new(name, "GeometryNodeTree")
+    for is_output in (False, True):
+        add_group_socket(tree, "NodeSocketGeometry", "Geometry", is_output)
+    tree.nodes.new("NodeGroupInput").name = "Start"
+    tree.nodes.new("NodeGroupOutput").name = "End"
+    return tree
+
+
+def smooth_by_angle(mesh: bpy.types.Mesh, angle: float) -> None:
+    """Breaks the smooth shading of a mesh where faces meet at more than an angle, radians."""
+    if hasattr(mesh, "use_auto_smooth"):  # before 4.1
+        mesh.use_auto_smooth, mesh.auto_smooth_angle = True, angle
+    else:
+        mesh.set_sharp_from_angle(angle=angle)
+
+
+def set_displacement_method(material: bpy.types.Material, method: str) -> None:
+    """``BUMP``, ``DISPLACEMENT`` or ``BOTH``."""
+    owner = (
+        material if hasattr(material, "displacement_method") else material.cycles
+    )  # the latter before 4.1
+    owner.displacement_method = method
+
+
+def eevee_engine() -> str:
+    """Engine id of Eevee: BLENDER_EEVEE, but BLENDER_EEVEE_NEXT from 4.2 to 4.5."""
+    scene = bpy.data.scenes.new("Engine")
+    try:
+        scene.render.engine = "BLENDER_EEVEE"
+    except TypeError:
+        scene.render.engine = "BLENDER_EEVEE_NEXT"
+    engine = scene.render.engine
+    bpy.data.scenes.remove(scene)
+    return engine
+
+
+def compositor_tree(scene: bpy.types.Scene) -> bpy.types.NodeTree:
+    """An empty compositor of the scene, switched on."""
+    if hasattr(scene, "compositing_node_group"):  # since 5.0
+        tree = bpy.data.node_groups.new("Compositor", "CompositorNodeTree")
+        scene.compositing_node_group = tree
+        return tree
+    scene.use_nodes = True
+    scene.node_tree.nodes.clear()
+    return scene.node_tree
 
 
 def export(out: str, *options: str) -> dict:

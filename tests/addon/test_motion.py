@@ -298,10 +298,8 @@ def test_geometry_nodes() -> None:
     mesh = bpy.data.meshes.new("Points")
     mesh.from_pydata([(x, -1, z) for x in (-1.5, -0.5, 0.5, 1.5) for z in (0.1, 1.2)], [], [])
     item = t.add_object(scene, "Points", mesh)
-    tree = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
-    tree.inputs.new("NodeSocketGeometry", "Geometry")
-    tree.outputs.new("NodeSocketGeometry", "Geometry")
-    start, end = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+    tree = t.geometry_group("Scatter")
+    start, end = tree.nodes["Start"], tree.nodes["End"]
     scatter = tree.nodes.new("GeometryNodeInstanceOnPoints")
     info = tree.nodes.new("GeometryNodeObjectInfo")
     info.inputs["Object"].default_value = source
@@ -425,7 +423,7 @@ def test_jumps_of_the_camera() -> None:
             t.add_object(scene, "Wall", None, (0, 9, 0), (0, 0, 0), (90, 1, 90))
             camera.rotation_euler = (1.5, 0, 0)
             t.key(camera, "location", {4: (0, -8, 1), 5: target})
-            for curve in camera.animation_data.action.fcurves:
+            for curve in t.curves_of(camera):
                 curve.extrapolation = "CONSTANT"
 
         return make

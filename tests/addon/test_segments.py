@@ -103,7 +103,7 @@ def test_kinds_of_edges() -> None:
         mesh = mesh_of(points, faces)  # open at both ends
         mesh.polygons.foreach_set("use_smooth", [smooth] * sides)
         if auto_smooth:
-            mesh.use_auto_smooth, mesh.auto_smooth_angle = True, auto_smooth
+            t.smooth_by_angle(mesh, auto_smooth)
         t.add_object(scene, "Cylinder", mesh)
         return exported()[0]
 
@@ -211,10 +211,8 @@ def test_instances_modifiers_and_what_is_hidden() -> None:
     points = bpy.data.meshes.new("Points")
     points.from_pydata([(-1, 0, 0.5), (0, 0, 0.5), (1, 0, 0.5)], [], [])
     item = t.add_object(scene, "Points", points)
-    tree = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
-    tree.inputs.new("NodeSocketGeometry", "Geometry")
-    tree.outputs.new("NodeSocketGeometry", "Geometry")
-    start, end = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+    tree = t.geometry_group("Scatter")
+    start, end = tree.nodes["Start"], tree.nodes["End"]
     scatter = tree.nodes.new("GeometryNodeInstanceOnPoints")
     cube = tree.nodes.new("GeometryNodeMeshCube")
     cube.inputs["Size"].default_value = (0.5, 0.5, 0.5)
