@@ -122,6 +122,58 @@ def test_lens() -> None:
     check(scene, "orthographic pan and shift")
 
 
+def test_lens_by_strips_and_drivers() -> None:
+    """Whatever animates the lens: strips of the non-linear animation, drivers."""
+    scene, camera = stage()
+    t.key(camera.data, "lens", {1: 30.0, 11: 60.0})
+    animation = camera.data.animation_data
+    action, animation.action = animation.action, None
+    animation.nla_tracks.new().strips.new("Zoom", 1, action)
+    check(scene, "zoom by a strip")
+    scene, camera = stage()
+    for path, expression in (("lens", "30 + 3 * frame"), ("shift_x", "0.03 * frame")):
+        camera.data.driver_add(path).driver.expression = expression
+    check(scene, "zoom and shift by drivers")
+
+
+def test_orthographic() -> None:
+    """An orthographic camera that pans, rolls and turns, over still, rigid and bending objects."""
+
+    def make(width=64, height=36, scale=7.0):
+        scene, camera = stage(width, height)
+        camera.data.type, camera.data.ortho_scale = "ORTHO", scale
+        return scene, camera
+
+    for label, path, values in (
+        ("pan", "location", {1: (0, -8, 1), 11: (1.5, -8, 1.4)}),
+        ("roll", "rotation_euler", {1: (1.5, 0, 0), 11: (1.5, 0.4, 0)}),
+        ("turn", "rotation_euler", {1: (1.5, 0, 0), 11: (1.5, 0.0, 0.5)}),
+        ("tilt", "rotation_euler", {1: (1.4, 0, 0), 11: (1.6, 0.0, 0.0)}),
+    ):
+        scene, camera = make()
+        t.key(camera, path, values)
+        check(scene, f"orthographic {label}")
+    for width, height, fit in ((36, 64, "AUTO"), (64, 36, "VERTICAL")):
+        scene, camera = make(width, height, 5.0)
+        camera.data.sensor_fit = fit
+        t.key(camera.data, "shift_y", {1: -0.1, 11: 0.2})
+        t.key(camera.data, "ortho_scale", {1: 5.0, 11: 7.0})
+        t.key(camera, "location", {1: (0, -8, 1), 11: (1.5, -7, 1.4)})
+        t.key(camera, "rotation_euler", {1: (1.4, 0, 0), 11: (1.5, 0.2, 0.5)})
+        moving = t.add_object(scene, "Moving", None, (0, -1, 0.5))
+        t.key(moving, "location", {1: (-1.5, -1, 0), 11: (1.5, 3, 1)})
+        t.key(moving, "rotation_euler", {1: (0, 0, 0), 11: (0.3, 0.2, 0.9)})
+        check(scene, f"orthographic, everything moves, {width} x {height} {fit}")
+    scene, camera = make()
+    holder = bpy.data.objects.new("Holder", None)
+    scene.collection.objects.link(holder)
+    camera.parent = holder
+    holder.scale = (2.0, 2.0, 2.0)
+    camera.location = (0, -4, 0.5)
+    t.key(holder, "rotation_euler", {1: (0, 0, 0), 11: (0, 0, 0.6)})
+    check(scene, "orthographic, held by what turns")
+
+
 def test_border() -> None:
     """In a border the motion is that of the same pixels of the full picture."""
 
@@ -486,6 +538,8 @@ if __name__ == "__main__":
     t.main(
         test_camera,
         test_lens,
+        test_lens_by_strips_and_drivers,
+        test_orthographic,
         test_border,
         test_rigid,
         test_shape_key,

@@ -8,7 +8,15 @@ from __future__ import annotations
 import numpy as np
 
 from ..scene import lighting, rendering
-from ..scene.camera import BACKGROUND_DEPTH, CameraState, Frame, same_camera, sample_positions
+from ..scene.camera import (
+    BACKGROUND_DEPTH,
+    CameraState,
+    Frame,
+    same_camera,
+    sample_positions,
+    unproject,
+)
+from . import turning
 from .base import Pass
 from .exposure import Exposure
 from .geometry import ids_of
@@ -33,13 +41,16 @@ class Motion(Pass):
         ids = ids_of(exposure)
         with exposure.watch.of(self.name):
             apart = exposure.instances_change
+            vector = _vectors_apart(exposure) if apart else exposure.main.get("Vector")
+            now, before = exposure.now.camera, exposure.before.camera
             exposure.vectors = motion_from_vector(
-                _vectors_apart(exposure) if apart else exposure.main.get("Vector"),
+                vector,
                 exposure.depth,
                 exposure.plan.frame,
                 exposure.offset,
-                exposure.now.camera,
-                exposure.before.camera,
+                now,
+                before,
+                turning.depth_before(exposure, vector) if turning.is_turned(now, before) else None,
             )
         wrong = _is_wrong(exposure, ids)
         vectors = np.where(wrong[..., None], np.float32(NO_PREVIOUS_POSITION_PX), exposure.vectors)
@@ -89,29 +100,47 @@ def motion_from_vector(
     jitter: tuple[float, float],
     now: CameraState,
     before: CameraState,
+    depth_before: np.ndarray | None = None,
 ) -> np.ndarray:
     """Motion current - previous (H x W x 2, pixels, y down) from Blender's Vector pass.
 
-    Vector.XY is previous - current with y up, both seen through the *current* projection: a change of lens, of
-    orthographic scale or of shift is missing and comes in here, where the previous position is taken back to a
-    direction and projected with the previous camera's own matrix. Background has no vector; it is a direction at
-    infinity that only the rotation moves (0 for an orthographic camera, whose background shows one direction).
+    Vector.XY is previous - current with y up. The jittered camera (scene/camera.py) keeps back what versions disagree
+    about; it comes in here:
+    - perspective: both positions are seen through the *current* projection. The previous one is taken back to a
+      direction and projected with the previous camera's own matrix.
+    - orthographic: both are seen by the *current* camera. The previous one is taken back to a point and projected by
+      the previous camera. Where that looked another way the point's depth counts, as the current camera would have
+      measured it: ``depth_before`` (H x W), without which it is that of now.
+
+    Background has no vector; it is a direction at infinity that only the rotation moves (0 for an orthographic
+    camera, whose background shows one direction).
     """
     x, y = sample_positions(frame, *jitter)
     vector_x, vector_y = vector[:, :, 0].astype(np.float64), vector[:, :, 1].astype(np.float64)
     motion = np.empty((frame.height, frame.width, 2), np.float64)
-    if np.array_equal(now.projection, before.projection):
+    a, b = now.projection, before.projection
+    rests = np.array_equal(a, b) and (
+        now.kind == "perspective" or np.array_equal(now.view, before.view)
+    )
+    if rests or now.kind != before.kind:
         motion[:, :, 0], motion[:, :, 1] = -vector_x, vector_y
-    else:
+    elif now.kind == "perspective":
         previous_x, previous_y = x + vector_x, y - vector_y
         ndc_x, ndc_y = 2.0 * previous_x / frame.width - 1.0, 1.0 - 2.0 * previous_y / frame.height
-        a, b = now.projection, before.projection
-        column = 2 if now.kind == "perspective" else 3
-        sign = 1.0 if now.kind == "perspective" else -1.0
-        ndc_x = (ndc_x + sign * a[0, column]) / a[0, 0] * b[0, 0] - sign * b[0, column]
-        ndc_y = (ndc_y + sign * a[1, column]) / a[1, 1] * b[1, 1] - sign * b[1, column]
+        ndc_x = (ndc_x + a[0, 2]) / a[0, 0] * b[0, 0] - b[0, 2]
+        ndc_y = (ndc_y + a[1, 2]) / a[1, 1] * b[1, 1] - b[1, 2]
         motion[:, :, 0] = x - (ndc_x + 1.0) * 0.5 * frame.width
         motion[:, :, 1] = y - (1.0 - ndc_y) * 0.5 * frame.height
+    else:
+        along = depth.astype(np.float64) if depth_before is None else depth_before
+        points = unproject(x + vector_x, y - vector_y, along, frame, now)
+        to_before = before.view @ np.linalg.inv(now.view)
+        points = points @ to_before[:3, :3].T + to_before[:3, 3]
+        ndc_x = points[..., 0] * b[0, 0] + b[0, 3]
+        ndc_y = points[..., 1] * b[1, 1] + b[1, 3]
+        motion[:, :, 0] = x - (ndc_x + 1.0) * 0.5 * frame.width
+        motion[:, :, 1] = y - (1.0 - ndc_y) * 0.5 * frame.height
+        motion[~np.isfinite(along)] = NO_PREVIOUS_POSITION_PX
     background = depth >= BACKGROUND_DEPTH
     if background.any():
         motion[background] = background_motion(frame, jitter, now, before)[background]

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from .. import compat
 from ..errors import SceneError
 
 BACKGROUND_DEPTH = 1.0e9  # anything at or beyond it is background (Cycles writes 1e10)
@@ -153,37 +152,45 @@ def same_camera(a: CameraState, b: CameraState) -> bool:
     )
 
 
-def _copy_without_shift_animation(camera: bpy.types.Object) -> bpy.types.Camera:
-    """Copy of the camera's data that keeps the animation of the lens but not of the shift."""
-    data = camera.data.copy()
-    animation = data.animation_data
-    if animation is None:
-        return data
-    if animation.action:
-        animation.action = animation.action.copy()
-        for curve in compat.action_curves(animation):
-            if curve.data_path.startswith("shift"):
-                compat.remove_curve(animation, curve)
-    for driver in list(animation.drivers):
-        if driver.data_path.startswith("shift"):
-            animation.drivers.remove(driver)
-    if len(animation.nla_tracks):
-        raise SceneError(
-            f"camera '{camera.name}': its data is animated by NLA strips; bake them to an action first"
-        )
-    return data
+# What a camera's projection depends on. Read off the evaluated camera at every frame, whatever animates it.
+_LENS = (
+    "sensor_fit", "sensor_width", "sensor_height", "lens", "ortho_scale", "shift_x", "shift_y", "clip_start",
+    "clip_end",
+)  # fmt: skip
 
 
 class JitterCamera:
-    """A camera that rides on another one and looks through a displaced window.
+    """A camera in the place of another one that looks through a displaced window; the user's camera is not touched.
 
-    It is a child with identity placement, so it follows every animation and constraint and Cycles finds its true
-    motion; the user's camera is not touched."""
+    A perspective one rides: it is a child with identity placement, so it follows every animation and constraint and
+    Cycles finds its true motion. Its lens rests: ``aim`` sets it to the current frame's. Else jitter would be
+    overwritten where the shift is animated, and Cycles' motion vectors would depend on the version: 3.4 leaves every
+    change of the projection out of them, 4.3 and 5.2 leave out that of shift and orthographic scale but count that of
+    lens and sensor in. With a lens at rest they all leave out all of it, and passes/motion.py adds it.
 
-    def __init__(self, scene: bpy.types.Scene, camera: bpy.types.Object, name: str) -> None:
+    An orthographic one rests altogether, where ``aim`` puts it: 4.3 takes the past of an orthographic camera that
+    moves for that of a perspective one. With a camera at rest all versions know the movement of objects, and
+    passes/motion.py adds the camera's."""
+
+    def __init__(
+        self,
+        scene: bpy.types.Scene,
+        camera: bpy.types.Object,
+        name: str,
+        rides: bool | None = None,
+    ) -> None:
         self.source = camera
-        self.object = bpy.data.objects.new(name, _copy_without_shift_animation(camera))
-        self.object.parent = camera
+        data = camera.data.copy()
+        data.animation_data_clear()
+        data.dof.use_dof = False  # where the user's is animated it may be on
+        self.object = bpy.data.objects.new(name, data)
+        self._rides = data.type != "ORTHO" if rides is None else rides
+        if self._rides:
+            self.object.parent = camera
+        else:
+            # Below an empty, because an object's own placement cannot hold the shear of a parent.
+            self.object.parent = bpy.data.objects.new(f"{name} Place", None)
+            scene.collection.objects.link(self.object.parent)
         scene.collection.objects.link(self.object)
 
     def aim(
@@ -193,19 +200,26 @@ class JitterCamera:
         jitter_x: float,
         jitter_y: float,
         premultiplied: tuple[float, float] = (0.0, 0.0),
+        aside: float = 0.0,
     ) -> None:
         """Displaces the samples by a jitter (pixels, y down) from the source camera at the current frame.
 
-        ``premultiplied`` is a further jitter in pixels that moves the camera, as ``premultiplied_movement`` says.
+        ``premultiplied`` is a further jitter in pixels that moves the camera, as ``premultiplied_movement`` says. An
+        orthographic camera may stand ``aside``, scene units to its right, and see the same.
         """
         placed = self.source.evaluated_get(depsgraph)
-        shift_x, shift_y = jitter_to_shift(frame, placed.data, jitter_x, jitter_y)
-        self.object.data.shift_x = placed.data.shift_x + shift_x
-        self.object.data.shift_y = placed.data.shift_y + shift_y
+        data = self.object.data
+        for name in _LENS:
+            setattr(data, name, getattr(placed.data, name))
+        shift_x, shift_y = jitter_to_shift(frame, data, jitter_x, jitter_y)
+        data.shift_x += shift_x - (aside / data.ortho_scale if aside else 0.0)
+        data.shift_y += shift_y
+        if not self._rides:
+            self.object.matrix_parent_inverse = placed.matrix_world
         # Scene units: the scale of a camera, or of what it hangs on, scales the place of its child.
         axes = [column.length for column in placed.matrix_world.to_3x3().col]
         right, up = premultiplied_movement(frame, *premultiplied)
-        self.object.location = (right / axes[0], up / axes[1], 0.0)
+        self.object.location = ((right + aside) / axes[0], up / axes[1], 0.0)
 
 
 def sample_positions(

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterator
+
 import bpy
 
 from .camera import Frame, JitterCamera
@@ -28,6 +31,7 @@ class Stage:
         self.scene, self.frame, self.cuts = scene, frame, cuts
         self._resting, self._details = resting, details
         self._cameras: dict[str, JitterCamera] = {}
+        self._second_cameras: dict[str, JitterCamera] = {}
         self._view_sets: dict[str, ViewSet] = {}
         self._states: dict[int, FrameState] = {}
 
@@ -68,6 +72,31 @@ class Stage:
         bpy.context.view_layer.update()
         depsgraph = bpy.context.evaluated_depsgraph_get()
         camera.aim(self.frame, depsgraph, *shift, premultiplied=movement)
+
+    @contextlib.contextmanager
+    def second_sight(
+        self, number: int, shift: tuple[float, float], aside: float, scale: float
+    ) -> Iterator[None]:
+        """Within this context an orthographic frame is seen by a camera that rides, from ``aside`` of the jittered
+        one; its lens, which says nothing of its picture, shows a scene unit at depth ``scale`` as large as it does.
+        """
+        source = self.cuts.at(number)
+        name = source.name_full
+        if name not in self._second_cameras:
+            self._second_cameras[name] = JitterCamera(
+                self.scene, source, "AA Resolve Second Sight", rides=True
+            )
+        camera, previous = self._second_cameras[name], self.scene.camera
+        self.scene.camera = camera.object
+        bpy.context.view_layer.update()
+        camera.aim(self.frame, bpy.context.evaluated_depsgraph_get(), *shift, aside=aside)
+        data = camera.object.data
+        data.sensor_width = data.sensor_height = 100.0
+        data.lens = data.sensor_width * scale / data.ortho_scale
+        try:
+            yield
+        finally:
+            self.scene.camera = previous
 
     def views(self, number: int, positions: list[tuple[float, float]]) -> ViewSet:
         """The sub-sample cameras of a frame's camera."""
