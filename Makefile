@@ -1,16 +1,21 @@
 # Two commands need nothing done before them: `make demo` and `make test`.
 SHELL := /bin/sh
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
+# For what starts a Blender; the tests read it when they run.
 BLENDER ?= blender
+export BLENDER
+# Debian suites whose Blender runs the add-on's tests in `make test` too: "trixie sid". Needs root or user namespaces.
+BLENDERS ?=
 # ON: warnings are errors, as in .ci/run. Said each time, so that a build folder follows.
 WERROR ?= OFF
 # dev: one instruction set, the quickest build; each preset has a folder of its own.
 PRESET ?= release
 BUILD := $(if $(filter release,$(PRESET)),build,build-$(PRESET))
+space := $() $()
 # A compiler cache is used where there is one.
 LAUNCHER := $(if $(shell command -v ccache 2>/dev/null),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache,)
 
-.PHONY: help deps configure build program install demo test fuzz sanitize bench asserts addon docs bits reproduce format clean
+.PHONY: help deps configure build program install demo test test-addon test-blenders blenders-clean fuzz sanitize bench asserts addon docs bits reproduce format clean
 help:
 	@echo "make demo       build, render two scenes in Blender, run the methods, make contact sheets and reports"
 	@echo "make test       build and run every test"
@@ -19,6 +24,8 @@ help:
 	@echo "make addon      the Blender add-on as one zip, at build/aa_resolve.zip"
 	@echo "make bench      speed of every method, ns per pixel, and of the exporter, CPU seconds"
 	@echo "make reproduce  render the study's scenes, run every method on each, write docs/results (QUICK=1: a short form)"
+	@echo "make test-addon     the add-on's tests in the Blender at BLENDER=/path/to/blender; ONLY=\"light motion\""
+	@echo "make test-blenders  the same, scenes and more in the Blenders of Debian 13 and sid; SUITES=\"trixie sid\", ONLY=..."
 	@echo "make fuzz       damaged input through the program, FUZZ_SECONDS=300, SEED=1"
 	@echo "make sanitize   unit and property tests under AddressSanitizer and UndefinedBehaviorSanitizer"
 	@echo "make asserts    unit tests with asserts on"
@@ -28,7 +35,7 @@ deps:
 	@.ci/bootstrap
 
 configure: deps
-	@cmake --preset $(PRESET) $(LAUNCHER) -DAA_WERROR=$(WERROR) >$(BUILD).log 2>&1 || { cat $(BUILD).log; rm -f $(BUILD).log; exit 1; }; mv $(BUILD).log $(BUILD)/configure.log
+	@cmake --preset $(PRESET) $(LAUNCHER) -DAA_WERROR=$(WERROR) "-DAA_BLENDERS=$(subst $(space),;,$(strip $(BLENDERS)))" >$(BUILD).log 2>&1 || { cat $(BUILD).log; rm -f $(BUILD).log; exit 1; }; mv $(BUILD).log $(BUILD)/configure.log
 
 build: configure
 	@cmake --build --preset $(PRESET) -j $(JOBS)
@@ -45,6 +52,17 @@ demo: program
 
 test: build
 	@python3 tests/run_tests.py --preset $(PRESET) -j $(JOBS)
+
+test-addon:
+	@python3 tests/addon/in_blender.py -j $(JOBS) $(ONLY)
+
+# Without the right to install mmdebstrap the script says that it is missing, and skips.
+test-blenders: program
+	@CI_PACKAGES=mmdebstrap .ci/bootstrap || true
+	@python3 tests/blenders/run.py $(BUILD)/aaresolve -j $(JOBS) --suites $(SUITES) --only $(ONLY)
+
+blenders-clean:
+	@python3 tests/blenders/debian.py clean
 
 FUZZ_SECONDS ?= 300
 SEED ?= 1

@@ -2,25 +2,14 @@
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
 
-from program import ROOT, ProgramTest, main
+from program import ROOT, ProgramTest, main, run_blender
 
 
 class Masks(ProgramTest):
     def blender(self, *arguments: object) -> None:
-        # Blender's Python finds its modules by the python3 of PATH: another one of the same version would mislead it.
-        path = ":".join(
-            p
-            for p in os.environ["PATH"].split(":")
-            if not os.path.exists(os.path.join(p, "python3")) or p == "/usr/bin"
-        )
-        command = ["blender", "-b", *map(str, arguments)]
-        done = subprocess.run(
-            command, capture_output=True, text=True, timeout=600, env={**os.environ, "PATH": path}
-        )
+        done = run_blender(*arguments)
         self.assertEqual(done.returncode, 0, done.stdout[-2000:] + done.stderr[-2000:])
 
     def pictures(self, shot, method: str) -> list[bytes]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 import tempfile
@@ -11,18 +10,19 @@ from pathlib import Path
 
 PROGRAM = Path(sys.argv[1]).resolve()
 ROOT = Path(sys.argv[2]).resolve()
+sys.path.insert(0, str(ROOT / "tests/addon"))
+
+import in_blender  # noqa: E402
 
 
 def run_blender(*arguments: object) -> subprocess.CompletedProcess:
-    """Blender's Python finds its modules by the python3 of PATH: another one of the same version would mislead it."""
-    path = ":".join(
-        p
-        for p in os.environ["PATH"].split(":")
-        if not os.path.exists(os.path.join(p, "python3")) or p == "/usr/bin"
-    )
-    command = ["blender", "-b", *map(str, arguments)]
+    """The Blender that the variable BLENDER names, else `blender`."""
     return subprocess.run(
-        command, capture_output=True, text=True, timeout=600, env={**os.environ, "PATH": path}
+        [in_blender.blender(), "-b", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=600,
+        env=in_blender.environment(),
     )
 
 

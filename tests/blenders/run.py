@@ -1,0 +1,169 @@
+"""Runs all that depends on Blender in the Blenders of other Debians, and ends with a table of scripts and Blenders.
+
+    python3 tests/blenders/run.py PROGRAM [-j 2] [--suites trixie sid host] [--only light scenes e2e.import]
+
+In each suite (`host`: the Blender of BLENDER or PATH): the add-on's tests; the scenes of `make demo` in small, exported and
+checked; the whole-program tests that start a Blender. Blender alone runs in the other Debian, the rest on this machine.
+A suite that cannot be had is named, with the reason, and skipped.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import debian
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests/addon"))
+
+import in_blender  # noqa: E402
+
+SCENES = ("hard_edges", "moving_sphere")
+WHOLE_PROGRAM = ("blender", "import", "masks")
+SCRIPTS = (
+    *in_blender.NAMES,
+    *(f"scenes.{name}" for name in SCENES),
+    *(f"e2e.{name}" for name in WHOLE_PROGRAM),
+)
+PASSES = "albedo,depth,normal,object,motion,subsamples,edges,segments"
+RAN = re.compile(r"^Ran (\d+) tests? in", re.MULTILINE)
+NOT_PASSED = re.compile(r"(?:failures|errors|skipped)=(\d+)")
+
+
+def counted_by_unittest(text: str) -> tuple[int, int]:
+    """A skipped test has not passed."""
+    ran = RAN.findall(text)
+    if not ran:
+        return 0, 0
+    bad = sum(map(int, NOT_PASSED.findall(text[text.rindex("\nRan ") :])))
+    return int(ran[-1]) - bad, int(ran[-1])
+
+
+def whole(_text: str) -> tuple[int, int]:
+    """Commands of which each must succeed: the exit code says it."""
+    return 1, 1
+
+
+class Blender:
+    """One Blender and where its scripts' words go."""
+
+    def __init__(self, name: str, path: str, program: Path, logs: Path) -> None:
+        self.name, self.path, self.program, self.logs = name, path, program, logs / name
+        self.environment = {**in_blender.environment(), "BLENDER": path}
+        told = subprocess.run([path, "--version"], capture_output=True, text=True).stdout
+        found = re.search(r"^Blender (\S+)", told, re.MULTILINE)
+        if not found:
+            sys.exit(f"blenders: {path} --version names no version")
+        self.version = found[1]
+
+    def run(self, script: str) -> in_blender.Outcome:
+        kind, _, name = script.rpartition(".")
+        folder = Path(tempfile.mkdtemp(prefix="aa_blenders_")) if kind == "scenes" else None
+        try:
+            if kind == "scenes":
+                assert folder
+                commands, count = self.scene(name, folder), whole
+            elif kind == "e2e":
+                test = ROOT / f"tests/e2e/{name}_test.py"
+                commands, count = [[sys.executable, test, self.program, ROOT]], counted_by_unittest
+            else:
+                commands, count = (
+                    [in_blender.command(name, self.path)],
+                    in_blender.counted_by_support,
+                )
+            return in_blender.run_logged(
+                script, commands, self.log(script), count, env=self.environment
+            )
+        finally:
+            if folder:
+                shutil.rmtree(folder, ignore_errors=True)
+
+    def scene(self, name: str, folder: Path) -> list[list[object]]:
+        """Build, export with every pass, check."""
+        blend, shot = folder / "scene.blend", folder / "shot"
+        headless = ROOT / "blender_addon/aa_resolve/headless.py"
+        end = ["--python-exit-code", "9", "-P"]
+        options = ["--for", "uncharted", "--passes", PASSES, "--resolution", "160", "90"]
+        frames = ["--frames", "1-3", "--truth-samples", "16"]
+        start = [self.path, "-b", "--factory-startup", *end, ROOT / f"scenes/{name}.py"]
+        return [
+            [*start, "--", "--out", blend],
+            [self.path, "-b", blend, *end, headless, "--", "--out", shot, *options, *frames],
+            [self.program, "check", shot],
+        ]
+
+    def log(self, script: str) -> Path:
+        return self.logs / f"{script}.log"
+
+
+def chosen(only: list[str]) -> list[str]:
+    """`e2e` means all of e2e."""
+    known = {*SCRIPTS, "scenes", "e2e"}
+    for name in only:
+        if name not in known:
+            sys.exit(f"blenders: no script '{name}'; there are {', '.join(SCRIPTS)}")
+    wanted = [s for s in SCRIPTS if s in only or s.partition(".")[0] in only]
+    return wanted if only else list(SCRIPTS)
+
+
+def found_blenders(suites: list[str], program: Path, logs: Path) -> tuple[list[Blender], list[str]]:
+    """And one line per suite that cannot be had."""
+    blenders, skipped = [], []
+    for suite in suites:
+        try:
+            path = in_blender.blender() if suite == "host" else str(debian.get(suite))
+            blenders.append(Blender(suite, path, program, logs))
+        except debian.CannotBeHad as reason:
+            skipped.append(f"SKIPPED {suite}: {reason}")
+            debian.say(skipped[-1])
+    return blenders, skipped
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("program", type=Path)
+    parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count(), help="scripts at a time")
+    parser.add_argument("--suites", nargs="*", default=[], help=f"{' '.join(debian.SUITES)}; host")
+    parser.add_argument("--only", nargs="*", default=[], metavar="SCRIPT")
+    parser.add_argument("--logs", type=Path, default=ROOT / "build/blenders")
+    a = parser.parse_args()
+    split = lambda words: [w for word in words for w in re.split(r"[ ,]+", word) if w]  # noqa: E731
+    scripts = chosen(split(a.only))
+    suites = split(a.suites) or list(debian.SUITES)
+    blenders, skipped = found_blenders(suites, a.program.resolve(), a.logs)
+
+    started = time.monotonic()
+    table: dict[str, list[in_blender.Outcome]] = {script: [] for script in scripts}
+    jobs = [(blender, script) for blender in blenders for script in scripts]
+    with ThreadPoolExecutor(max(a.jobs, 1)) as pool:
+        for (blender, script), outcome in zip(
+            jobs, pool.map(lambda job: job[0].run(job[1]), jobs)
+        ):
+            in_blender.show(outcome, blender.version, blender.log(script))
+            table[script].append(outcome)
+
+    outcomes = [outcome for row in table.values() for outcome in row]
+    if outcomes:
+        heads = [f"{blender.version} ({blender.name})" for blender in blenders]
+        print(f"\n| script | {' | '.join(heads)} |\n|---|{'---|' * len(heads)}")
+        for script, row in table.items():
+            cells = (str(o) if o.good else f"**{o}**" for o in row)
+            print(f"| {script} | {' | '.join(cells)} |")
+        failed = sum(not outcome.good for outcome in outcomes)
+        print(f"\n{len(outcomes) - failed} of {len(outcomes)} in {time.monotonic() - started:.0f} s")
+    for line in skipped:
+        print(f"blenders: {line}")
+    return 0 if all(outcome.good for outcome in outcomes) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
