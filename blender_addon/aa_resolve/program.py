@@ -66,9 +66,7 @@ def problem(preferred: str = "") -> str:
     if why:
         return f"{path}: {why}; {_WHAT_TO_DO[source]}"
     if version != ADDON_VERSION:
-        return (
-            f"{path}: is version {version}, but the add-on is version {ADDON_VERSION}: install both of one version"
-        )
+        return f"{path}: is version {version}, but the add-on is version {ADDON_VERSION}: install both of one version"
     return ""
 
 

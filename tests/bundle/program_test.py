@@ -70,7 +70,8 @@ class Search(unittest.TestCase):
         self.refused("/bin/ls", "is not aaresolve", "ls (GNU coreutils)")
         self.refused(
             self.script(
-                self.folder / "no_library", "echo 'libx.so.1: cannot open shared object' >&2; exit 127"
+                self.folder / "no_library",
+                "echo 'libx.so.1: cannot open shared object' >&2; exit 127",
             ),
             "cannot run here",
             "libx.so.1: cannot open shared object",
