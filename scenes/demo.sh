@@ -19,7 +19,7 @@ scene() {
         { tail -5 "$out/$name.log" >&2; exit 1; }
     ids=$(echo "$methods" | sed 's/[:+][^ ]*//g; s/ /,/g')
     "$blender" -b "$blend" --python-exit-code 9 -P "$here/../blender_addon/aa_resolve/headless.py" -- \
-        --out "$out/$name/shot" --for "$ids" --resolution 480 270 --name "$name" --passes normal,object "$@" |
+        --out "$out/$name/shot" --for "$ids" --resolution 480x270 --name "$name" --passes normal,object "$@" |
         { grep -v '^Blender\|^Read blend\|^$' || true; }
     "$program" check "$out/$name/shot"
     set --

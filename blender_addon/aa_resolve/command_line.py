@@ -6,32 +6,40 @@ from __future__ import annotations
 import argparse
 import hashlib
 import os
-from typing import NoReturn
 
 import bpy
 
 from . import jitter, registry
+from .adding import settled
 from .errors import UsageError
-from .options import add_flags, check_spans, options_of
+from .options import FlagParser, add_flags, check_spans, options_of
 from .passes.table import passes_named
 from .settings import Invocation, Settings
+from .store import Store, Stored
 
+_DESCRIPTION = """\
+Exports an animation as a shot for aaresolve. The .blend file is never changed.
 
-class _Parser(argparse.ArgumentParser):
-    """Says what is wrong in one line."""
+A shot that is there is added to: only the frames, passes and truths that it lacks are rendered."""
+_EXAMPLES = """\
+examples:
+  blender -b FILE.blend --python-exit-code 9 -P headless.py -- --out SHOT --frames 1-16 --for noaa,taaSimplest
+      exports 16 frames with the passes that the two methods read, and their truth
+  blender -b FILE.blend --python-exit-code 9 -P headless.py -- --out SHOT --frames 1-16 --passes object --plan
+      says what it would take to add the pass `object` to them
 
-    def error(self, message: str) -> NoReturn:
-        raise UsageError(f"{message} (--help lists every option)")
+exit codes: 0 done, 1 stopped by the user, 2 wrong usage, 3 the scene or a file cannot serve, 9 a fault of the exporter"""
 
 
 def build_parser() -> argparse.ArgumentParser:
     """All options; the panel uses the same ones."""
-    parser = _Parser(
+    parser = FlagParser(
         prog="blender -b FILE.blend --python-exit-code 9 -P headless.py --",
-        description="Exports an animation as a shot for aaresolve. The .blend file is never changed.",
+        usage="%(prog)s --out SHOT [options]",
+        description=_DESCRIPTION,
+        epilog=_EXAMPLES,
     )
-    add_flags(parser, Settings)
-    add_flags(parser, Invocation)
+    add_flags(parser, Settings, Invocation)
     return parser
 
 
@@ -57,9 +65,12 @@ def parse_frames(text: str, option: str) -> list[int]:
 
 
 def settings_from(arguments: argparse.Namespace, scene: bpy.types.Scene) -> Settings:
-    """Settings of parsed arguments. Raises UsageError for what contradicts itself or the scene."""
-    choices = registry.parse_choices(arguments.methods or ["noaa"])
-    passes, centre_passes, sequence = _passes_and_jitter(choices, arguments)
+    """Settings of parsed arguments, put together with what the shot has (adding.py). Raises UsageError for what
+    contradicts itself, the scene or the shot."""
+    stored = None if arguments.overwrite else Store(arguments.out, 0.0).stored()
+    # Of a shot that is there nothing is wanted but what is said.
+    choices = registry.parse_choices(arguments.methods or ([] if stored else ["noaa"]))
+    passes, centre_passes, sequence = _passes_and_jitter(choices, arguments, stored)
     if sequence not in jitter.SEQUENCES:
         raise UsageError(
             f"--jitter: unknown sequence '{sequence}'; known: {', '.join(jitter.SEQUENCES)}"
@@ -71,11 +82,8 @@ def settings_from(arguments: argparse.Namespace, scene: bpy.types.Scene) -> Sett
         raise UsageError(f"--ambient: expected three numbers >= 0, found {arguments.ambient}")
     if arguments.ambient and arguments.lighting == "as-is":
         raise UsageError("--ambient: has no effect with --lighting as-is; leave one of them out")
-    pattern = _pattern(choices, arguments.pattern, passes | centre_passes)
     frames = (
-        parse_frames(arguments.frames, "--frames")
-        if arguments.frames
-        else list(range(scene.frame_start, scene.frame_end + 1))
+        parse_frames(arguments.frames, "--frames") if arguments.frames else frames_of_scene(scene)
     )
     said = {item.name: getattr(arguments, item.name) for item, _ in options_of(Settings)}
     made = {
@@ -83,30 +91,41 @@ def settings_from(arguments: argparse.Namespace, scene: bpy.types.Scene) -> Sett
         "passes": sorted(passes),
         "centre_passes": sorted(centre_passes),
         "frames": frames,
-        "name": arguments.name or os.path.basename(os.path.abspath(arguments.out)),
-        "resolution": tuple(arguments.resolution) if arguments.resolution else None,
         "truth_frames": _truth_frames(arguments.truth_frames, frames),
         "jitter": sequence,
-        "pattern": pattern,
+        "pattern": _pattern(choices, arguments.pattern, passes | centre_passes, stored),
         "ambient": tuple(arguments.ambient) if arguments.ambient else None,
         "source": arguments.source or file_identity(bpy.data.filepath),
     }
-    return Settings(**{**said, **made})
+    return settled(Settings(**{**said, **made}), stored)
+
+
+def frames_of_scene(scene: bpy.types.Scene) -> list[int]:
+    """The scene's frame range, in its steps."""
+    return list(range(scene.frame_start, scene.frame_end + 1, scene.frame_step))
 
 
 def _passes_and_jitter(
-    choices: list[registry.MethodChoice], arguments: argparse.Namespace
+    choices: list[registry.MethodChoice], arguments: argparse.Namespace, stored: Stored | None
 ) -> tuple[set[str], set[str], str]:
     """Passes of the frames and of those at the pixel centres, and the jitter sequence.
 
     Methods that accumulate read jittered frames, all others the pixel centres: with both kinds chosen the shot holds
-    both, with one kind only the frames themselves are of that kind."""
+    both, with one kind only the frames themselves are of that kind. A shot's methods count as chosen, and its jitter is
+    the default of what is added to it."""
     passes = registry.required_passes(choices, "jittered")
     centre_passes = registry.required_passes(choices, "centre")
+    before = stored.methods if stored else []
+    known_before = [
+        registry.MethodChoice(name) for name in before if name in registry.load_methods()
+    ]
+    jittered = bool(passes or registry.required_passes(known_before, "jittered"))
     sequence = arguments.jitter
+    if sequence is None and stored:
+        sequence = stored.content["jitter"]
     if sequence is None:
         sequence = Settings.jitter if passes or not arguments.methods else "none"
-    if not passes or sequence == "none":
+    if not jittered or sequence == "none":
         passes |= centre_passes
         centre_passes = set()
     known = registry.load_passes()
@@ -129,8 +148,18 @@ def _check_projection(sequence: str, passes: set[str]) -> None:
             )
 
 
-def _pattern(choices: list[registry.MethodChoice], asked: str | None, passes: set[str]) -> str:
-    """The sub-sample pattern that serves the methods."""
+def _pattern(
+    choices: list[registry.MethodChoice],
+    asked: str | None,
+    passes: set[str],
+    stored: Stored | None,
+) -> str:
+    """The sub-sample pattern that serves the methods; that of the shot, if it has sub-samples, unless another one is
+    asked for by name."""
+    held = stored.pattern if stored and _has_subsamples(stored) else None
+    if held and not asked:
+        _check_held_pattern(choices, held)
+        return held
     pattern = registry.pattern_from(choices, asked) or Settings.pattern
     try:
         jitter.pattern_positions(pattern)
@@ -139,14 +168,29 @@ def _pattern(choices: list[registry.MethodChoice], asked: str | None, passes: se
         raise UsageError(
             f"--subsamples: expected {known} or grid1 to grid8, found '{pattern}'"
         ) from None
-    if asked and not registry.reads_subsamples(passes):
+    if asked and not held and not registry.reads_subsamples(passes):
         raise UsageError("--subsamples: has no effect, none of the methods reads sub-samples")
     return pattern
 
 
-def _truth_frames(text: str, frames: list[int]) -> list[int] | str:
+def _has_subsamples(stored: Stored) -> bool:
+    return registry.reads_subsamples(stored.passes_of("frames") | stored.passes_of("centre"))
+
+
+def _check_held_pattern(choices: list[registry.MethodChoice], held: str) -> None:
+    """Raises UsageError for methods that the sub-samples of the shot cannot serve."""
+    for choice in choices:
+        known = registry.patterns_of(choice)
+        if known and held not in known:
+            raise UsageError(
+                f"--for: {choice.id} wants sub-samples of pattern {' or '.join(known)}, the shot has {held}; choose a "
+                f"new folder, or have the shot's sub-samples rendered anew with --subsamples {known[0]}"
+            )
+
+
+def _truth_frames(text: str, frames: list[int]) -> list[int]:
     if text in ("all", "none"):
-        return text
+        return frames if text == "all" else []
     truth = parse_frames(text, "--truth-frames")
     outside = sorted(set(truth) - set(frames))
     if outside:

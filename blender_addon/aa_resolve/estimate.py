@@ -1,60 +1,95 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How long an export would take, from one frame and a little of its truth, rendered into a temporary folder."""
+"""How long an export would take and how large it would be: one or two pictures of each sort of work, rendered into a
+temporary folder. Of truth a few samples are enough."""
 
 from __future__ import annotations
 
-import dataclasses
 import os
 import tempfile
+import time
+from dataclasses import dataclass
 
-import bpy
-
-from . import ADDON_VERSION
+from .adding import Missing, Work, counted, duration
 from .export import Exporter
-from .progress import Progress
-from .settings import Settings
 from .store import Store
 
-_PROBE_SAMPLES = 8
+_FEW_SAMPLES, _MORE_SAMPLES = 1, 9  # of truth: what does not grow with them, and what does
 
 
-def estimate(scene: bpy.types.Scene, settings: Settings, progress: Progress) -> int:
-    """Measures one frame and ``_PROBE_SAMPLES`` samples of truth, and scales them up."""
-    frames = settings.frames
-    truth = frames if settings.truth_frames == "all" else settings.truth_frames
-    with tempfile.TemporaryDirectory(prefix="aa_resolve_probe_") as folder:
-        probe = dataclasses.replace(
-            settings,
-            out=os.path.join(folder, "shot"),
-            frames=frames[:2],
-            truth_frames=[frames[0]],
-            truth_samples=min(settings.truth_samples, _PROBE_SAMPLES),
+@dataclass(frozen=True)
+class Cost:
+    """One picture."""
+
+    seconds: float
+    bytes: int
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What all missing work would take."""
+
+    groups: list[tuple[Work, int, Cost]]  # an example, how many there are, what each takes
+
+    @property
+    def seconds(self) -> float:
+        """Of all."""
+        return sum(count * cost.seconds for _, count, cost in self.groups)
+
+    @property
+    def bytes(self) -> int:
+        """Of all."""
+        return sum(count * cost.bytes for _, count, cost in self.groups)
+
+    def amount(self) -> str:
+        """Time and size in words."""
+        return f"{duration(self.seconds)} and {self.bytes / 1e6:.0f} MB"
+
+    def sentence(self) -> str:
+        """For people."""
+        parts = ", ".join(
+            f"{counted(item, count)} of {cost.seconds:.2g} s" for item, count, cost in self.groups
         )
-        exporter = Exporter(scene, probe, progress, ADDON_VERSION)
-        exporter.prepare()
-        store = Store(probe.out, 1.0)
-        store.open(probe.fingerprint(), False)
-        exporter.run(store)
-        frame_seconds, truth_seconds = exporter.seconds_of("frames"), exporter.seconds_of("truth")
-        centre_seconds = exporter.seconds_of("centre")
-        size = os.path.getsize(os.path.join(probe.out, store.picture("frames", frames[0])))
-    truths = 0 if truth == "none" else 1 if exporter.static else len(truth)
-    centres = 1 if exporter.static else len(frames)
-    per_truth = truth_seconds * settings.truth_samples / probe.truth_samples
-    total = frame_seconds * len(frames) + centre_seconds * centres + per_truth * truths
-    progress.say(
-        "estimate",
-        f"about {_duration(total)}: {len(frames)} frames of {frame_seconds + centre_seconds:.2g} s, "
-        f"{truths} truths of {per_truth:.2g} s, {size * len(frames) / 1e6:.0f} MB",
-        seconds=round(total, 1),
-        frame_seconds=round(frame_seconds, 3),
-        truth_seconds=round(per_truth, 3),
-        bytes=size * len(frames),
-    )
-    return 0
+        return f"about {self.amount()}: {parts}" if parts else "nothing to render"
+
+    def values(self) -> dict:
+        """For machines; a frame counts with its centre picture."""
+        frame = sum(c.seconds for item, _, c in self.groups if item.kind != "truth")
+        truth = sum(c.seconds for item, _, c in self.groups if item.kind == "truth")
+        return {
+            "seconds": round(self.seconds, 1),
+            "frame_seconds": round(frame, 3),
+            "truth_seconds": round(truth, 3),
+            "bytes": self.bytes,
+        }
 
 
-def _duration(seconds: float) -> str:
-    if seconds < 100:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60:.0f} min" if seconds < 6000 else f"{seconds / 3600:.1f} h"
+def estimate(exporter: Exporter, store: Store, missing: Missing) -> Estimate:
+    """Measures every sort of missing work; nothing is written to the store's folder."""
+    found = []
+    with tempfile.TemporaryDirectory(prefix="aa_resolve_probe_") as folder:
+        path = os.path.join(folder, "probe.exr")
+        for item, count in missing.groups():
+            if item.kind == "truth":
+                cost = _of_truth(exporter, store, item, path)
+            else:
+                alike = [other for other in missing.work if other.sort == item.sort]
+                # The first one also pays for what the following ones find ready.
+                cost = [_measured(exporter, store, other, path) for other in alike[:2]][-1]
+            found.append((item, count, cost))
+    return Estimate(found)
+
+
+def _measured(
+    exporter: Exporter, store: Store, item: Work, path: str, samples: int | None = None
+) -> Cost:
+    started = time.perf_counter()
+    made = exporter.make(item, path, store, samples)
+    return Cost(time.perf_counter() - started, sum(made.bytes.values()))
+
+
+def _of_truth(exporter: Exporter, store: Store, item: Work, path: str) -> Cost:
+    samples = exporter.settings.truth_samples
+    few = _measured(exporter, store, item, path, _FEW_SAMPLES)
+    more = _measured(exporter, store, item, path, _MORE_SAMPLES)
+    each = max(0.0, more.seconds - few.seconds) / (_MORE_SAMPLES - _FEW_SAMPLES)
+    return Cost(few.seconds + each * (samples - _FEW_SAMPLES), more.bytes)

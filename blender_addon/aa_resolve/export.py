@@ -9,11 +9,13 @@ from __future__ import annotations
 import os
 import time
 from dataclasses import dataclass, field
+from statistics import median
 
 import bpy
 
+from .adding import Missing, Work, lacking, lacks, lacks_truth
 from .manifest import head_of
-from .picture import Pictures
+from .picture import Kept, Made, Pictures
 from .plan import Plan
 from .prepare import make_plan
 from .progress import Progress
@@ -38,12 +40,12 @@ class Summary:
     elsewhere: int = 0
     costs: dict[str, Cost] = field(default_factory=dict)
 
-    def add(self, record: dict) -> None:
+    def add(self, made: Made) -> None:
         """Counts a picture and its passes."""
         self.rendered += 1
-        for name, seconds in record["render_seconds"].items():
+        for name, seconds in made.seconds.items():
             self.costs.setdefault(name, Cost()).seconds += seconds
-        for name, size in record["bytes"].items():
+        for name, size in made.bytes.items():
             self.costs.setdefault(name, Cost()).bytes += size
 
 
@@ -51,102 +53,128 @@ class Exporter:
     """One scene, one shot."""
 
     plan: Plan
+    pictures: Pictures
 
     def __init__(
         self, scene: bpy.types.Scene, settings: Settings, progress: Progress, version: str
     ) -> None:
         self.scene, self.settings, self.progress = scene, settings, progress
         self.version = version
-        self._seconds: dict[str, list[float]] = {"frames": [], "centre": [], "truth": []}
+        self._seconds: dict[tuple, list[float]] = {}  # by sort of work
 
     def prepare(self) -> None:
         """Checks the scene, brings it to the light model and decides what each frame needs."""
         self.plan = make_plan(self.scene, self.settings, self.progress)
+        self.pictures = Pictures(self.plan)
 
     @property
     def static(self) -> bool:
         """True when every frame shows the same."""
         return self.plan.static
 
-    def _work(self) -> list[tuple[str, int]]:
-        """Every picture of the shot, in the order in which they are made."""
-        settings, truth_frames = self.settings, self._truth_frames()
-        work = []
-        for number in settings.frames:
-            work.append(("frames", number))
-            if self.plan.passes_of["centre"] and (not self.static or number == settings.frames[0]):
-                work.append(("centre", number))
-            if number in truth_frames:
-                work.append(("truth", number))
-        return work
+    def content(self) -> dict:
+        """What decides the content of every picture: the settings' part, and what the scene and the programs add."""
+        return {
+            **self.settings.fingerprint(),
+            "static": self.static,
+            "version": self.version,
+            "blender": bpy.app.version_string,
+        }
 
-    def _truth_frames(self) -> set[int]:
+    def missing(self, store: Store) -> Missing:
+        """What the shot lacks. Raises UsageError when it was made with settings that make other pictures."""
+        stored = None
+        if not self.settings.overwrite:
+            store.refuse_other(self.content())
+            stored = store.stored()
+        return lacking(self.settings, self.plan.passes_of, self.static, stored)
+
+    def open(self, store: Store) -> None:
+        """Begins the shot in the store's folder, or joins it."""
         settings = self.settings
-        if settings.truth_frames == "none":
-            return set()
-        if self.static:
-            return {settings.frames[0]}
-        return set(settings.frames if settings.truth_frames == "all" else settings.truth_frames)
+        pattern = settings.pattern if self.plan.has_subsamples else None
+        store.open(self.content(), settings.methods, settings.name, pattern, settings.overwrite)
 
     def run(self, store: Store) -> Summary:
         """Renders everything that is not finished and not claimed by another process."""
-        settings = self.settings
-        head, work = head_of(self.plan, self.version), self._work()
-        pictures = Pictures(self.plan)
-        summary = Summary()
-        for position, (kind, number) in enumerate(work):
-            if not store.claim(kind, number):
-                if store.record(kind, number) is None:
-                    summary.elsewhere += 1
-                else:
-                    summary.skipped += 1
-                continue
-            started = time.perf_counter()
-            try:
-                path = os.path.join(store.folder, store.picture(kind, number))
-                record = (
-                    pictures.truth(number, path)
-                    if kind == "truth"
-                    else pictures.frame(kind, number, path)
-                )
-            except BaseException:
-                store.release(kind, number)
-                raise
-            store.finish(kind, number, record, head, settings.frames)
-            self._seconds[kind].append(time.perf_counter() - started)
-            summary.add(record)
-            self._report(kind, number, record, os.path.getsize(path), work[position + 1 :])
+        head = head_of(self.plan, self.version)
+        stored = store.stored()
+        every = lacking(self.settings, self.plan.passes_of, self.static, None).work
+        work = lacking(self.settings, self.plan.passes_of, self.static, stored).work
+        summary = Summary(skipped=len(every) - len(work))
+        progressed = True
+        # What another process had at first may be free later, or lack a pass that only this one wants.
+        while work and progressed:
+            rendered, left = summary.rendered, []
+            for position, item in enumerate(work):
+                if self._waits(item, store) or not self._claim(item, store):
+                    if self._lacks(item, store.record(item.kind, item.number)):
+                        left.append(item)
+                    else:
+                        summary.skipped += 1
+                    continue
+                started = time.perf_counter()
+                made, size = self._make(item, store, head)
+                seconds = time.perf_counter() - started
+                self._seconds.setdefault(item.sort, []).append(seconds)
+                summary.add(made)
+                self._report(item, made, seconds, size, left + work[position + 1 :])
+            work, progressed = left, summary.rendered > rendered
+        summary.elsewhere = len(work)
         with store.locked():
-            store.write_manifest(head, settings.frames)
+            store.write_manifest(head)
         return summary
 
-    def seconds_of(self, kind: str) -> float:
-        """Seconds of the last picture of a kind (``frames``, ``centre``, ``truth``); 0 where there was none."""
-        return self._seconds[kind][-1] if self._seconds[kind] else 0.0
+    def _lacks(self, item: Work, record: dict | None) -> bool:
+        if item.kind == "truth":
+            return lacks_truth(self.settings, record)
+        return bool(lacks(self.plan.passes_of[item.kind], record, self.settings.pattern))
 
-    def _report(
-        self, kind: str, number: int, record: dict, size: int, rest: list[tuple[str, int]]
-    ) -> None:
-        seconds = self._seconds[kind][-1]
-        typical = {
-            name: sorted(values)[len(values) // 2] if values else seconds
-            for name, values in self._seconds.items()
-        }
-        left = sum(typical[name] for name, _ in rest)
-        label = {"frames": "frame"}.get(kind, kind)
-        parts = ", ".join(
-            f"{name} {value:.2f} s" for name, value in record["render_seconds"].items()
-        )
+    def _claim(self, item: Work, store: Store) -> bool:
+        return store.claim(item.kind, item.number, lambda record: self._lacks(item, record))
+
+    def _waits(self, item: Work, store: Store) -> bool:
+        """True for what is to be made last while others still lack it."""
+        if not item.last or (self.static and item.kind == "centre"):
+            return False
+        others = store.stored().records["frames"].keys() - {item.number}
+        return any(self._lacks(item, store.record(item.kind, number)) for number in others)
+
+    def _make(self, item: Work, store: Store, head: dict) -> tuple[Made, int]:
+        """Makes a claimed picture; also the bytes of its file."""
+        try:
+            made = self.make(item, store.unfinished(item.kind, item.number), store)
+            return made, store.finish(item.kind, item.number, made.record, head)
+        except BaseException:
+            store.release(item.kind, item.number)
+            raise
+
+    def make(self, item: Work, path: str, store: Store, truth_samples: int | None = None) -> Made:
+        """Writes the picture of a piece of work to ``path``, with all that the store has of it."""
+        if item.kind == "truth":
+            return self.pictures.truth(item.number, path, truth_samples)
+        record = None if self.settings.overwrite else store.record(item.kind, item.number)
+        names = lacks(self.plan.passes_of[item.kind], record, self.settings.pattern)
+        file = os.path.join(store.folder, store.picture(item.kind, item.number))
+        kept = Kept(file, record) if record is not None else None
+        return self.pictures.frame(item.kind, item.number, path, names, kept)
+
+    def _report(self, item: Work, made: Made, seconds: float, size: int, rest: list[Work]) -> None:
+        typical = {sort: median(values) for sort, values in self._seconds.items()}
+        left = sum(typical.get(other.sort, seconds) for other in rest)
+        label = {"frames": "frame"}.get(item.kind, item.kind)
+        parts = ", ".join(f"{name} {value:.2f} s" for name, value in made.seconds.items())
+        what = f"{label} {item.number}"
+        if item.adds and item.passes:
+            what += f", {', '.join(sorted(item.passes))} added"
         self.progress.say(
             label,
-            f"{label} {number}: {seconds:.2f} s ({parts}), {size / 1e6:.2f} MB, {left:.0f} s left",
-            frame=number,
+            f"{what}: {seconds:.2f} s ({parts}), {size / 1e6:.2f} MB, {left:.0f} s left",
+            frame=item.number,
+            adds=item.adds,
             seconds=round(seconds, 3),
             bytes=size,
             left_seconds=round(left, 1),
             remaining=len(rest),
-            passes={
-                "seconds": record["render_seconds"],
-                "bytes": record["bytes"],
-            },
+            passes={"seconds": made.seconds, "bytes": made.bytes},
         )

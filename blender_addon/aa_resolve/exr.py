@@ -14,6 +14,7 @@ from __future__ import annotations
 import os
 import struct
 import zlib
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
@@ -126,38 +127,64 @@ def _block(planes: list[np.ndarray], row: int, lines: int) -> np.ndarray:
     return np.concatenate(rows, axis=1).reshape(-1)
 
 
+@dataclass
+class _Stored:
+    """One part as it lies in a file."""
+
+    name: str
+    header: bytes
+    blocks: list[tuple[int, bytes]]  # first line and bytes, packed
+
+
+def _stored(part: Part, display: tuple[int, int], pool: ThreadPoolExecutor) -> _Stored:
+    order = sorted(range(len(part.channels)), key=lambda index: part.channels[index].encode())
+    planes = part.planes()
+    ordered = [planes[index] for index in order]
+    lines = COMPRESSIONS[part.compression][1]
+    rows = range(0, part.shape[0], lines)
+
+    def packed(row: int) -> bytes:
+        return _pack(_block(ordered, row, lines), part.compression)
+
+    header = _header(part, display, order, len(rows))
+    return _Stored(part.name, header, list(zip(rows, pool.map(packed, rows))))
+
+
+def _all_stored(parts: list[Part], display: tuple[int, int]) -> list[_Stored]:
+    # deflate runs outside Python's lock
+    with ThreadPoolExecutor(max_workers=os.cpu_count() or 1) as pool:
+        return [_stored(part, display, pool) for part in parts]
+
+
 def write_parts(path: str, parts: list[Part]) -> dict[str, int]:
     """Writes all parts to ``path`` and returns the bytes that the blocks of each take.
 
     On failure nothing is left under that name. Raises SceneError with what the system says."""
+    return _write(path, _all_stored(parts, parts[0].shape))
+
+
+def add_parts(source: str, path: str, parts: list[Part], order: list[str]) -> dict[str, int]:
+    """Writes the parts of the file ``source`` and ``parts`` to ``path``, sorted by ``order``; returns bytes by part.
+
+    A part of ``source`` is copied as it lies there, to the bit, or replaced by the one of its name in ``parts``. The
+    result is the file that ``write_parts`` would have made of all of them at once. Raises SceneError.
+    """
+    kept, display = _parts_as_stored(source)
+    merged = {part.name: part for part in [*kept, *_all_stored(parts, display)]}
+    return _write(path, sorted(merged.values(), key=lambda part: order.index(part.name)))
+
+
+def _write(path: str, parts: list[_Stored]) -> dict[str, int]:
     many = len(parts) > 1
-    headers, stored, lines = [], [], []
-    with ThreadPoolExecutor(
-        max_workers=os.cpu_count() or 1
-    ) as pool:  # deflate runs outside Python's lock
-        for part in parts:
-            order = sorted(
-                range(len(part.channels)), key=lambda index: part.channels[index].encode()
-            )
-            planes = part.planes()
-            ordered = [planes[index] for index in order]
-            step = COMPRESSIONS[part.compression][1]
-            rows = range(0, part.shape[0], step)
-            headers.append(_header(part, parts[0].shape, order, len(rows)))
-
-            def packed(row, planes=ordered, lines=step, kind=part.compression) -> bytes:
-                return _pack(_block(planes, row, lines), kind)
-
-            stored.append(list(pool.map(packed, rows)))
-            lines.append(step)
     flags = _VERSION | (_MULTIPART if many else 0)
-    start = struct.pack("<ii", _MAGIC, flags) + b"".join(headers) + (b"\0" if many else b"")
-    position = len(start) + 8 * sum(len(blocks) for blocks in stored)
+    headers = b"".join(part.header for part in parts)
+    start = struct.pack("<ii", _MAGIC, flags) + headers + (b"\0" if many else b"")
+    position = len(start) + 8 * sum(len(part.blocks) for part in parts)
     offsets, body, sizes = [], [], {}
-    for number, (part, blocks) in enumerate(zip(parts, stored)):
+    for number, part in enumerate(parts):
         sizes[part.name] = 0
-        for index, block in enumerate(blocks):
-            label = struct.pack("<ii", index * lines[number], len(block))
+        for row, block in part.blocks:
+            label = struct.pack("<ii", row, len(block))
             label = struct.pack("<i", number) + label if many else label
             offsets.append(position)
             body += [label, block]
@@ -188,6 +215,7 @@ class _Header:
     height: int = 0
     top: int = 0
     blocks: int = 0
+    text: bytes = b""  # as it lies in the file
 
 
 def _read_header(content: memoryview, position: int) -> tuple[_Header | None, int]:
@@ -237,15 +265,42 @@ def read_channels(path: str) -> dict[str, np.ndarray]:
 
     Reads scanline files without compression, ZIPS or ZIP. Without compression the arrays are views of the file's
     bytes: a channel that nobody looks at costs nothing."""
+    return _opened(path, _read)
+
+
+def _opened(path: str, read: Callable):
+    """What ``read`` makes of a file's bytes. Raises SceneError where they are none of an EXR."""
     try:
         # Into an array of numpy's, whose large ones lie in huge pages: the page faults of a bytes object cost more
         # than the reading.
-        return _read(memoryview(np.fromfile(path, np.uint8)))
+        return read(memoryview(np.fromfile(path, np.uint8)))
     except (OSError, IndexError, ValueError, KeyError, struct.error, zlib.error) as error:
         raise SceneError(f"{path}: cannot be read as EXR ({error})") from error
 
 
-def _read(content: memoryview) -> dict[str, np.ndarray]:
+def _parts_as_stored(path: str) -> tuple[list[_Stored], tuple[int, int]]:
+    """Every part of a file, nothing unpacked, and the size (H, W) of the first one."""
+    return _opened(path, _stored_in)
+
+
+def _stored_in(content: memoryview) -> tuple[list[_Stored], tuple[int, int]]:
+    headers, position, many = _headers(content)
+    parts = []
+    for header in headers:
+        blocks = []
+        for offset in struct.unpack_from(f"<{header.blocks}Q", content, position):
+            label = offset + (4 if many else 0)  # behind the number of the part
+            row, size = struct.unpack_from("<ii", content, label)
+            if label + 8 + size > len(content):
+                raise ValueError("it ends too early")
+            blocks.append((row, bytes(content[label + 8 : label + 8 + size])))
+        position += 8 * header.blocks
+        parts.append(_Stored(header.name, header.text, blocks))
+    return parts, (headers[0].height, headers[0].width)
+
+
+def _headers(content: memoryview) -> tuple[list[_Header], int, bool]:
+    """The header of every part, the position behind them, and whether the file can hold several parts."""
     magic, flags = struct.unpack_from("<ii", content, 0)
     if magic != _MAGIC:
         raise ValueError("wrong magic number")
@@ -253,12 +308,17 @@ def _read(content: memoryview) -> dict[str, np.ndarray]:
     headers: list[_Header] = []
     position = 8
     while True:
-        header, position = _read_header(content, position)
-        if header is None:
-            break
-        headers.append(header)
-        if not many:
-            break
+        header, behind = _read_header(content, position)
+        if header is not None:
+            header.text = bytes(content[position:behind])
+            headers.append(header)
+        position = behind
+        if header is None or not many:
+            return headers, position, many
+
+
+def _read(content: memoryview) -> dict[str, np.ndarray]:
+    headers, position, many = _headers(content)
     channels: dict[str, np.ndarray] = {}
     for number, header in enumerate(headers):
         offsets = struct.unpack_from(f"<{header.blocks}Q", content, position)

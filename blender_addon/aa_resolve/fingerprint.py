@@ -7,10 +7,10 @@ from .options import options_of
 from .settings import Settings
 
 _CHANGED = {
-    "centre_passes": "--for",
     "first_frame": "the first of --frames",
     "version": "the version of the add-on",
     "blender": "the version of Blender",
+    "static": "whether nothing moves in --frames",
 }
 
 

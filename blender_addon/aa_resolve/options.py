@@ -6,9 +6,11 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import difflib
+import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NoReturn
 
 from .errors import UsageError
 
@@ -41,7 +43,10 @@ class Option:
     flag: str
     help: str
     metavar: str | tuple[str, ...] | None = None  # one name per value
-    number: type | None = None  # int or float; texts otherwise
+    group: str = ""  # heading of the help under which it stands
+    number: Callable[
+        [str], Any
+    ] | None = None  # reads a value from its text; texts as they are otherwise
     choices: Mapping[str, tuple[str, str]] = field(default_factory=dict)  # value -> label, tooltip
     span: Span | None = None  # refused outside
     unsaid: object = _SAME  # what the command line holds without the flag, if not the default
@@ -66,27 +71,90 @@ def options_of(table: type) -> Iterator[tuple[dataclasses.Field, Option]]:
             yield item, item.metadata["option"]
 
 
-def add_flags(parser: argparse.ArgumentParser, table: type) -> None:
-    """One flag per option; parsed values carry the names of the fields."""
-    for item, known in options_of(table):
-        default = item.default if known.unsaid is _SAME else known.unsaid
-        more: dict[str, Any] = {"dest": item.name, "help": known.help}
-        if isinstance(default, bool):
-            parser.add_argument(known.flag, action=f"store_{not default}".lower(), **more)
-            continue
-        if default is dataclasses.MISSING:
-            more["required"] = True
-        else:
-            more["default"] = default
-        if known.repeated:
-            more["action"] = "append"
-        if known.number is not None:
-            more["type"] = known.number
-        if known.choices:
-            more["choices"] = tuple(known.choices)
-        if isinstance(known.metavar, tuple):
-            more["nargs"] = len(known.metavar)
-        parser.add_argument(known.flag, metavar=known.metavar, **more)
+class FlagParser(argparse.ArgumentParser):
+    """Takes flags by their whole names only, and says what is wrong in one line."""
+
+    def __init__(self, **known) -> None:
+        super().__init__(
+            allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter, **known
+        )
+
+    def parse_args(self, words, namespace=None):
+        """As ever; of an unknown flag the nearest one is named, and a value may begin with a minus and a digit."""
+        said: list[str] = []
+        for word in words:
+            flag = word.partition("=")[0]
+            if word.startswith("--") and flag not in self._option_string_actions:
+                near = difflib.get_close_matches(flag, self._option_string_actions, 1)
+                hint = f"; did you mean {near[0]}?" if near else ""
+                self.error(f"unknown option {flag}{hint}")
+            if re.match(r"-[0-9]", word) and said and said[-1] in self._option_string_actions:
+                word = f"{said.pop()}={word}"
+            said.append(word)
+        parsed, unknown = self.parse_known_args(said, namespace)
+        if unknown:
+            self.error(f"unexpected '{unknown[0]}': every value belongs to a flag")
+        return parsed
+
+    def error(self, message: str) -> NoReturn:
+        raise UsageError(f"{message.removeprefix('argument ')} (--help lists every option)")
+
+
+def whole_number(text: str) -> int:
+    """An option's value that is a whole number."""
+    return _read(int, text, "a whole number")
+
+
+def real_number(text: str) -> float:
+    """An option's value that is a number."""
+    return _read(float, text, "a number")
+
+
+def size(text: str) -> tuple[int, int]:
+    """Width and height, written WxH as everywhere."""
+    found = re.fullmatch(r"([0-9]+)x([0-9]+)", text)
+    if not found:
+        raise argparse.ArgumentTypeError(
+            f"expected WIDTHxHEIGHT in one word, as in 480x270, found '{text}'"
+        )
+    return int(found[1]), int(found[2])
+
+
+def _read(kind: type, text: str, expected: str):
+    try:
+        return kind(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"expected {expected}, found '{text}'") from None
+
+
+def add_flags(parser: argparse.ArgumentParser, *tables: type) -> None:
+    """One flag per option, under the headings of their groups; parsed values carry the names of the fields."""
+    groups: dict[str, Any] = {}
+    for item, known in (pair for table in tables for pair in options_of(table)):
+        if known.group not in groups:
+            groups[known.group] = parser.add_argument_group(known.group)
+        _add_flag(groups[known.group], item, known)
+
+
+def _add_flag(group, item: dataclasses.Field, known: Option) -> None:
+    default = item.default if known.unsaid is _SAME else known.unsaid
+    more: dict[str, Any] = {"dest": item.name, "help": known.help}
+    if isinstance(default, bool):
+        group.add_argument(known.flag, action=f"store_{not default}".lower(), **more)
+        return
+    if default is dataclasses.MISSING:
+        more["required"] = True
+    else:
+        more["default"] = default
+    if known.repeated:
+        more["action"] = "append"
+    if known.number is not None:
+        more["type"] = known.number
+    if known.choices:
+        more["choices"] = tuple(known.choices)
+    if isinstance(known.metavar, tuple):
+        more["nargs"] = len(known.metavar)
+    group.add_argument(known.flag, metavar=known.metavar, **more)
 
 
 def check_spans(values: Mapping[str, Any], table: type) -> None:

@@ -29,7 +29,7 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) ->
         scene.render.resolution_percentage = 100
     frame = cam.frame_of(scene)
     cuts = CameraCuts(scene)
-    cuts.at(settings.frames[0])
+    cuts.at(settings.first_frame)
     if settings.jitter_projection == "pre":
         _refuse_other_than_perspective(cuts, settings.frames)
     suitability.show_what_renders(scene)
@@ -51,7 +51,7 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) ->
     if any(item.from_meshes for item in passes):
         notes += surfaces.notes_on_edges()
     notes += surfaces.semi_transparent_note()
-    scene.frame_set(settings.frames[0])
+    scene.frame_set(settings.first_frame)
     rendering.prepare(scene, view_layer)
     folder = rendering.temporary_folder()
     light = lighting.set_up(scene, settings.lighting, settings.ambient, folder)

@@ -12,6 +12,8 @@ import os
 import sys
 from typing import IO
 
+from .errors import SceneError
+
 
 class Progress:
     """Progress to standard output, as text or JSON lines."""
@@ -26,8 +28,15 @@ class Progress:
 
     def say(self, event: str, text: str, **values) -> None:
         """One step: ``event`` and ``values`` for machines, ``text`` for people."""
-        if self.as_json:
-            self._stream.write(json.dumps({"event": event, **values, "text": text}) + "\n")
-        else:
-            self._stream.write(text + "\n")
-        self._stream.flush()
+        self._write(json.dumps({"event": event, **values, "text": text}) if self.as_json else text)
+
+    def ask(self, question: str) -> None:
+        """A question, whose answer follows on its line."""
+        self._write(question, end="")
+
+    def _write(self, text: str, end: str = "\n") -> None:
+        try:
+            self._stream.write(text + end)
+            self._stream.flush()
+        except OSError as error:
+            raise SceneError(f"standard output cannot be written: {error.strerror}") from error

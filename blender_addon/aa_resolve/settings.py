@@ -7,10 +7,10 @@ Each option is declared once, here. Flags, properties of the panel and the comma
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 
 from . import exr, jitter, registry
-from .options import Widget, option, options_of
+from .options import Widget, option, options_of, real_number, size, whole_number
 
 _DEFAULT_SEQUENCE = "halton23"
 _SEQUENCES = "; ".join(f"{name}: {text}" for name, text in jitter.SEQUENCES.items())
@@ -55,10 +55,11 @@ class Settings:
                 subtype="DIR_PATH",
             ),
         ),
+        group="What to export",
     )
     frames: list[int] = option(
         "--frames",
-        "frames, e.g. 1-16 or 1,4,8 (default: the scene's range)",
+        "frames, e.g. 1-16 or 1,4,8 (default: the scene's range and step, after an estimate of their time and size)",
         metavar="LIST",
         unsaid=None,
         panel=(
@@ -67,6 +68,8 @@ class Settings:
             Widget("Last", "Last frame", 16, name="last"),
         ),
         words=lambda panel: ["{}-{}".format(*panel.range())],
+        decides_content=False,  # beyond the first one
+        group="What to export",
     )
     methods: list[str] = option(
         "--for",
@@ -76,22 +79,27 @@ class Settings:
         repeated=True,
         decides_content=False,  # beyond the passes
         words=lambda panel: [",".join(panel.chosen())],
+        group="What to export",
     )
     passes: list[str] = option(  # of the jittered frames
         "--passes",
-        f"passes to write in addition to those of --for, of {', '.join(registry.load_passes())}",
+        f"passes to write in addition to those of --for, of {', '.join(registry.load_passes())}; a shot keeps those "
+        "that it has",
         metavar="LIST",
         unsaid="",
-        changed="--for/--passes",
+        decides_content=False,  # each stands in a part of its own
+        group="What to export",
     )
     # Of the same instants at the pixel centres.
     centre_passes: list[str] = field(default_factory=list)
+    # Where the jitter begins; None: with the first of the frames.
+    origin: int | None = None
     resolution: tuple[int, int] | None = option(
         "--resolution",
-        "pixels (default: the scene's)",
+        "pixels, e.g. 480x270 (default: the scene's)",
         default=None,
-        metavar=("W", "H"),
-        number=int,
+        metavar="WxH",
+        number=size,
         span=(4, 65536),  # Blender's own limits
         panel=(
             Widget(
@@ -99,14 +107,15 @@ class Settings:
             ),
             Widget("Resolution", "Width and height, pixels", (480, 270)),
         ),
-        words=lambda panel: [*map(str, panel.resolution)] if panel.use_resolution else None,
+        words=lambda panel: ["{}x{}".format(*panel.resolution)] if panel.use_resolution else None,
+        group="What to export",
     )
     samples: int = option(
         "--samples",
         "shading samples per pixel, all at one point: geometry stays aliased (default %(default)s)",
         default=1,
         metavar="N",
-        number=int,
+        number=whole_number,
         span=(1, 1 << 16),
         panel=(
             Widget(
@@ -114,13 +123,15 @@ class Settings:
                 "Samples per pixel, all at one point: geometry stays aliased, shading noise is averaged",
             ),
         ),
+        group="Samples and truth",
     )
     truth_samples: int = option(
         "--truth-samples",
-        "samples per pixel and half of the truth (%(default)s)",
+        "samples per pixel and half of the truth (%(default)s); more than a shot has: its truth is rendered anew",
         default=256,
+        decides_content=False,  # the truth has files of its own
         metavar="N",
-        number=int,
+        number=whole_number,
         span=(1, 1 << 20),
         panel=(
             Widget(
@@ -128,11 +139,12 @@ class Settings:
                 "Samples per pixel in each of the two halves of the ground truth",
             ),
         ),
+        group="Samples and truth",
     )
-    truth_frames: list[int] | str = option(
+    truth_frames: list[int] = option(
         "--truth-frames",
         "frames with ground truth: all, none or e.g. 1,8,16 (%(default)s); a static shot has one for all frames",
-        default="all",
+        default="all",  # of the flag; here always the frames
         metavar="LIST",
         decides_content=False,
         panel=(
@@ -145,6 +157,7 @@ class Settings:
             ),
         ),
         words=_truth_words,
+        group="Samples and truth",
     )
     jitter: str = option(
         "--jitter",
@@ -160,19 +173,24 @@ class Settings:
             ),
         ),
         applies=lambda panel: panel.reads_jittered_frames(),
+        group="Jitter and sub-samples",
     )
     period: int = option(
         "--period",
         "frames after which the jitter repeats (%(default)s)",
         default=16,
         metavar="N",
-        number=int,
+        number=whole_number,
         span=(1, 1 << 20),
         panel=(Widget("Period", "Frames after which the jitter repeats"),),
         applies=lambda panel: panel.reads_jittered_frames(),
+        group="Jitter and sub-samples",
     )
     jitter_centred: bool = option(
-        "--jitter-centred", "subtract the mean of one period of the jitter", default=False
+        "--jitter-centred",
+        "subtract the mean of one period of the jitter",
+        default=False,
+        group="Jitter and sub-samples",
     )
     jitter_projection: str = option(
         "--jitter-projection",
@@ -182,12 +200,14 @@ class Settings:
         choices=dict.fromkeys(
             ("post", "pre"), ("", "")
         ),  # pre: scene/camera.py, premultiplied_movement
+        group="Jitter and sub-samples",
     )
     pattern: str = option(
         "--subsamples",
         f"sub-sample pattern: {_PATTERNS} or gridN, around pixel centre + jitter (default: what "
-        f"serves the methods, else {_DEFAULT_PATTERN})",
+        f"serves the methods, else {_DEFAULT_PATTERN}); another one than a shot has: its sub-samples are rendered anew",
         default=_DEFAULT_PATTERN,
+        decides_content=False,  # of another part than theirs
         metavar="PATTERN",
         unsaid=None,
         panel=(
@@ -200,6 +220,7 @@ class Settings:
         ),
         words=lambda panel: [panel.pattern] if panel.pattern != _AUTOMATIC else None,
         applies=lambda panel: panel.reads_subsamples(),
+        group="Jitter and sub-samples",
     )
     lighting: str = option(
         "--lighting",
@@ -216,13 +237,14 @@ class Settings:
             ),
         },
         panel=(Widget("Light", "Light of colour and truth alike"),),
+        group="Light",
     )
     ambient: tuple[float, float, float] | None = option(
         "--ambient",
         "ambient radiance of noise-free light, linear (default: the mean of the world, where it lights surfaces)",
         default=None,
         metavar=("R", "G", "B"),
-        number=float,
+        number=real_number,
         panel=(
             Widget(
                 "Own Ambient",
@@ -236,6 +258,7 @@ class Settings:
         if panel.use_ambient
         else None,
         applies=lambda panel: panel.lighting == "noise-free",
+        group="Light",
     )
     color_type: str = option(
         "--color-type",
@@ -246,27 +269,34 @@ class Settings:
             "half": ("Half", "16 bits: smaller, error up to 2.4e-4"),
         },
         panel=(Widget("Colour", "Type of colour in the files"),),
+        group="Files and ids",
     )
     compression: str = option(
         "--compression",
         "of every part (%(default)s)",
         default="zip",
         choices=dict.fromkeys(exr.COMPRESSIONS, ("", "")),
+        group="Files and ids",
     )
     view_layer: str | None = option(
         "--view-layer",
         "view layer to render (default: the only one in use)",
         default=None,
         metavar="NAME",
+        group="What to export",
     )
     instance_ids: bool = option(
-        "--no-instance-ids", "instances share the id of their source", default=True
+        "--no-instance-ids",
+        "instances share the id of their source",
+        default=True,
+        group="Files and ids",
     )
     name: str = option(
         "--name",
         "name of the shot (default: that of the folder)",
         default="",
         decides_content=False,
+        group="What to export",
     )
     source: str = option(
         "--source",
@@ -274,6 +304,7 @@ class Settings:
         default="",
         metavar="HASH",
         changed="the .blend file",
+        group="What to export",
     )
     overwrite: bool = option(
         "--overwrite",
@@ -281,6 +312,7 @@ class Settings:
         default=False,
         decides_content=False,
         panel=(Widget("Replace Old", "Replace an export with other settings"),),
+        group="What to export",
     )
 
     def shift_and_movement(
@@ -290,17 +322,23 @@ class Settings:
         nothing = (0.0, 0.0)
         return (nothing, offset) if self.jitter_projection == "pre" else (offset, nothing)
 
-    def fingerprint(self) -> dict:
-        """What decides the content of every file: equal fingerprints, equal bytes.
+    @property
+    def first_frame(self) -> int:
+        """The frame with which the jitter begins, of a shot that is added to as of a new one."""
+        return self.frames[0] if self.origin is None else self.origin
 
-        The number of frames may grow between runs, the first one (where the jitter begins) may not.
+    def fingerprint(self) -> dict:
+        """What decides the content of every picture: equal fingerprints, equal pixels.
+
+        Which frames, passes and truths are wanted is no part of it: a shot takes more of them at any time. The frame
+        with which the jitter begins is.
         """
-        wishes = asdict(self)
-        for item, known in options_of(Settings):
-            if not known.decides_content:
-                wishes.pop(item.name)
-        wishes["first_frame"] = wishes.pop("frames")[0]
-        return json.loads(json.dumps(wishes))
+        decides = {
+            item.name: getattr(self, item.name)
+            for item, known in options_of(Settings)
+            if known.decides_content
+        }
+        return json.loads(json.dumps({**decides, "first_frame": self.first_frame}))
 
 
 @dataclass
@@ -312,11 +350,28 @@ class Invocation:
         "after this time work claimed by a process on another machine is taken over (%(default)g)",
         default=3600.0,
         metavar="SECONDS",
-        number=float,
+        number=real_number,
+        group="This run",
+    )
+    plan: bool = option(
+        "--plan",
+        "say what the shot has and what would be rendered, without rendering anything; write nothing",
+        default=False,
+        group="This run",
     )
     estimate: bool = option(
         "--estimate",
-        "render one frame and a little of its truth elsewhere, say how long the export would take, write nothing",
+        "render a frame or two and a little of their truth elsewhere, say how long the export would take and how large "
+        "it would be, write nothing",
         default=False,
+        group="This run",
     )
-    json: bool = option("--json", "progress as one JSON object per line", default=False)
+    yes: bool = option(
+        "--yes",
+        "without --frames: export the scene's range also where that takes more than 10 minutes",
+        default=False,
+        group="This run",
+    )
+    json: bool = option(
+        "--json", "progress as one JSON object per line", default=False, group="This run"
+    )

@@ -3,9 +3,13 @@
 
     SHOT/shot.json             rewritten after every step from the records of what is finished
     SHOT/frames, SHOT/truth    pictures
-    SHOT/.aa/settings.json     fingerprint of the export
-    SHOT/.aa/frames/000001.json, SHOT/.aa/truth/000001.json   one record per finished file
+    SHOT/.aa/settings.json     what decides the content of every picture, and what all of them were asked to serve
+    SHOT/.aa/frames/000001.json, SHOT/.aa/centre/..., SHOT/.aa/truth/...   one record per finished file
     SHOT/.aa/claims            who works on what
+
+A picture is replaced (when passes are added to it) together with its record: the new record is written beside the old
+one, the picture renamed, the record renamed. A process that dies in between leaves the old picture or the new one, and
+in either case the record that belongs to it.
 """
 
 from __future__ import annotations
@@ -16,11 +20,16 @@ import os
 import shutil
 import socket
 import time
-from typing import Iterator
+from dataclasses import dataclass, field
+from typing import Callable, Iterator
 
 from .errors import SceneError, UsageError
 from .fingerprint import difference
 from .manifest import content_of
+
+KINDS = ("frames", "centre", "truth")  # of pictures; each has a folder
+_COMING = ".coming"  # ends the name of the record of a picture that is about to take its place
+_LAYOUT = 2  # of .aa: records that say which passes a picture holds
 
 
 def write_json(path: str, content: dict) -> None:
@@ -57,47 +66,127 @@ def _read_json(path: str) -> dict:
         ) from error
 
 
+@dataclass
+class Stored:
+    """What a shot's folder holds."""
+
+    content: dict  # what decides the content of every picture (Settings.fingerprint and the exporter's own)
+    methods: list[str] = field(default_factory=list)  # that it was asked to serve, over all exports
+    name: str = ""
+    pattern: str = ""  # of the sub-samples, as shot.json states it
+    records: dict[str, dict[int, dict]] = field(default_factory=dict)  # by kind and frame
+
+    @property
+    def first_frame(self) -> int:
+        """The frame with which the jitter begins."""
+        return self.content["first_frame"]
+
+    def passes_of(self, kind: str) -> set[str]:
+        """Passes of the shot: those of the first finished picture of a kind, as the resolver takes it."""
+        records = self.records[kind]
+        return set(records[min(records)]["passes"]) if records else set()
+
+
 class Store:
     """One shot folder."""
 
     def __init__(self, folder: str, claim_timeout_seconds: float) -> None:
         self.folder = os.path.abspath(folder)
         self.private = os.path.join(self.folder, ".aa")
+        self._settings = os.path.join(self.private, "settings.json")
         self._timeout = claim_timeout_seconds
+        self._content: dict = {}  # of the export that this process joined
         self._identity = {"host": socket.gethostname(), "pid": os.getpid()}
 
-    def open(self, fingerprint: dict, overwrite: bool) -> None:
-        """Makes the folder, or checks that what lies there was made with the same settings."""
-        settings = os.path.join(self.private, "settings.json")
+    def stored(self) -> Stored | None:
+        """What the folder holds, read without changing anything; None where no picture is finished.
+
+        Raises UsageError for a folder that holds something else."""
+        if not os.path.exists(self._settings):
+            ours = os.path.isdir(self.private)
+            if os.path.isdir(self.folder) and not ours and os.listdir(self.folder):
+                raise UsageError(
+                    f"--out: '{self.folder}' is not empty and holds no export; choose a new folder"
+                )
+            return None
+        known = _read_json(self._settings)
+        if known.get("layout") != _LAYOUT:
+            raise UsageError(
+                f"--out: '{self.folder}' holds an export of another version of the add-on; choose a new folder, or "
+                "replace it with --overwrite"
+            )
+        records = {kind: self._records(kind) for kind in KINDS}
+        if not any(records.values()):
+            return None
+        return Stored(known["content"], known["methods"], known["name"], known["pattern"], records)
+
+    def _records(self, kind: str) -> dict[int, dict]:
+        folder = os.path.join(self.private, kind)
+        names = os.listdir(folder) if os.path.isdir(folder) else []
+        stems = {name.split(".")[0] for name in names if name.endswith((".json", _COMING))}
+        found = {number: self.record(kind, number) for number in sorted(map(int, stems))}
+        return {number: record for number, record in found.items() if record is not None}
+
+    def changed(self, content: dict) -> str | None:
+        """What differs from the content that the folder holds, in words; None where ``content`` can join it."""
+        stored = self.stored()
+        return difference(stored.content, content) if stored else None
+
+    def refuse_other(self, content: dict) -> None:
+        """Raises UsageError when the folder was made with settings that make other pictures."""
+        changed = self.changed(content)
+        if changed:
+            raise UsageError(self.other_settings(changed))
+
+    def other_settings(self, changed: str) -> str:
+        """Why an export cannot join the shot."""
+        return (
+            f"--out: '{self.folder}' holds an export with other settings: {changed}; "
+            "choose a new folder, or replace it with --overwrite"
+        )
+
+    def open(
+        self, content: dict, methods: list[str], name: str, pattern: str | None, overwrite: bool
+    ) -> None:
+        """Makes the folder, or joins the export that lies there; ``pattern`` None keeps the one that it has.
+
+        Raises UsageError when that was made with settings that make other pictures."""
         if overwrite and os.path.isdir(self.private):
-            for name in ("frames", "centre", "truth", ".aa"):
-                shutil.rmtree(os.path.join(self.folder, name), ignore_errors=True)
+            for folder in (*KINDS, ".aa"):
+                shutil.rmtree(os.path.join(self.folder, folder), ignore_errors=True)
             with contextlib.suppress(FileNotFoundError):
                 os.unlink(os.path.join(self.folder, "shot.json"))
-        if (
-            os.path.isdir(self.folder)
-            and not os.path.isdir(self.private)
-            and os.listdir(self.folder)
-        ):
-            raise UsageError(
-                f"--out: '{self.folder}' is not empty and holds no export; choose a new folder"
-            )
+        self.stored()  # refuses a folder of somebody else's before anything is made in it
         try:
-            for name in ("frames", "truth", ".aa/frames", ".aa/centre", ".aa/truth", ".aa/claims"):
-                os.makedirs(os.path.join(self.folder, name), exist_ok=True)
+            for folder in ("frames", "truth", *(f".aa/{kind}" for kind in (*KINDS, "claims"))):
+                os.makedirs(os.path.join(self.folder, folder), exist_ok=True)
         except OSError as error:
             raise SceneError(f"--out: '{self.folder}' cannot be made: {error.strerror}") from error
         with self.locked():
             self._remove_leftovers()
-            if not os.path.exists(settings):
-                write_json(settings, fingerprint)
-                return
-            changed = difference(_read_json(settings), fingerprint)
-        if changed:
-            raise UsageError(
-                f"--out: '{self.folder}' holds an export with other settings: {changed}; "
-                "choose a new folder, or replace it with --overwrite"
-            )
+            if not self._is_begun():
+                known = {"layout": _LAYOUT, "content": content, "methods": [], "pattern": ""}
+            else:
+                known = _read_json(self._settings)
+                changed = difference(known["content"], content)
+                if changed:
+                    raise UsageError(self.other_settings(changed))
+            known["methods"] = list(dict.fromkeys([*known["methods"], *methods]))
+            known["name"] = name or known.get("name") or os.path.basename(self.folder)
+            known["pattern"] = pattern or known["pattern"]
+            write_json(self._settings, known)
+            self._content = content
+
+    def _is_begun(self) -> bool:
+        """True when a picture is finished, or a living process makes one: then its settings hold for all others."""
+        if not os.path.exists(self._settings):
+            return False
+        if self.stored() is not None:
+            return True
+        claims = os.path.join(self.private, "claims")
+        return any(
+            not self._is_abandoned(os.path.join(claims, name)) for name in os.listdir(claims)
+        )
 
     def _remove_leftovers(self) -> None:
         """Half-written files of processes that died here; a file of another machine goes after the time-out."""
@@ -150,10 +239,16 @@ class Store:
             return owner["pid"] == self._identity["pid"]
         return age > self._timeout
 
-    def claim(self, kind: str, frame: int) -> bool:
-        """Takes a piece of work unless it is finished or a living process has it."""
+    def claim(self, kind: str, frame: int, lacks: Callable[[dict | None], bool]) -> bool:
+        """Takes a piece of work unless its record (None: no picture yet) lacks nothing or a living process has it.
+
+        Raises UsageError when another process has begun an export with other settings in this folder meanwhile.
+        """
         with self.locked():
-            if self.record(kind, frame) is not None:
+            changed = difference(self._content, _read_json(self._settings)["content"])
+            if changed:
+                raise UsageError(self.other_settings(changed))
+            if not lacks(self.record(kind, frame)):
                 return False
             os.makedirs(os.path.join(self.folder, kind), exist_ok=True)
             path = self._claim_path(kind, frame)
@@ -163,32 +258,58 @@ class Store:
             return True
 
     def release(self, kind: str, frame: int) -> None:
-        """Gives a claim back."""
-        with contextlib.suppress(FileNotFoundError):
-            os.unlink(self._claim_path(kind, frame))
+        """Gives a claim back, and removes what was not finished."""
+        for path in (self.unfinished(kind, frame), self._claim_path(kind, frame)):
+            with contextlib.suppress(FileNotFoundError):
+                os.unlink(path)
 
     def picture(self, kind: str, frame: int) -> str:
         """Path of a picture file relative to the shot."""
         return f"{kind}/{frame:06d}.exr"
 
+    def unfinished(self, kind: str, frame: int) -> str:
+        """Path under which a picture is made; ``finish`` gives it its name."""
+        return os.path.join(self.folder, f"{self.picture(kind, frame)}.{os.getpid()}.tmp")
+
+    def _record_path(self, kind: str, frame: int) -> str:
+        return os.path.join(self.private, kind, f"{frame:06d}.json")
+
     def record(self, kind: str, frame: int) -> dict | None:
-        """The record of a finished piece of work whose picture is still complete, else None."""
-        path = os.path.join(self.private, kind, f"{frame:06d}.json")
-        picture = os.path.join(self.folder, self.picture(kind, frame))
-        if not os.path.exists(path) or not os.path.exists(picture):
+        """The record of a finished picture that is still complete, else None."""
+        try:
+            size = os.path.getsize(os.path.join(self.folder, self.picture(kind, frame)))
+        except OSError:
             return None
-        record = _read_json(path)
-        return record if record.get("file_bytes") == os.path.getsize(picture) else None
+        path = self._record_path(kind, frame)
+        for candidate in (path, path + _COMING):
+            if os.path.exists(candidate):
+                record = _read_json(candidate)
+                if record.get("file_bytes") == size:
+                    return record
+        return None
 
-    def finish(self, kind: str, frame: int, record: dict, head: dict, frames: list[int]) -> None:
-        """Notes a piece of work as finished and brings shot.json up to date."""
-        picture = os.path.join(self.folder, self.picture(kind, frame))
-        record = {**record, "file_bytes": os.path.getsize(picture)}
+    def finish(self, kind: str, frame: int, record: dict, head: dict) -> int:
+        """Puts a picture that was made under ``unfinished`` in its place, notes it and brings shot.json up to date;
+        returns its bytes."""
+        made, path = self.unfinished(kind, frame), self._record_path(kind, frame)
+        record = {**record, "file_bytes": os.path.getsize(made)}
         with self.locked():
-            write_json(os.path.join(self.private, kind, f"{frame:06d}.json"), record)
+            old = self.record(kind, frame)
+            if old is not None:
+                write_json(path, old)  # where it was the coming one of a process that died
+            write_json(path + _COMING, record)
+            try:
+                os.replace(made, os.path.join(self.folder, self.picture(kind, frame)))
+                os.replace(path + _COMING, path)
+            except OSError as error:
+                raise SceneError(f"{path}: cannot be written: {error.strerror}") from error
             self.release(kind, frame)
-            self.write_manifest(head, frames)
+            self.write_manifest(head)
+        return record["file_bytes"]
 
-    def write_manifest(self, head: dict, frames: list[int]) -> None:
-        """shot.json from the records of all finished frames. Call it under the lock."""
-        write_json(os.path.join(self.folder, "shot.json"), content_of(self, head, frames))
+    def write_manifest(self, head: dict) -> None:
+        """shot.json from the records of all finished frames, if there are any. Call it under the lock."""
+        stored = self.stored()
+        content = content_of(stored, head) if stored else None
+        if content is not None:
+            write_json(os.path.join(self.folder, "shot.json"), content)

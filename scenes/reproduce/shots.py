@@ -122,7 +122,14 @@ def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
     ids = [m.split("+")[0] for m in shot.methods.split() if shop.serves(m)]
     command = [shop.blender, "-b", blend, "--python-exit-code", 9, "-P", headless, "--"]
     command += ["--out", folder, "--for", ",".join(ids), "--name", shot.name]
-    command += ["--resolution", *shot.size, "--frames", f"1-{frames}", "--truth-samples", samples]
+    command += [
+        "--resolution",
+        "{}x{}".format(*shot.size),
+        "--frames",
+        f"1-{frames}",
+        "--truth-samples",
+        samples,
+    ]
     command += ["--jitter", shot.jitter, "--period", shot.period]
     if shot.pattern:
         command += ["--subsamples", shot.pattern]

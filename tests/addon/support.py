@@ -226,10 +226,10 @@ def export(out: str, *options: str) -> dict:
     arguments = build_parser().parse_args(["--out", out, *options])
     settings = settings_from(arguments, bpy.context.scene)
     progress = Silent()
-    exporter = Exporter(bpy.context.scene, settings, progress, "test")
+    exporter = Exporter(bpy.context.scene, settings, progress, aa_resolve.ADDON_VERSION)
     exporter.prepare()
     store = Store(settings.out, arguments.claim_timeout)
-    store.open({**settings.fingerprint(), "static": exporter.static}, settings.overwrite)
+    exporter.open(store)
     exporter.run(store)
     shot = read_manifest(out)
     shot["notes"] = progress.notes

@@ -2,7 +2,7 @@
 """CPU seconds of a frame's main pass, of K sub-samples by multi-view, of K separate renders, and of whole frames.
 
     blender -b --factory-startup --python-exit-code 9 -P tests/bench/exporter_bench.py -- [--pattern d3d8]
-        [--resolution 480 270] [--triangles 200000] [--rounds 7] [--animated]
+        [--resolution 480x270] [--triangles 200000] [--rounds 7] [--animated]
 
 User + system time of the Blender process. A round runs each of them twice in a row and times the second: as in a long
 export, what stays between frames stays: all geometry where the camera alone moves. With --animated every ball moves
@@ -31,7 +31,6 @@ import numpy as np
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path.insert(0, os.path.join(ROOT, "blender_addon"))
 
-from aa_resolve import picture  # noqa: E402
 from aa_resolve.command_line import build_parser, settings_from  # noqa: E402
 from aa_resolve.export import Exporter  # noqa: E402
 from aa_resolve.passes import subsamples  # noqa: E402
@@ -124,7 +123,7 @@ def cpu_seconds(work) -> float:
 def main() -> None:
     parser = argparse.ArgumentParser(prog="exporter_bench.py")
     parser.add_argument("--pattern", default="d3d8")
-    parser.add_argument("--resolution", nargs=2, default=["480", "270"])
+    parser.add_argument("--resolution", default="480x270")
     parser.add_argument("--triangles", type=int, default=200_000)
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--animated", action="store_true", help="all balls move in every frame")
@@ -133,7 +132,7 @@ def main() -> None:
     arguments = build_parser().parse_args(
         [
             "--out", "unused", "--frames", f"2-{_LAST - 1}", "--passes", "albedo,depth,normal,object,motion,subsamples",
-            "--subsamples", options.pattern, "--resolution", *options.resolution, "--truth-frames", "none",
+            "--subsamples", options.pattern, "--resolution", options.resolution, "--truth-frames", "none",
         ]
     )  # fmt: skip
     scene = bpy.context.scene
@@ -141,7 +140,7 @@ def main() -> None:
     exporter = Exporter(scene, settings_from(arguments, scene), progress, "bench")
     exporter.prepare()
     plan = exporter.plan
-    pictures = picture.Pictures(plan)
+    pictures = exporter.pictures
     every = {"albedo", "depth", "normal", "object", "motion"}
     number = 2
     file = os.path.join(bpy.app.tempdir, "frame.exr")
@@ -204,7 +203,7 @@ def main() -> None:
         ratio = statistics.median(v / one for v, one in zip(values, seconds[base]))
         return f"{text:26s} {min(values):7.3f} CPU s {ratio:6.2f} x {base:6s} {what}"
 
-    width, height = options.resolution
+    width, height = options.resolution.split("x")
     moving = "all balls move" if options.animated else "the camera alone moves"
     for text in (
         f"{triangles} triangles, {width} x {height}, {moving}, "

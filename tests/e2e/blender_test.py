@@ -112,7 +112,7 @@ class FromBlender(ProgramTest):
             blend,
         )
         self.export(
-            blend, shot, "--frames", "1-3", "--for", "uncharted,rsaa", "--passes", ALL_PASSES, "--resolution", 160, 90,
+            blend, shot, "--frames", "1-3", "--for", "uncharted,rsaa", "--passes", ALL_PASSES, "--resolution", "160x90",
             "--truth-samples", 16,
         )  # fmt: skip
         manifest = json.loads((shot / "shot.json").read_text())
@@ -154,7 +154,7 @@ class FromBlender(ProgramTest):
                     *variants,
                 )
                 self.export(
-                    blend, shot, "--frames", "1-2", "--for", "uncharted", "--passes", ALL_PASSES, "--resolution", 96, 54,
+                    blend, shot, "--frames", "1-2", "--for", "uncharted", "--passes", ALL_PASSES, "--resolution", "96x54",
                     "--truth-frames", "none", "--subsamples", "d3d2",
                 )  # fmt: skip
                 self.aaresolve("check", shot)
@@ -215,7 +215,7 @@ aa_resolve.unregister()
         methods = ["noaa", "fxaa311", "uncharted", "unchartedNorm", "accum"]
         self.blender(
             blend, "--python-exit-code", 9, "-P", ROOT / "blender_addon/aa_resolve/headless.py", "--",
-            "--out", shot, "--for", ",".join(methods), "--passes", "normal,object", "--resolution", 240, 136,
+            "--out", shot, "--for", ",".join(methods), "--passes", "normal,object", "--resolution", "240x136",
             "--frames", "1-16", "--truth-samples", 16,
         )  # fmt: skip
         self.assertEqual(

@@ -36,7 +36,7 @@ class Masks(ProgramTest):
             shot = self.folder / pattern
             self.blender(
                 blend, "--python-exit-code", 9, "-P", ROOT / "blender_addon/aa_resolve/headless.py", "--", "--out", shot,
-                "--for", f"rsaa:S={pattern[3:]}", "--resolution", 64, 36, "--frames", "3", "--truth-frames", "none",
+                "--for", f"rsaa:S={pattern[3:]}", "--resolution", "64x36", "--frames", "3", "--truth-frames", "none",
             )  # fmt: skip
             plain = self.pictures(shot, "noaa")
             self.assertEqual(len(plain), 1)

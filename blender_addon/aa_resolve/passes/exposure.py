@@ -29,9 +29,10 @@ class Stopwatch:
 
 
 class Exposure:
-    """Evaluates a frame, aims the jittered camera and renders the colour with all that the wanted passes read of it.
+    """Evaluates a frame, aims the jittered camera and renders all that the wanted passes read of it.
 
-    ``offset`` is the jitter, pixels, y down; ``wanted`` are passes in the order in which they are made. The first pass
+    ``offset`` is the jitter, pixels, y down; ``wanted`` are passes in the order in which they are made. Colour decides
+    whether lights shine: passes that are added to a finished picture come from a render without them. The first pass
     that needs ids, motion or sub-samples makes them and keeps them here for the others."""
 
     def __init__(
@@ -55,15 +56,22 @@ class Exposure:
         stage.go_to(number)
         stage.aim(number, *plan.settings.shift_and_movement(offset))
         rendering.sample_points(plan.scene, plan.settings.samples)
-        with self.watch.of("color"):
-            self.renders = render_lights(plan, self._cycles_passes())
-            self.color = lighting.compose(plan.light, self.renders)  # H x W x 4, linear
+        self.lit = any(item.shaded and not item.facts.per_sub_sample for item in wanted)
+        self.color: np.ndarray | None = None  # H x W x 4, linear; None in a render without light
+        with self.watch.of(wanted[0].facts.part):
+            if self.lit:
+                self.renders = render_lights(plan, self._cycles_passes())
+                self.color = lighting.compose(plan.light, self.renders)
+            else:
+                self.renders = [render_unlit(plan, self._cycles_passes())]
 
     def _cycles_passes(self) -> set[str]:
         """Passes of Cycles that colour and the wanted passes are made from."""
-        needed = self.plan.light.passes.union(*(item.reads(self) for item in self.wanted))
-        if not self.plan.static:
-            needed.add("Depth")  # a jump of the camera is found by what the picture shows
+        needed = set().union(*(item.reads(self) for item in self.wanted))
+        if self.lit:
+            needed |= self.plan.light.passes
+            if not self.plan.static:
+                needed.add("Depth")  # a jump of the camera is found by what the picture shows
         return needed - self.plan.light.empty_passes
 
     @property
@@ -78,7 +86,9 @@ class Exposure:
 
     @property
     def nonfinite_pixels(self) -> int:
-        """Pixels whose colour is NaN or infinite."""
+        """Pixels whose colour, if there is one, is NaN or infinite."""
+        if self.color is None:
+            return 0
         return int((~np.isfinite(self.color)).any(axis=-1).sum())
 
 
@@ -94,3 +104,10 @@ def render_lights(plan: Plan, first_passes: set[str]) -> list[rendering.Layers]:
         with lighting.only_light(plan.light, light):
             renders.append(rendering.render(plan.scene, plan.view_layer, plan.folder))
     return renders
+
+
+def render_unlit(plan: Plan, passes: set[str]) -> rendering.Layers:
+    """The current frame without any light: what its surfaces are, not how they look."""
+    rendering.request_passes(plan.view_layer, passes)
+    with lighting.no_light(plan.light, plan.scene):
+        return rendering.render(plan.scene, plan.view_layer, plan.folder)

@@ -31,9 +31,13 @@ TABLE: tuple[Pass, ...] = (
 )
 
 
-def passes_named(names: Iterable[str]) -> list[Pass]:
-    """The passes of these names, and colour always, in the order of the table."""
-    wanted = {Color.name, *names}
+# The parts of a file in their order.
+PARTS: tuple[str, ...] = tuple(dict.fromkeys(item.facts.part for item in TABLE))
+
+
+def passes_named(names: Iterable[str], with_color: bool = True) -> list[Pass]:
+    """The passes of these names, in the order of the table, and colour, which every picture has."""
+    wanted = {*names, *([Color.name] if with_color else [])}
     return [item for item in TABLE if item.name in wanted]
 
 
