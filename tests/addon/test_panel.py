@@ -189,7 +189,9 @@ def test_the_panel_says_what_it_shows() -> None:
     shown.use_ambient, shown.ambient, shown.color_type = True, (0.25, 0.5, 0.125), "half"
     shown.pattern, shown.overwrite, shown.method_rsaa = "d3d4", True, True
     full = said()
-    assert full.frames == [3, 4, 5] and full.truth_frames == [3, 4, 5] and full.resolution == (64, 40)
+    assert (
+        full.frames == [3, 4, 5] and full.truth_frames == [3, 4, 5] and full.resolution == (64, 40)
+    )
     assert (full.samples, full.truth_samples, full.period, full.jitter) == (2, 7, 5, "r2")
     assert (full.ambient, full.color_type) == ((0.25, 0.5, 0.125), "half")
     assert (full.pattern, full.overwrite) == ("d3d4", True)
