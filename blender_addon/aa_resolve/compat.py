@@ -3,9 +3,8 @@
 
 from __future__ import annotations
 
-import math
-
 import bpy
+import numpy as np
 
 VERSION: tuple[int, int, int] = bpy.app.version
 
@@ -96,41 +95,61 @@ def compositor_in_use(scene: bpy.types.Scene) -> bool:
     return scene.render.use_compositing and scene.use_nodes and scene.node_tree is not None
 
 
-def action_curves(animation_data) -> list:
-    """The F-curves of the current action, whatever way this version stores them."""
+def _curve_lists(animation_data) -> list:
+    """The collections of F-curves of the current action that are this owner's."""
     action = animation_data.action if animation_data else None
     if action is None:
         return []
-    if hasattr(action, "fcurves"):
-        return list(action.fcurves)
-    curves = []
-    for layer in action.layers:  # since 5.0
-        for strip in layer.strips:
-            bag = strip.channelbag(animation_data.action_slot)
-            if bag:
-                curves += list(bag.fcurves)
-    return curves
+    if not hasattr(animation_data, "action_slot"):  # before 4.4
+        return [action.fcurves]
+    # An action may serve several owners, each with a slot; its own fcurves, until 5.0, are those of the first one.
+    bags = [
+        strip.channelbag(animation_data.action_slot)
+        for layer in action.layers
+        for strip in layer.strips
+        if animation_data.action_slot is not None
+    ]
+    return [bag.fcurves for bag in bags if bag]
+
+
+def action_curves(animation_data) -> list:
+    """The F-curves of the current action, whatever way this version stores them."""
+    return [curve for curves in _curve_lists(animation_data) for curve in curves]
 
 
 def remove_curve(animation_data, curve) -> None:
     """Takes one F-curve out of the current action."""
-    action = animation_data.action
-    if hasattr(action, "fcurves"):
-        action.fcurves.remove(curve)
-        return
-    for layer in action.layers:
-        for strip in layer.strips:
-            bag = strip.channelbag(animation_data.action_slot)
-            if bag and curve in list(bag.fcurves):
-                bag.fcurves.remove(curve)
-                return
+    for curves in _curve_lists(animation_data):
+        if curve in list(curves):
+            curves.remove(curve)
+            return
 
 
-def shading_limits(mesh: bpy.types.Mesh) -> tuple[bool, float]:
-    """Whether edges marked sharp break smooth shading, and the angle between faces (radians) beyond which all do."""
-    if hasattr(mesh, "use_auto_smooth"):  # before 4.1
-        return mesh.use_auto_smooth, mesh.auto_smooth_angle if mesh.use_auto_smooth else math.pi
-    return True, math.pi  # there a modifier turns the angle into marks
+def corner_normals(mesh: bpy.types.Mesh) -> np.ndarray:
+    """L x 3: the normals that shade the corners of all polygons, with flat faces, sharp marks and custom normals."""
+    normals = np.empty(3 * len(mesh.loops), np.float32)
+    if hasattr(mesh, "corner_normals"):  # since 4.1
+        mesh.corner_normals.foreach_get("vector", normals)
+        return normals.reshape(-1, 3)
+    if mesh.use_auto_smooth:
+        mesh.calc_normals_split()
+        mesh.loops.foreach_get("normal", normals)
+        return normals.reshape(-1, 3)
+    vertices = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("vertex_index", vertices)
+    at_vertices = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.vertices.foreach_get("normal", at_vertices)
+    counts, smooth = np.empty(len(mesh.polygons), np.int32), np.empty(len(mesh.polygons), bool)
+    mesh.polygons.foreach_get("loop_total", counts)
+    mesh.polygons.foreach_get("use_smooth", smooth)
+    of_faces = np.empty(3 * len(mesh.polygons), np.float32)
+    mesh.polygons.foreach_get("normal", of_faces)
+    # The corners of a mesh lie polygon by polygon.
+    return np.where(
+        np.repeat(smooth, counts)[:, None],
+        at_vertices.reshape(-1, 3)[vertices],
+        np.repeat(of_faces.reshape(-1, 3), counts, axis=0),
+    )
 
 
 def is_cycles_available() -> bool:

@@ -67,7 +67,15 @@ def environment() -> dict[str, str]:
 def command(name: str, path: str | None = None) -> list[str]:
     """Of the add-on's test `name`, in the Blender at `path`."""
     script = HERE / f"test_{name}.py"
-    return [path or blender(), "-b", "--factory-startup", "--python-exit-code", "9", "-P", str(script)]
+    return [
+        path or blender(),
+        "-b",
+        "--factory-startup",
+        "--python-exit-code",
+        "9",
+        "-P",
+        str(script),
+    ]
 
 
 def version() -> str:
@@ -83,7 +91,11 @@ def version() -> str:
 
 
 def run_logged(
-    name: str, commands: list[list[str]], log: Path, count: Callable[[str], tuple[int, int]], **options
+    name: str,
+    commands: list[list[str]],
+    log: Path,
+    count: Callable[[str], tuple[int, int]],
+    **options,
 ) -> Outcome:
     """Runs commands until one fails and keeps what they say in `log`; `count(text)` gives how many passed of how many."""
     log.parent.mkdir(parents=True, exist_ok=True)

@@ -134,9 +134,9 @@ def curves_of(owner: bpy.types.ID) -> list:
     """F-curves of the action that animates a data-block."""
     animation = owner.animation_data
     action = animation.action
-    if hasattr(action, "fcurves"):
+    if not hasattr(animation, "action_slot"):
         return list(action.fcurves)
-    return [  # since 5.0 actions have layers alone
+    return [  # since 4.4 one action may serve several owners
         curve
         for layer in action.layers
         for strip in layer.strips

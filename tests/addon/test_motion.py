@@ -365,6 +365,126 @@ def test_geometry_nodes() -> None:
     check_instances(scene, "geometry nodes", "Leaf")
 
 
+def test_meshes_made_by_nodes() -> None:
+    """Instances of a mesh that no object holds; without a material the shot says that they share one id."""
+    for material in (t.diffuse, None):
+        scene, _ = stage()
+        mesh = bpy.data.meshes.new("Points")
+        mesh.from_pydata([(x, -1, z) for x in (-1.5, -0.5, 0.5, 1.5) for z in (0.1, 1.2)], [], [])
+        item = t.add_object(scene, "Points", mesh)
+        tree = t.geometry_group("Scatter")
+        scatter = tree.nodes.new("GeometryNodeInstanceOnPoints")
+        cube = tree.nodes.new("GeometryNodeMeshCube")
+        cube.inputs["Size"].default_value = (0.5, 0.5, 0.5)
+        made = cube.outputs["Mesh"]
+        if material:
+            paint = tree.nodes.new("GeometryNodeSetMaterial")
+            paint.inputs["Material"].default_value = t.diffuse("Paint", (0.5, 0.5, 0.5))
+            tree.links.new(made, paint.inputs["Geometry"])
+            made = paint.outputs[0]
+        tree.links.new(tree.nodes["Start"].outputs[0], scatter.inputs["Points"])
+        tree.links.new(made, scatter.inputs["Instance"])
+        tree.links.new(scatter.outputs[0], tree.nodes["End"].inputs[0])
+        item.modifiers.new("Scatter", "NODES").node_group = tree
+        t.key(item, "location", {1: (-1, 0, 0), 11: (1, 0.5, 0.4)})
+        t.key(item, "rotation_euler", {1: (0, 0, 0), 11: (0.1, 0.2, 0.3)})
+        if material:
+            shot = check_instances(scene, "meshes made by nodes", "Points")
+        else:
+            shot = check(scene, "meshes made by nodes, no material")
+        shared = [note for note in shot["notes"] if "nodes of Points make share one id" in note]
+        assert len(shared) == (0 if material else 1), shot["notes"]
+
+
+def test_deforming_nodes() -> None:
+    """Nodes that move all points: by the scene's time and, where Blender has it, by a simulation."""
+
+    def moved(points, _name):
+        return points - np.array((0.1, 0.0, 0.0))
+
+    scene, _ = stage()
+    item = t.add_object(scene, "Shape", None, (0.4, -1, 0.5))
+    tree = t.geometry_group("Move")
+    place, time = tree.nodes.new("GeometryNodeSetPosition"), tree.nodes.new(
+        "GeometryNodeInputSceneTime"
+    )
+    times, vector = tree.nodes.new("ShaderNodeMath"), tree.nodes.new("ShaderNodeCombineXYZ")
+    times.operation, times.inputs[1].default_value = "MULTIPLY", 0.1
+    tree.links.new(time.outputs["Frame"], times.inputs[0])
+    tree.links.new(times.outputs[0], vector.inputs[0])
+    tree.links.new(vector.outputs[0], place.inputs["Offset"])
+    tree.links.new(tree.nodes["Start"].outputs[0], place.inputs["Geometry"])
+    tree.links.new(place.outputs[0], tree.nodes["End"].inputs[0])
+    item.modifiers.new("Move", "NODES").node_group = tree
+    check(scene, "moved by nodes", {"Shape": moved})
+
+    if not hasattr(bpy.types, "GeometryNodeSimulationInput"):  # since 3.6
+        return
+    scene, _ = stage()
+    item = t.add_object(scene, "Shape", None, (0.0, -1, 0.5))
+    tree = t.geometry_group("Simulate")
+    begin = tree.nodes.new("GeometryNodeSimulationInput")
+    end = tree.nodes.new("GeometryNodeSimulationOutput")
+    begin.pair_with_output(end)
+    place = tree.nodes.new("GeometryNodeSetPosition")
+    place.inputs["Offset"].default_value = (0.1, 0, 0)
+    tree.links.new(tree.nodes["Start"].outputs[0], begin.inputs["Geometry"])
+    tree.links.new(begin.outputs["Geometry"], place.inputs["Geometry"])
+    tree.links.new(place.outputs[0], end.inputs["Geometry"])
+    tree.links.new(end.outputs["Geometry"], tree.nodes["End"].inputs[0])
+    item.modifiers.new("Simulate", "NODES").node_group = tree
+    for frame in range(1, FRAME + 2):
+        scene.frame_set(frame)
+    check(scene, "simulated", {"Shape": moved})
+
+
+def test_subdivision() -> None:
+    scene, _ = stage()
+    item = t.add_object(scene, "Moving", None, (0, -1, 0.5))
+    modifier = item.modifiers.new("Subdivision", "SUBSURF")
+    modifier.levels, modifier.render_levels = 1, 2
+    t.key(item, "location", {1: (-1.5, -1, 0), 11: (1.5, -0.5, 1)})
+    t.key(item, "rotation_euler", {1: (0, 0, 0), 11: (0.3, 0.2, 0.9)})
+    check(scene, "subdivision")
+
+
+def test_hair_curves() -> None:
+    """Objects of the new hair system; Cycles rounds strands more."""
+    if "add_curves" not in bpy.types.Curves.bl_rna.functions:  # before 4.0 scripts cannot make any
+        return
+    scene, _ = stage()
+    data, count = bpy.data.hair_curves.new("Hair"), 200
+    data.add_curves([4] * count)
+    roots = np.random.default_rng(1).uniform((-0.5, -1.5, -0.5), (0.5, -0.5, 0.5), (count, 3))
+    points = roots[:, None] + np.linspace(0, 1, 4)[:, None] * np.array((0.2, 0, 0.8))
+    data.attributes["position"].data.foreach_set("vector", points.astype(np.float32).ravel())
+    radius = data.attributes.get("radius") or data.attributes.new("radius", "FLOAT", "POINT")
+    radius.data.foreach_set("value", np.full(4 * count, 0.02, np.float32))
+    item = bpy.data.objects.new("Hair", data)
+    scene.collection.objects.link(item)
+    t.key(item, "location", {1: (-1, 0, 0.3), 11: (1, 0, 0.7)})
+    check(scene, "hair curves")
+
+
+def test_one_action_for_several_owners() -> None:
+    """Since 4.4 an action has a slot for each of its owners."""
+    if "action_slot" not in bpy.types.AnimData.bl_rna.properties:
+        return
+    scene, camera = stage()
+    one = t.add_object(scene, "One", None, (0, -1, 0.5))
+    other = t.add_object(scene, "Other", None, (1, -1, 0.5))
+    t.key(one, "location", {1: (-1.5, -1, 0), 11: (1.5, -0.5, 1)})
+    action = one.animation_data.action
+    for owner, kind in ((other, "OBJECT"), (camera.data, "CAMERA")):
+        owner.animation_data_create().action = action
+        owner.animation_data.action_slot = action.slots.new(kind, owner.name)
+    t.key(other, "location", {1: (1.5, -1, 0), 11: (-1.5, -0.5, 1)})
+    t.key(camera.data, "lens", {1: 30.0, 11: 60.0})
+    t.key(camera.data, "shift_x", {1: 0.0, 11: 0.2})
+    assert len(action.slots) == 3 and len(t.curves_of(camera.data)) == 2
+    check(scene, "one action")
+
+
 def test_hidden_before_is_invalid() -> None:
     """What was hidden a frame ago has no motion; the shot says so instead of giving 0."""
     scene, _ = stage()
@@ -547,6 +667,11 @@ if __name__ == "__main__":
         test_collection_instance,
         test_particles,
         test_geometry_nodes,
+        test_meshes_made_by_nodes,
+        test_deforming_nodes,
+        test_subdivision,
+        test_hair_curves,
+        test_one_action_for_several_owners,
         test_hidden_before_is_invalid,
         test_changing_topology_is_invalid,
         test_cuts,

@@ -91,7 +91,7 @@ def test_kinds_of_edges() -> None:
     t.add_object(scene, "Wall", mesh_of(split, [(0, 2, 3, 1), (4, 6, 7, 5)]))
     assert len(exported()[0]) == 6, "vertices at one place are one"
 
-    def cylinder(smooth: bool, auto_smooth: float = 0.0) -> np.ndarray:
+    def cylinder(smooth: bool, auto_smooth: float = 0.0, split: bool = False, custom: str = ""):
         scene = t.new_scene(64, 36)
         t.add_camera(scene, (0, -8, 0), (0, 0, 0))
         sides = 24
@@ -100,10 +100,23 @@ def test_kinds_of_edges() -> None:
         ]
         points = [(x, y, z) for z in (-1.5, 1.5) for x, y in ring]
         faces = [(k, (k + 1) % sides, sides + (k + 1) % sides, sides + k) for k in range(sides)]
+        if split:  # every face with vertices of its own, as importers leave seams
+            points = [points[corner] for face in faces for corner in face]
+            faces = [tuple(range(first, first + 4)) for first in range(0, len(points), 4)]
         mesh = mesh_of(points, faces)  # open at both ends
         mesh.polygons.foreach_set("use_smooth", [smooth] * sides)
         if auto_smooth:
             t.smooth_by_angle(mesh, auto_smooth)
+        if custom:
+            normals = [
+                mesh.polygons[loop // 4].normal
+                if custom == "flat"
+                else (*mesh.vertices[vertex].co[:2], 0.0)
+                for loop, vertex in enumerate(loop.vertex_index for loop in mesh.loops)
+            ]
+            if hasattr(mesh, "use_auto_smooth"):  # before 4.1 they count only with it
+                mesh.use_auto_smooth, mesh.auto_smooth_angle = True, math.pi
+            mesh.normals_split_custom_set(normals)
         t.add_object(scene, "Cylinder", mesh)
         return exported()[0]
 
@@ -114,6 +127,9 @@ def test_kinds_of_edges() -> None:
     assert len(cylinder(False)) == 24 + 2 * 24, "flat faces: every joint is a crease"
     assert len(cylinder(True, math.radians(10))) == 24 + 2 * 24, "15 degrees are beyond 10"
     assert len(cylinder(True, math.radians(20))) == 2 + 2 * 24
+    assert len(cylinder(True, custom="flat")) == 24 + 2 * 24, "custom normals break the shading"
+    assert len(cylinder(True, split=True)) == 24 + 2 * 24, "vertices of their own break it, too"
+    assert len(cylinder(True, split=True, custom="round")) == 2 + 2 * 24, "or hide seams"
 
 
 def test_clipping() -> None:

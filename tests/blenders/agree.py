@@ -168,7 +168,9 @@ def main(folders: list[str]) -> int:
             failed |= wrong
             said = "no limit" if limit is None else f"limit {limit:.3g}"
             where = f"  {largest.place}" if largest.value else ""
-            print(f"{'WRONG' if wrong else 'ok   '} {name:<16} {largest.value:<10.4g} {said}{where}")
+            print(
+                f"{'WRONG' if wrong else 'ok   '} {name:<16} {largest.value:<10.4g} {said}{where}"
+            )
     return 1 if failed else 0
 
 

@@ -177,7 +177,9 @@ def fill(root: Path, suite: str, lock: int) -> None:
         if may_mount():
             mount = ["unshare", "--mount", "--propagation", "private"]
             command = [*mount, *command, "--mode=root", suite, str(root), source]
-            processes = [subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=said, **options)]
+            processes = [
+                subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=said, **options)
+            ]
         else:
             # Everything belongs to the user, so that a namespace with this one user suffices afterwards.
             root.mkdir()
@@ -229,7 +231,9 @@ def existing(suite: str) -> Path:
     folder = cache_folder()
     with locked(folder, suite, exclusive=False):
         if not is_whole(folder / suite):
-            raise CannotBeHad(f"{suite} has not been made: python3 tests/blenders/debian.py get {suite}")
+            raise CannotBeHad(
+                f"{suite} has not been made: python3 tests/blenders/debian.py get {suite}"
+            )
         return current_wrapper(folder / suite)
 
 
@@ -266,7 +270,9 @@ def clean() -> None:
 
 
 def main(arguments: list[str]) -> int:
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that what was begun is cleared away
+    signal.signal(
+        signal.SIGTERM, lambda *_: sys.exit(143)
+    )  # so that what was begun is cleared away
     try:
         if len(arguments) == 2 and arguments[0] == "get":
             print(get(arguments[1]))

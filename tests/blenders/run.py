@@ -145,9 +145,7 @@ def main() -> int:
     table: dict[str, list[in_blender.Outcome]] = {script: [] for script in scripts}
     jobs = [(blender, script) for blender in blenders for script in scripts]
     with ThreadPoolExecutor(max(a.jobs, 1)) as pool:
-        for (blender, script), outcome in zip(
-            jobs, pool.map(lambda job: job[0].run(job[1]), jobs)
-        ):
+        for (blender, script), outcome in zip(jobs, pool.map(lambda job: job[0].run(job[1]), jobs)):
             in_blender.show(outcome, blender.version, blender.log(script))
             table[script].append(outcome)
 
@@ -159,7 +157,9 @@ def main() -> int:
             cells = (str(o) if o.good else f"**{o}**" for o in row)
             print(f"| {script} | {' | '.join(cells)} |")
         failed = sum(not outcome.good for outcome in outcomes)
-        print(f"\n{len(outcomes) - failed} of {len(outcomes)} in {time.monotonic() - started:.0f} s")
+        print(
+            f"\n{len(outcomes) - failed} of {len(outcomes)} in {time.monotonic() - started:.0f} s"
+        )
     for line in skipped:
         print(f"blenders: {line}")
     return 0 if all(outcome.good for outcome in outcomes) else 1

@@ -72,8 +72,12 @@ def build() -> bpy.types.Scene:
     t.key(camera, "rotation_euler", {1: (1.48, 0, 0), 11: (1.45, 0.03, 0.1)})
     t.key(camera.data, "lens", {1: 34.0, 11: 38.0})
     t.add_sun(scene, rotation=(0.7, 0.25, 0.3))
-    ground = mesh_of("Ground", [(-20, -9, 0), (20, -9, 0), (20, 20, 0), (-20, 20, 0)], [(0, 1, 2, 3)])
-    t.add_object(scene, "Ground", ground).data.materials.append(t.diffuse("Ground", (0.4, 0.42, 0.4)))
+    ground = mesh_of(
+        "Ground", [(-20, -9, 0), (20, -9, 0), (20, 20, 0), (-20, 20, 0)], [(0, 1, 2, 3)]
+    )
+    t.add_object(scene, "Ground", ground).data.materials.append(
+        t.diffuse("Ground", (0.4, 0.42, 0.4))
+    )
 
     paint = {name: t.diffuse(name, color) for name, color in (
         ("Red", (0.7, 0.1, 0.08)), ("Blue", (0.1, 0.2, 0.6)), ("Dark", (0.05, 0.05, 0.06)),
@@ -101,7 +105,9 @@ def build() -> bpy.types.Scene:
         wire.materials.append(paint["Dark"])
         t.add_object(scene, f"Wire {index}", wire)
 
-    leaf = mesh_of("Leaf", [(-0.3, 0, -0.4), (0.3, 0, -0.4), (0.3, 0, 0.4), (-0.3, 0, 0.4)], [(0, 1, 2, 3)])
+    leaf = mesh_of(
+        "Leaf", [(-0.3, 0, -0.4), (0.3, 0, -0.4), (0.3, 0, 0.4), (-0.3, 0, 0.4)], [(0, 1, 2, 3)]
+    )
     layer = leaf.uv_layers.new(name="UVMap")
     for index, corner in enumerate(((0, 0), (1, 0), (1, 1), (0, 1))):
         layer.data[index].uv = corner

@@ -17,7 +17,6 @@ comes first. So the list depends on the picture alone, and "the last writer wins
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import bpy
@@ -33,7 +32,7 @@ from .geometry import shown_by
 
 ROW = 4096  # entries per line of the part
 _MARGIN_PX = 4.0  # a segment touches pixels beside itself: what ends just outside still counts
-_COPLANAR = 0.99999  # cosine of the angle between two triangles
+_COPLANAR = 0.99999  # cosine of the angle between two normals that count as one
 _KEY_BASE = 1 << 32  # more than there are vertices
 
 
@@ -66,9 +65,8 @@ def outline_of(mesh: bpy.types.Mesh) -> Outline:
     one, other = first // 3, second // 3
     cosine = (normals[one] * normals[other]).sum(axis=1)
     material = _of_all(mesh.polygons, "material_index", np.int32)[polygons]
-    smooth = _of_all(mesh.polygons, "use_smooth", bool)[polygons]
     joined = (counts == 2) & (material[one] == material[other])
-    broken = ~(smooth[one] & smooth[other]) | _breaks_shading(mesh, corners[solid], first, cosine)
+    broken = _breaks_shading(_shading_normals(mesh)[solid], welded[solid], first, second)
     kept = ~joined | (cosine <= _COPLANAR)
     planes = np.concatenate([normals, -(normals * points[:, 0]).sum(axis=1)[:, None]], axis=1)
     triangle, side = one[kept], first[kept] % 3
@@ -92,19 +90,30 @@ def _of_all(items, name: str, kind) -> np.ndarray:
     return values
 
 
+def _shading_normals(mesh: bpy.types.Mesh) -> np.ndarray:
+    """T x 3 x 3: the normals with which the renderer shades the corners of each triangle."""
+    loops = np.empty(3 * len(mesh.loop_triangles), np.int32)
+    mesh.loop_triangles.foreach_get("loops", loops)
+    return compat.corner_normals(mesh)[loops].reshape(-1, 3, 3)
+
+
 def _breaks_shading(
-    mesh: bpy.types.Mesh, corners: np.ndarray, sides: np.ndarray, cosine: np.ndarray
+    normals: np.ndarray, corners: np.ndarray, first: np.ndarray, second: np.ndarray
 ) -> np.ndarray:
-    """True for the ``sides`` (3 x triangle + side) across which smooth normals are not continued."""
-    reads_marks, angle = compat.shading_limits(mesh)
-    broken = cosine < math.cos(angle)
-    if reads_marks and len(mesh.edges):
-        marked = _of_all(mesh.edges, "use_edge_sharp", bool)
-        pairs = np.empty(2 * len(mesh.edges), np.int32)
-        mesh.edges.foreach_get("vertices", pairs)
-        pairs = np.sort(pairs.reshape(-1, 2)[marked].astype(np.int64), axis=1)
-        broken |= np.isin(_side_keys(corners).ravel()[sides], pairs[:, 0] * _KEY_BASE + pairs[:, 1])
-    return broken
+    """True for pairs of sides (3 x triangle + side each) whose triangles are shaded with different normals along them:
+    at flat faces, sharp marks, and where custom normals say so.
+
+    ``corners`` (T x 3): numbers of the places, by which the ends of two sides are told apart."""
+
+    def ends(sides: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        triangle, side = sides // 3, sides % 3
+        both = np.stack([side, (side + 1) % 3], axis=1)
+        return corners[triangle[:, None], both], normals[triangle[:, None], both]
+
+    (places, one), (other_places, other) = ends(first), ends(second)
+    turned = places[:, 0] != other_places[:, 0]
+    other = np.where(turned[:, None, None], other[:, ::-1], other)
+    return ((one * other).sum(axis=2) <= _COPLANAR).any(axis=1)
 
 
 class SegmentFinder:

@@ -51,6 +51,12 @@ class ObjectIds:
                 self.notes.append(
                     f"instances with material {', '.join(hidden)} share one id: its opacity is made inside a node group"
                 )
+            bare = _makers_of_bare_meshes()
+            if bare:
+                self.notes.append(
+                    f"instances of meshes that the nodes of {', '.join(bare)} make share one id: give the meshes a "
+                    "material (node Set Material)"
+                )
 
     def look(self, depsgraph: bpy.types.Depsgraph) -> None:
         """Takes note of the instances of the current frame."""
@@ -147,6 +153,21 @@ class ObjectIds:
         if self.tells_instances:
             add_output(material)
         return material
+
+
+def _makers_of_bare_meshes() -> list[str]:
+    """Objects whose geometry nodes make instances of meshes without a material: Cycles' default surface has no
+    output to tell them apart, and no object holds these meshes that could be given one."""
+    if not any(item.type == "NODES" for each in bpy.data.objects for item in each.modifiers):
+        return []
+    makers = set()
+    for instance in bpy.context.evaluated_depsgraph_get().object_instances:
+        item = instance.object
+        if instance.is_instance and item and item.type == "MESH" and instance.parent:
+            own = instance.parent.original == item.original  # not the instance of another object
+            if own and len(item.data.polygons) and not any(item.data.materials):
+                makers.add(item.original.name_full)
+    return sorted(makers)
 
 
 def _may_instance(scene: bpy.types.Scene) -> bool:

@@ -29,7 +29,10 @@ _GEOMETRY_TYPES = {
     "POINTCLOUD",
     "VOLUME",
     "GPENCIL",
+    "GREASEPENCIL",
 }
+_MESHES = ("MESH", "CURVE", "SURFACE", "META", "FONT")
+_POINTS = ("CURVES", "POINTCLOUD")  # their places are an attribute
 
 
 @dataclass
@@ -67,12 +70,15 @@ def _uses_moving_images(tree: bpy.types.NodeTree) -> bool:
 
 
 def _shading_that_changes() -> str | None:
-    """Name of the first animated data-block that changes colours rather than places."""
+    """Name of the first animated data-block that changes what no place or vertex tells: colours, volumes."""
     for collection in (bpy.data.materials, bpy.data.lights, bpy.data.worlds):
         for block in collection:
             tree = getattr(block, "node_tree", None) if getattr(block, "use_nodes", False) else None
             if _is_keyed(block) or (tree and (_is_keyed(tree) or _uses_moving_images(tree))):
                 return f"'{block.name}' is animated"
+    for volume in bpy.data.volumes:
+        if volume.is_sequence:
+            return f"volume '{volume.name}' is a sequence of files"
     for group in bpy.data.node_groups:
         if _is_keyed(group) or _uses_moving_images(group):
             return f"node group '{group.name}' is animated"
@@ -94,11 +100,11 @@ def _may_move(scene: bpy.types.Scene) -> bool:
         bpy.app.handlers.frame_change_post
     ):
         return True
-    for collection in (
-        bpy.data.objects, bpy.data.meshes, bpy.data.curves, bpy.data.armatures, bpy.data.cameras, bpy.data.lattices,
-        bpy.data.shape_keys, bpy.data.metaballs, bpy.data.scenes,
+    for name in (
+        "objects", "meshes", "curves", "armatures", "cameras", "lattices", "shape_keys", "metaballs", "scenes",
+        "hair_curves", "pointclouds", "volumes", "grease_pencils", "grease_pencils_v3",
     ):  # fmt: skip
-        if any(_is_keyed(block) for block in collection):
+        if any(_is_keyed(block) for block in getattr(bpy.data, name, ())):
             return True
     if len(bpy.data.cache_files):
         return True
@@ -122,7 +128,8 @@ def _reads_time(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
         return False
     seen.add(tree.name)
     return any(
-        node.bl_idname in ("GeometryNodeInputSceneTime", "GeometryNodeSimulationInput")
+        node.bl_idname
+        in ("GeometryNodeInputSceneTime", "GeometryNodeSimulationInput", "GeometryNodeBake")
         or (
             node.bl_idname == "GeometryNodeGroup"
             and node.node_tree
@@ -153,12 +160,17 @@ def _picture_digest(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> b
 
 def _shape_digest(item: bpy.types.Object) -> bytes:
     digest = hashlib.sha256()
-    mesh = item.to_mesh() if item.type in ("MESH", "CURVE", "SURFACE", "META", "FONT") else None
+    mesh = item.to_mesh() if item.type in _MESHES else None
     if mesh is not None:
         places = np.empty(len(mesh.vertices) * 3, np.float32)
         mesh.vertices.foreach_get("co", places)
         digest.update(places.tobytes())
         item.to_mesh_clear()
+    if item.type in _POINTS and "position" in item.data.attributes:
+        points = item.data.attributes["position"].data
+        places = np.empty(len(points) * 3, np.float32)
+        points.foreach_get("vector", places)
+        digest.update(places.tobytes())
     for system in item.particle_systems:
         places = np.empty(len(system.particles) * 3, np.float32)
         system.particles.foreach_get("location", places)
@@ -180,9 +192,10 @@ def frame_state(
             item.name_full for item in bpy.data.objects if item.evaluated_get(depsgraph).hide_render
         )
         state.vertices = {
-            item.name_full: len(item.evaluated_get(depsgraph).data.vertices)
+            item.name_full: _vertex_count(item.evaluated_get(depsgraph))
             for item in scene.objects
-            if item.type == "MESH" and (item.modifiers or item.data.shape_keys)
+            if (item.type == "MESH" and (item.modifiers or item.data.shape_keys))
+            or (item.type in _POINTS and item.modifiers)
         }
         state.instances = frozenset(
             (instance.object.original.name_full, instance.random_id & 0xFFFFFFFF)
@@ -190,6 +203,11 @@ def frame_state(
             if instance.is_instance and instance.object
         )
     return state
+
+
+def _vertex_count(item: bpy.types.Object) -> int:
+    """Vertices of an evaluated mesh, points of hair curves or of a point cloud."""
+    return len(item.data.vertices if item.type == "MESH" else item.data.points)
 
 
 def find_motion(
