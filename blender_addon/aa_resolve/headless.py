@@ -23,7 +23,7 @@ if __package__ in (None, ""):
 
     __package__ = "aa_resolve"
 
-from . import ADDON_VERSION  # noqa: E402
+from . import ADDON_VERSION, interrupt  # noqa: E402
 from .adding import missing  # noqa: E402
 from .command_line import build_parser, settings_from  # noqa: E402
 from .errors import Cancelled, SceneError, UsageError  # noqa: E402
@@ -41,15 +41,18 @@ def run(argv: list[str]) -> int:
     """Exports the open file; returns the exit code."""
     try:
         arguments = build_parser().parse_args(argv)
+        interrupt.watch()
         progress = Progress(arguments.json)
         _export(arguments, bpy.context.scene, progress)
         return 0
     except (UsageError, SceneError, Cancelled) as error:
+        interrupt.give_way()
         print(f"error: {error}", file=sys.stderr, flush=True)
         return error.exit_code
     except (
         Exception
     ) as error:  # one line here as well; Blender would tell it to the stream that is closed
+        interrupt.give_way()
         place = traceback.extract_tb(error.__traceback__)[-1]
         print(
             f"error: a fault of the exporter: {type(error).__name__}: {error} "
@@ -64,6 +67,7 @@ def _export(arguments: argparse.Namespace, scene: bpy.types.Scene, progress: Pro
     started = time.perf_counter()
     settings = settings_from(arguments, scene)
     store = Store(settings.out, arguments.claim_timeout)
+    interrupt.before_leaving(store.abandon)
     if not arguments.frames:
         _say_range(scene, progress)
     if arguments.plan:
@@ -111,11 +115,7 @@ def _confirm(cost: Estimate, arguments: argparse.Namespace, progress: Progress) 
             f"the scene's range takes about {cost.amount()}: add --yes to export all of it, or choose with --frames"
         )
     progress.ask(f"The scene's range takes about {cost.amount()}. Go on? [y/N] ")
-    try:
-        answer = sys.stdin.readline()
-    except KeyboardInterrupt:
-        answer = ""
-    if answer.strip().lower() not in ("y", "yes"):
+    if sys.stdin.readline().strip().lower() not in ("y", "yes"):
         raise Cancelled("stopped before the first picture; nothing was written")
 
 

@@ -97,6 +97,7 @@ class Store:
         self._timeout = claim_timeout_seconds
         self._content: dict = {}  # of the export that this process joined
         self._identity = {"host": socket.gethostname(), "pid": os.getpid()}
+        self._claimed: set[tuple[str, int]] = set()  # kinds and frames
 
     def stored(self) -> Stored | None:
         """What the folder holds, read without changing anything; None where no picture is finished.
@@ -188,6 +189,21 @@ class Store:
             not self._is_abandoned(os.path.join(claims, name)) for name in os.listdir(claims)
         )
 
+    def abandon(self) -> None:
+        """Gives back what this process has begun, its claims and its half-written files, for good: the lock is kept until
+        the process ends, so that another thread of it begins nothing more."""
+        if not os.path.isdir(self.private):
+            return
+        self._end = self.locked()
+        self._end.__enter__()
+        for kind, frame in sorted(self._claimed):
+            self.release(kind, frame)
+        for path, _, names in os.walk(self.folder):
+            for name in names:
+                if name.endswith(f".{os.getpid()}.tmp"):
+                    with contextlib.suppress(OSError):
+                        os.unlink(os.path.join(path, name))
+
     def _remove_leftovers(self) -> None:
         """Half-written files of processes that died here; a file of another machine goes after the time-out."""
         for path, _, names in os.walk(self.folder):
@@ -254,6 +270,7 @@ class Store:
             path = self._claim_path(kind, frame)
             if os.path.exists(path) and not self._is_abandoned(path):
                 return False
+            self._claimed.add((kind, frame))
             write_json(path, self._identity)
             return True
 
@@ -262,6 +279,7 @@ class Store:
         for path in (self.unfinished(kind, frame), self._claim_path(kind, frame)):
             with contextlib.suppress(FileNotFoundError):
                 os.unlink(path)
+        self._claimed.discard((kind, frame))
 
     def picture(self, kind: str, frame: int) -> str:
         """Path of a picture file relative to the shot."""

@@ -16,6 +16,7 @@ import numpy as np
 
 from .. import compat, exr
 from ..errors import Cancelled, SceneError
+from ..interrupt import STOPPED
 
 
 @dataclass
@@ -112,8 +113,8 @@ def render(
         ) from error
     finally:
         bpy.app.handlers.render_cancel.remove(note_cancel)
-    if cancelled:  # Ctrl-C; the operator itself calls it finished
-        raise Cancelled("stopped; finished frames are valid, the same command goes on from there")
+    if cancelled:  # the operator itself calls it finished
+        raise Cancelled(STOPPED)
     if not os.path.exists(path):
         raise SceneError(
             f"Cycles wrote no picture for frame {scene.frame_current}; is the temporary folder full?"
