@@ -15,7 +15,7 @@ space := $() $()
 # A compiler cache is used where there is one.
 LAUNCHER := $(if $(shell command -v ccache 2>/dev/null),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache,)
 
-.PHONY: help deps configure build program install demo test test-addon test-blenders blenders-clean fuzz sanitize bench asserts addon docs bits reproduce format clean
+.PHONY: help deps configure build program install demo test test-addon test-blenders blender-facts blenders-clean fuzz sanitize bench asserts addon docs bits reproduce format clean
 help:
 	@echo "make demo       build, render two scenes in Blender, run the methods, make contact sheets and reports"
 	@echo "make test       build and run every test"
@@ -60,6 +60,11 @@ test-addon:
 test-blenders: program
 	@CI_PACKAGES=mmdebstrap .ci/bootstrap || true
 	@python3 tests/blenders/run.py $(BUILD)/aaresolve -j $(JOBS) --suites $(SUITES) --only $(ONLY)
+
+# The table of docs/blenders.md: what the exporter rests on, in each Blender.
+blender-facts:
+	@CI_PACKAGES=mmdebstrap .ci/bootstrap
+	@python3 tests/blenders/facts_table.py --suites $(SUITES)
 
 blenders-clean:
 	@python3 tests/blenders/debian.py clean
