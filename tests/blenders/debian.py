@@ -212,10 +212,13 @@ def make(folder: Path, suite: str, lock: int) -> None:
         for written in ("etc/apt/sources.list", "etc/apt/apt.conf.d/99mmdebstrap"):
             (making / "root" / written).unlink(missing_ok=True)  # nothing is installed later
         shutil.copy(WRAPPER, making / "blender")
-        told = output_of(str(making / "blender"), "--version")
-        version = re.search(r"Blender (\S+)", told or "")
+        started_once = subprocess.run(
+            [str(making / "blender"), "--version"], capture_output=True, text=True
+        )
+        version = re.search(r"Blender (\S+)", started_once.stdout)
         if not version:
-            raise CannotBeHad(f"the Blender of {suite} does not start")
+            why = (started_once.stderr.strip() or "it says nothing").splitlines()[-1]
+            raise CannotBeHad(f"the Blender of {suite} does not start: {why}")
         seconds = round(time.monotonic() - started)
         made = {"recipe": RECIPE, "blender": version[1], "seconds": seconds, "at": time.ctime()}
         (making / "made.json").write_text(json.dumps(made, indent=1))

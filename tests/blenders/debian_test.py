@@ -123,8 +123,11 @@ class Debian(unittest.TestCase):
             capture_output=True,
             text=True,
             cwd=self.folder,
+            env={**self.environment, "PATH": "/usr/bin:/bin"},  # a user's has no /usr/sbin
         )
-        self.assertEqual(done.stdout.strip(), f"{self.folder} -b a b {self.folder}/bin", done.stderr)
+        self.assertEqual(
+            done.stdout.strip(), f"{self.folder} -b a b {self.folder}/bin", done.stderr
+        )
         told, _said = self.call("run", "trixie", "sh", "-c", 'echo "$BLENDER"')
         self.assertEqual(told, wrapper)
         _out, _said = self.call("run", "trixie", "sh", "-c", "exit 5", expect=5)
@@ -142,7 +145,9 @@ class Debian(unittest.TestCase):
             process.send_signal(end)
             process.communicate(timeout=20)
             self.assertFalse((self.cache / "trixie").exists())
-            if end == signal.SIGKILL:  # nobody could clear away, and who makes it still lives: the lock holds
+            if (
+                end == signal.SIGKILL
+            ):  # nobody could clear away, and who makes it still lives: the lock holds
                 other = self.start("get", "trixie")
                 time.sleep(0.7)
                 self.assertIsNone(other.poll(), "two make the same at the same time")

@@ -154,9 +154,7 @@ def partly_covered(kind: str, width: float, samples: int) -> int:
     tree = material.node_tree
     tree.nodes.clear()
     shader = tree.nodes.new("ShaderNodeEmission")
-    tree.links.new(
-        shader.outputs[0], tree.nodes.new("ShaderNodeOutputMaterial").inputs["Surface"]
-    )
+    tree.links.new(shader.outputs[0], tree.nodes.new("ShaderNodeOutputMaterial").inputs["Surface"])
     square = t.add_object(scene, "Square", None, (0, 0, 0), (0.0, 0.3, 0.0), (3.0, 0.01, 2.0))
     square.data.materials.append(material)
     cycles = scene.cycles
@@ -165,19 +163,31 @@ def partly_covered(kind: str, width: float, samples: int) -> int:
     return int(((red > 1e-4) & (red < 1 - 1e-4)).sum())
 
 
-@fact("sampling", "BLACKMAN_HARRIS of width 0.01 at 16 samples is point-sampled", "scene/rendering.py", decides=True)
+@fact(
+    "sampling",
+    "BLACKMAN_HARRIS of width 0.01 at 16 samples is point-sampled",
+    "scene/rendering.py",
+    decides=True,
+)
 def narrow_filter() -> str:
     found = partly_covered("BLACKMAN_HARRIS", 0.01, 16)
     return "yes" if found <= 4 else f"no: {found} pixels are mixed"
 
 
-@fact("sampling", "BOX is 1 pixel wide whatever its width", "truth: scene/rendering.py", decides=True)
+@fact(
+    "sampling", "BOX is 1 pixel wide whatever its width", "truth: scene/rendering.py", decides=True
+)
 def box_width() -> str:
     widths = [partly_covered("BOX", width, 16) for width in (0.01, 1.0, 1.5)]
     return "yes" if len(set(widths)) == 1 and widths[0] > 50 else f"no: {widths}"
 
 
-@fact("sampling", "sample 0 lies at the pixel's centre, with any filter", "scene/camera.py", decides=True)
+@fact(
+    "sampling",
+    "sample 0 lies at the pixel's centre, with any filter",
+    "scene/camera.py",
+    decides=True,
+)
 def first_sample() -> str:
     worst = 0.0
     for kind, width in (("BLACKMAN_HARRIS", 0.01), ("BLACKMAN_HARRIS", 1.5), ("BOX", 1.0)):
@@ -195,7 +205,12 @@ def first_sample() -> str:
     return below(worst, 0.002, " px")
 
 
-@fact("sampling", "jitter by the camera's shift, against a render 8 times as large", "scene/camera.py", decides=True)
+@fact(
+    "sampling",
+    "jitter by the camera's shift, against a render 8 times as large",
+    "scene/camera.py",
+    decides=True,
+)
 def jitter() -> str:
     scene = plain_scene(8 * WIDTH, 8 * HEIGHT)
     camera = t.add_camera(scene)
@@ -214,7 +229,11 @@ def jitter() -> str:
     return f"{ids} ids, {depths} depths differ"
 
 
-@fact("sampling", "of 16 samples depth and object index show one that is at the centre", "passes/geometry.py")
+@fact(
+    "sampling",
+    "of 16 samples depth and object index show one that is at the centre",
+    "passes/geometry.py",
+)
 def only_first_sample() -> str:
     scene = plain_scene()
     t.add_camera(scene)
@@ -359,7 +378,9 @@ def vector_ortho() -> str:
     return agreement(slide, orthographic=True)
 
 
-@fact("motion", "Vector of a moving camera with a constant shift, as jitter is", MOTION, decides=True)
+@fact(
+    "motion", "Vector of a moving camera with a constant shift, as jitter is", MOTION, decides=True
+)
 def vector_constant_shift() -> str:
     def shifted(camera) -> None:
         camera.data.shift_x, camera.data.shift_y = 0.3 / WIDTH, -0.2 / WIDTH
@@ -452,7 +473,9 @@ def middle(pixels: np.ndarray) -> str:
 ALBEDO = "passes/albedo.py"
 
 
-@fact("colour", "sockets of Principled: specular, emission, coat, subsurface", "compat.emission_color")
+@fact(
+    "colour", "sockets of Principled: specular, emission, coat, subsurface", "compat.emission_color"
+)
 def sockets() -> str:
     plain_scene()
     material = principled()()
@@ -463,7 +486,11 @@ def sockets() -> str:
     return ", ".join(n for n in found if not n.endswith(chosen)) or "none"
 
 
-@fact("colour", "emission of a new Principled: colour, strength", "compat.emission_color; light_sources.py")
+@fact(
+    "colour",
+    "emission of a new Principled: colour, strength",
+    "compat.emission_color; light_sources.py",
+)
 def emission_default() -> str:
     plain_scene()
     material = principled()()
@@ -501,13 +528,22 @@ def albedo_emission() -> str:
     return f"{middle(albedo)}; Emission pass {middle(emitted)}"
 
 
-@fact("colour", "sum of the colour passes: Principled as it comes", "not used: " + ALBEDO, decides=True)
+@fact(
+    "colour",
+    "sum of the colour passes: Principled as it comes",
+    "not used: " + ALBEDO,
+    decides=True,
+)
 def colour_sum() -> str:
     channels = facing(principled())
     return middle(layer_of(channels, DIFFUSE) + layer_of(channels, GLOSSY))
 
 
-@fact("colour", "view transform of a new scene", "display transforms are aaresolve's; exports are linear")
+@fact(
+    "colour",
+    "view transform of a new scene",
+    "display transforms are aaresolve's; exports are linear",
+)
 def view_transform() -> str:
     bpy.ops.wm.read_factory_settings(use_empty=False)
     return bpy.context.scene.view_settings.view_transform
@@ -556,10 +592,20 @@ def noise(*lights: tuple[str, dict]) -> str:
         return "no light at all"
     apart = np.abs(one - many).max(-1) > 0.02 * np.abs(many).max()
     share = 100.0 * apart.mean()
-    return "none" if share < 0.5 else f"{10 * round(share / 10):.0f} % of pixels" if share > 5 else f"{share:.1f} % of pixels"
+    return (
+        "none"
+        if share < 0.5
+        else f"{10 * round(share / 10):.0f} % of pixels"
+        if share > 5
+        else f"{share:.1f} % of pixels"
+    )
 
 
-@fact("light", "the first sample depends on the seed (two lights)", "tests: noise is found by more samples")
+@fact(
+    "light",
+    "the first sample depends on the seed (two lights)",
+    "tests: noise is found by more samples",
+)
 def seed_matters() -> str:
     scene = plain_scene()
     t.add_camera(scene)
@@ -623,7 +669,9 @@ def sum_of_lights() -> str:
         other.hide_render = False
     scene.cycles.samples = 1024
     both = layer_of(picture(scene), "Combined")
-    return below(abs(float((total - both).mean())) / float(both.mean()), 0.005, " of the mean apart")
+    return below(
+        abs(float((total - both).mean())) / float(both.mean()), 0.005, " of the mean apart"
+    )
 
 
 def against_formula(kind: str, expected: float, samples: int = 1, **settings) -> str:
@@ -719,10 +767,16 @@ def sky_picture() -> str:
     seen = float(pictures[0][~surfaces].mean()) if (~surfaces).any() else 0.0
     lit = float(pictures[0][surfaces].max())
     words = "without noise" if np.array_equal(*pictures) else "noisy"
-    return f"{words}, {'seen' if seen > 0 else 'not seen'}, surfaces {'lit' if lit > 1e-6 else 'dark'}"
+    return (
+        f"{words}, {'seen' if seen > 0 else 'not seen'}, surfaces {'lit' if lit > 1e-6 else 'dark'}"
+    )
 
 
-@fact("light", "material keeps its emission from being sampled as a light", "compat.set_no_light_sampling")
+@fact(
+    "light",
+    "material keeps its emission from being sampled as a light",
+    "compat.set_no_light_sampling",
+)
 def emission_sampling() -> str:
     plain_scene()
     return has(bpy.data.materials.new("M").cycles, "emission_sampling", "sample_as_light")
@@ -736,13 +790,20 @@ def use_views(scene) -> None:
     scene.render.use_multiview, scene.render.views_format = True, "MULTIVIEW"
     if hasattr(scene.render.image_settings, "media_type"):
         scene.render.image_settings.media_type = "MULTI_LAYER_IMAGE"
-    scene.render.image_settings.file_format = "OPEN_EXR_MULTILAYER"  # the choice below depends on it
+    scene.render.image_settings.file_format = (
+        "OPEN_EXR_MULTILAYER"  # the choice below depends on it
+    )
     scene.render.image_settings.views_format = "MULTIVIEW"
     for view in list(scene.render.views):
         view.use = False
 
 
-@fact("files", "several cameras in one render, against renders of each", "scene/views.py", decides=True)
+@fact(
+    "files",
+    "several cameras in one render, against renders of each",
+    "scene/views.py",
+    decides=True,
+)
 def multi_view() -> str:
     offsets = ((0.0, 0.0), (0.3, -0.2), (-0.4, 0.1), (0.2, 0.45))
     scene = plain_scene()
@@ -770,7 +831,9 @@ def multi_view() -> str:
     for number, alone in enumerate(single):
         for name in ("Depth.Z", "Combined.R", "Combined.G"):
             part, letter = name.split(".")
-            known = [n for n in channels if n in (f"{part}.k{number}.{letter}", f"k{number}.{name}")]
+            known = [
+                n for n in channels if n in (f"{part}.k{number}.{letter}", f"k{number}.{name}")
+            ]
             if not known:
                 return f"views are named otherwise: {sorted(channels)[:4]}"
             worst = max(worst, float(np.abs(channels[known[0]] - alone[name]).max()))
@@ -815,7 +878,11 @@ def exr_parts() -> str:
     return "; ".join(counts)
 
 
-@fact("files", "parts of an EXR of two views, and where the view's name stands", "exr.py; scene/views.py")
+@fact(
+    "files",
+    "parts of an EXR of two views, and where the view's name stands",
+    "exr.py; scene/views.py",
+)
 def view_names() -> str:
     scene = plain_scene(16, 9)
     t.add_camera(scene)
@@ -831,7 +898,12 @@ def view_names() -> str:
     return f"{len(parts)}; {depth[0] if depth else 'no such channel'}"
 
 
-@fact("files", "pixels of the Render Result without a window", "exr.py: the file is read back", decides=True)
+@fact(
+    "files",
+    "pixels of the Render Result without a window",
+    "exr.py: the file is read back",
+    decides=True,
+)
 def render_result() -> str:
     scene = plain_scene(16, 9)
     t.add_camera(scene)
@@ -839,7 +911,11 @@ def render_result() -> str:
     return f"{len(bpy.data.images['Render Result'].pixels) if 'Render Result' in bpy.data.images else 0}"
 
 
-@fact("files", "lines on stdout and stderr for one rendered frame", "support.py, job.py: read our own lines only")
+@fact(
+    "files",
+    "lines on stdout and stderr for one rendered frame",
+    "support.py, job.py: read our own lines only",
+)
 def said() -> str:
     scene = plain_scene(16, 9)
     t.add_camera(scene)
@@ -849,7 +925,9 @@ def said() -> str:
     command = [bpy.app.binary_path, "-b", "--factory-startup", blend, "-o", out, "-f", "1"]
     done = subprocess.run(command, capture_output=True, text=True)
     lines = [line for line in done.stdout.splitlines() if line.strip()]
-    first = next((line for line in lines if "Sample" in line or "Fra:" in line), "no line of progress")
+    first = next(
+        (line for line in lines if "Sample" in line or "Fra:" in line), "no line of progress"
+    )
     words = "time and category first" if first[:2].isdigit() else f"'{first[:4]}...'"
     extra = sum("Traceback" in line for line in done.stderr.splitlines())
     many = "many lines" if len(lines) > 10 else "few lines"
@@ -907,7 +985,11 @@ def hair_curves() -> str:
     return f"made, seen, Vector {'right' if near < 0.15 else f'{near:.2f} px off'}"
 
 
-@fact("data", "instances: Object Info's Random in an AOV is the depsgraph's random_id", "scene/instances.py")
+@fact(
+    "data",
+    "instances: Object Info's Random in an AOV is the depsgraph's random_id",
+    "scene/instances.py",
+)
 def instance_random() -> str:
     scene = plain_scene()
     t.add_camera(scene)
@@ -1032,7 +1114,9 @@ def grease_pencil() -> str:
     return ", ".join(i.identifier for i in items if "PENCIL" in i.identifier) or "none"
 
 
-@fact("data", "ids of render engines that can be set", "asked; headless.py says what it renders with")
+@fact(
+    "data", "ids of render engines that can be set", "asked; headless.py says what it renders with"
+)
 def engines() -> str:
     scene = plain_scene()
     found = []

@@ -3,6 +3,7 @@
 # copy there. The system is entered in a mount namespace of its own, so nothing stays mounted however this ends, and the
 # process becomes Blender itself, so that whoever kills it kills Blender.
 set -eu
+PATH=$PATH:/usr/sbin:/sbin  # where chroot is, and a user's PATH does not look
 suite=$(dirname "$(readlink -f "$0")")
 if [ "${AA_ENTERED:-}" != "$suite" ]; then
     # While this lock is shared nobody replaces or removes the system; it is given back with the process.
