@@ -15,17 +15,20 @@ space := $() $()
 # A compiler cache is used where there is one.
 LAUNCHER := $(if $(shell command -v ccache 2>/dev/null),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache,)
 
-.PHONY: help deps configure build program install demo test test-addon test-blenders blender-facts blenders-clean fuzz sanitize bench asserts addon docs bits reproduce format clean
+.PHONY: help deps configure build program install demo test test-addon test-blenders blender-facts blenders-clean fuzz sanitize bench asserts addon bundle deb test-bundle docs bits reproduce format clean
 help:
 	@echo "make demo       build, render two scenes in Blender, run the methods, make contact sheets and reports"
 	@echo "make test       build and run every test"
 	@echo "make build      the program, at build/aaresolve"
 	@echo "make install    the program, the add-on's zip and the pages below PREFIX=/usr/local"
-	@echo "make addon      the Blender add-on as one zip, at build/aa_resolve.zip"
+	@echo "make addon      the Blender add-on as one zip for 3.4 to 5.2, at build/aa_resolve.zip"
+	@echo "make bundle     the program with its libraries, build/aaresolve-*.tar.gz, and the add-on with it, build/aa_resolve-linux-x64.zip"
+	@echo "make deb        Debian packages of the program; docs/install.md says who takes which file"
 	@echo "make bench      speed of every method, ns per pixel, and of the exporter, CPU seconds"
 	@echo "make reproduce  render the study's scenes, run every method on each, write docs/results (QUICK=1: a short form)"
 	@echo "make test-addon     the add-on's tests in the Blender at BLENDER=/path/to/blender; ONLY=\"light motion\""
 	@echo "make test-blenders  the same, scenes and more in the Blenders of Debian 13 and sid; SUITES=\"trixie sid\", ONLY=..."
+	@echo "make test-bundle    the bundle and the zips in bare systems of Debian 12, 13 and sid"
 	@echo "make fuzz       damaged input through the program, FUZZ_SECONDS=300, SEED=1"
 	@echo "make sanitize   unit and property tests under AddressSanitizer and UndefinedBehaviorSanitizer"
 	@echo "make asserts    unit tests with asserts on"
@@ -84,9 +87,27 @@ bench: build
 	@$(BLENDER) -b --factory-startup --python-exit-code 9 -P tests/bench/exporter_bench.py
 	@$(BLENDER) -b --factory-startup --python-exit-code 9 -P tests/bench/exporter_bench.py -- --animated
 
+# For every system; and for Linux with the program in it, where `make bundle` has made that.
+BUNDLES = $(wildcard $(BUILD)/bundle/aaresolve-*)
 addon:
-	@mkdir -p build
-	@python3 blender_addon/make_zip.py build/aa_resolve.zip
+	@mkdir -p $(BUILD)
+	@python3 blender_addon/make_zip.py $(BUILD)/aa_resolve.zip
+	@$(if $(BUNDLES),python3 blender_addon/make_zip.py $(BUILD)/aa_resolve-linux-x64.zip --program $(BUNDLES))
+
+bundle: configure
+	@cmake --build --preset $(PRESET) -j $(JOBS) --target aaresolve bundle_parts
+	@python3 packaging/bundle.py $(BUILD)
+	@$(MAKE) --no-print-directory addon
+
+# Debian packages for the system that this is: aaresolve, and aaresolve-formats, which draws in OpenImageIO.
+deb: configure
+	@cmake --build --preset $(PRESET) -j $(JOBS) --target aaresolve aaresolve_formats addon
+	@cd $(BUILD) && cpack -G DEB >cpack.log || { cat cpack.log; exit 1; }
+	@ls -sh $(BUILD)/*.deb
+
+test-bundle: bundle
+	@CI_PACKAGES=mmdebstrap .ci/bootstrap || true
+	@python3 tests/bundle/run.py $(BUILD)
 
 # Generated: the page of methods and the add-on's copy of the registry, the table of precision and memory.
 docs: program

@@ -18,6 +18,14 @@ ADDON_VERSION = ".".join(str(part) for part in bl_info["version"])
 
 def register() -> None:
     """Called by Blender when the add-on is switched on."""
+    try:
+        import numpy  # noqa: F401
+    except ImportError as missing:
+        raise RuntimeError(
+            f"AA Resolve needs numpy, and this Blender's Python has none ({missing}): blender.org's Blender brings it,"
+            " a distribution's may not; install it (Debian, Ubuntu: apt-get install python3-numpy) and switch the"
+            " add-on on again"
+        ) from None
     from . import panel
 
     panel.register()

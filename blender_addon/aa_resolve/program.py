@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from . import ADDON_VERSION
 
 NAME = "aaresolve"
-# The whole bundle as `make bundle` lays it out; only the zip for Linux has it.
+# The folder that `make bundle` makes, bin/aaresolve in it starting libexec/aaresolve; only the zip for Linux has it.
 BUNDLED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "bundle", "bin", NAME)
 _TIMEOUT_SECONDS = 20
 
@@ -90,19 +90,23 @@ def _obstacle(path: str) -> str:
         return "there is no such file"
     if os.path.isdir(path):
         return f"is a folder; expected the program {NAME}"
-    if not os.access(path, os.X_OK) and not (path == BUNDLED and _made_executable(path)):
+    if path == BUNDLED:
+        _make_executable(path)
+        _make_executable(os.path.join(os.path.dirname(os.path.dirname(path)), "libexec", NAME))
+    if not os.access(path, os.X_OK):
         return "is not an executable file"
     return ""
 
 
-def _made_executable(path: str) -> bool:
-    """Gives a file the right to be executed, which zips lose when some versions of Blender unpack them."""
+def _make_executable(path: str) -> None:
+    """Gives a file the right to be executed, which every Blender's unpacking of a zip takes away (3.4 to 5.2)."""
+    if os.access(path, os.X_OK):
+        return
     try:
         mode = os.stat(path).st_mode
         os.chmod(path, mode | stat.S_IXUSR | stat.S_IXGRP | stat.S_IXOTH)
     except OSError:
-        return False
-    return os.access(path, os.X_OK)
+        pass  # what cannot be changed is told apart afterwards, by what it does
 
 
 def _asked(path: str) -> tuple[str, str]:

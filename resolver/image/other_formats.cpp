@@ -11,6 +11,7 @@
 
 #include "formats/module.h"
 #include "image/error.h"
+#include "image/program_folder.h"
 
 namespace aa {
 namespace fs = std::filesystem;
@@ -27,10 +28,9 @@ struct Module {
 };
 
 std::vector<fs::path> places() {
-    std::error_code failed;
     std::vector<fs::path> all;
-    if (const fs::path program = fs::read_symlink("/proc/self/exe", failed); !failed)
-        all = {program.parent_path() / kModule, program.parent_path().parent_path() / "lib" / "aaresolve" / kModule};
+    if (const fs::path folder = programFolder(); !folder.empty())
+        all = {folder / kModule, folder.parent_path() / "lib" / "aaresolve" / kModule};
     if (const char* named = std::getenv(kVariable)) all.push_back(named);
     return all;
 }

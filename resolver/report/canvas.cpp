@@ -15,16 +15,20 @@
 #include "image/error.h"
 #include "image/io.h"
 #include "image/png.h"
+#include "image/program_folder.h"
 
 namespace aa {
 namespace fs = std::filesystem;
 namespace {
 
-// Where distributions put the DejaVu fonts (Debian fonts-dejavu-core, Fedora, Arch, a user's own).
+// What a bundle brings, else where distributions put the DejaVu fonts (Debian fonts-dejavu-core, Fedora, Arch, a user's
+// own).
 std::string fontFile(Canvas::Font font) {
     const char* name = font == Canvas::Font::bold ? "DejaVuSans-Bold.ttf" : "DejaVuSans.ttf";
     std::vector<fs::path> folders = {"/usr/share/fonts/truetype/dejavu", "/usr/share/fonts/dejavu-sans-fonts",
                                      "/usr/share/fonts/dejavu", "/usr/share/fonts/TTF", "/usr/local/share/fonts"};
+    if (const fs::path folder = programFolder(); !folder.empty())
+        folders.insert(folders.begin(), folder.parent_path() / "share" / "aaresolve" / "fonts");
     if (const char* home = std::getenv("HOME"))
         folders.insert(folders.end(), {fs::path(home) / ".local/share/fonts", fs::path(home) / ".fonts"});
     for (const auto& folder : folders)

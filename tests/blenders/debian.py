@@ -166,29 +166,27 @@ def end_together(processes: list[subprocess.Popen]) -> list[int]:
         raise
 
 
-def fill(root: Path, suite: str, lock: int) -> None:
+def fill(root: Path, suite: str, lock: int, options: tuple[str, ...] = OPTIONS) -> None:
     """Debian's packages, unpacked and configured, below `root`."""
-    command = ["mmdebstrap", *OPTIONS, *reach_options()]
+    command = ["mmdebstrap", *options, *reach_options()]
     source = f"deb {mirror()} {suite} main"
     log = root.with_name("mmdebstrap.log")
     with log.open("w") as said:
         # A child that outlives this process keeps the lock, so that nobody makes the same at the same time.
-        options = {"stderr": said, "pass_fds": (lock,), "start_new_session": True}
+        shared = {"stderr": said, "pass_fds": (lock,), "start_new_session": True}
         if may_mount():
             mount = ["unshare", "--mount", "--propagation", "private"]
             command = [*mount, *command, "--mode=root", suite, str(root), source]
-            processes = [
-                subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=said, **options)
-            ]
+            processes = [subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=said, **shared)]
         else:
             # Everything belongs to the user, so that a namespace with this one user suffices afterwards.
             root.mkdir()
             command += ["--mode=unshare", "--format=tar", suite, "-", source]
             unpack = ["tar", "-x", "-C", str(root), "--no-same-owner", "--exclude=./dev/*"]
             packing = subprocess.Popen(
-                command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, **options
+                command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, **shared
             )
-            processes = [packing, subprocess.Popen(unpack, stdin=packing.stdout, **options)]
+            processes = [packing, subprocess.Popen(unpack, stdin=packing.stdout, **shared)]
             packing.stdout.close()
         done = end_together(processes)
     if any(done):

@@ -82,10 +82,11 @@ class Search(unittest.TestCase):
         self.refused(str(foreign), "cannot be started")
 
     def test_what_the_zip_brought_becomes_executable(self) -> None:
-        path = self.stand_in(program.BUNDLED, mode=0o644)
-        found = program.find("")
-        self.assertIsNotNone(found)
-        self.assertTrue(os.access(path, os.X_OK))
+        called = self.script(program.BUNDLED, 'exec "${0%/bin/*}/libexec/aaresolve" "$@"', 0o644)
+        started = self.stand_in(self.folder / "bundle/libexec/aaresolve", mode=0o644)
+        self.assertEqual(program.find(""), program.Program(called, ADDON_VERSION, program.BUNDLE))
+        for path in (called, started):
+            self.assertTrue(os.access(path, os.X_OK), path)
 
     def test_another_version_is_found_and_a_problem(self) -> None:
         old = self.stand_in(self.folder / "old", "0.9.0")
@@ -104,6 +105,13 @@ class Search(unittest.TestCase):
             program.look_again()
             program.find(path)
             self.assertEqual(run.call_count, 3)
+
+    def test_a_blender_without_numpy_is_told_what_to_do(self) -> None:
+        import aa_resolve
+
+        with mock.patch.dict(sys.modules, numpy=None):
+            with self.assertRaisesRegex(RuntimeError, "apt-get install python3-numpy"):
+                aa_resolve.register()
 
 
 if __name__ == "__main__":
