@@ -259,6 +259,63 @@ def test_cutouts_use_real_materials() -> None:
     ).all()
 
 
+def test_instanced_leaves_of_a_moving_shot() -> None:
+    """Instances of leaves whose outline an image holds, over several frames: every sub-sample shows one leaf, at its
+    place, or the wall."""
+    for way in ("principled", "mix"):
+        scene = t.new_scene(48, 32)
+        camera = t.add_camera(scene, (0, -8, 0), (0, 0, 0))
+        t.key(camera, "location", {1: (0, -8, 0), 11: (1, -8, 0)})
+        t.add_sun(scene)
+        wall = t.add_object(scene, "Wall", None, (0, 5, 0), (0, 0, 0), (30, 0.1, 30))
+        wall.data.materials.append(t.diffuse("Grey", (0.5, 0.5, 0.5)))
+        image = bpy.data.images.new("Outline", 16, 16, alpha=True)
+        row, column = np.mgrid[0:16, 0:16] - 7.5
+        pixels = np.ones((16, 16, 4), np.float32)
+        pixels[..., 3] = row * row + 2 * column * column < 50
+        image.pixels.foreach_set(pixels.ravel())
+        material = t.diffuse("Leaf", (0.2, 0.5, 0.1))
+        tree = material.node_tree
+        texture = tree.nodes.new("ShaderNodeTexImage")
+        texture.image, texture.interpolation = image, "Closest"
+        end = tree.get_output_node("CYCLES")
+        if way == "principled":
+            shader = tree.nodes.new("ShaderNodeBsdfPrincipled")
+            tree.links.new(texture.outputs["Alpha"], shader.inputs["Alpha"])
+        else:
+            shader, clear = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new(
+                "ShaderNodeBsdfTransparent"
+            )
+            tree.links.new(texture.outputs["Alpha"], shader.inputs[0])
+            tree.links.new(clear.outputs[0], shader.inputs[1])
+            tree.links.new(end.inputs["Surface"].links[0].from_socket, shader.inputs[2])
+        tree.links.new(shader.outputs[0], end.inputs["Surface"])
+        mesh = bpy.data.meshes.new("Leaf")
+        mesh.from_pydata([(-1, 0, -1), (1, 0, -1), (1, 0, 1), (-1, 0, 1)], [], [(0, 1, 2, 3)])
+        layer = mesh.uv_layers.new(name="UVMap")
+        for index, corner in enumerate(((0, 0), (1, 0), (1, 1), (0, 1))):
+            layer.data[index].uv = corner
+        mesh.materials.append(material)
+        collection = bpy.data.collections.new("Leaves")
+        collection.objects.link(bpy.data.objects.new("Leaf", mesh))
+        for index in range(3):
+            twig = bpy.data.objects.new(f"Twig {index}", None)
+            twig.instance_type, twig.instance_collection = "COLLECTION", collection
+            twig.location = (1.1 * index - 1.1, 0.5 * index, 0.3 * index)
+            scene.collection.objects.link(twig)
+        out = os.path.join(t.temporary_folder(), "shot")
+        shot = t.export(out, "--frames", "1-3", "--for", "rsaa", "--truth-frames", "none")
+        assert len(shot["objects"]) == 4, shot["objects"]
+        for entry in shot["frames"]:
+            samples = t.read_part(os.path.join(out, entry["file"]), "subsamples")
+            for index in range(len(shot["subsamples"]["positions"])):
+                ids, depth = samples[f"s{index:02d}.id"], samples[f"s{index:02d}.Z"]
+                for identity, name in shot["objects"].items():
+                    seen = depth[ids == int(identity)]
+                    place = 8.0 + 0.5 * int(name[-1]) if name != "Wall" else 12.95
+                    assert len(seen) > 20 and np.abs(seen - place).max() < 1e-4, (way, name)
+
+
 def test_uint_channels_are_exact() -> None:
     """Ids share a part with floats; every 32-bit value survives, and OpenImageIO reads what this package writes."""
     from aa_resolve import exr
@@ -347,4 +404,5 @@ if __name__ == "__main__":
         test_override_keeps_the_geometry,
         test_mask,
         test_cutouts_use_real_materials,
+        test_instanced_leaves_of_a_moving_shot,
     )

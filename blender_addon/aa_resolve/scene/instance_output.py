@@ -6,6 +6,9 @@ of what shows through."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Union
+
 import bpy
 
 from .. import compat
@@ -60,51 +63,69 @@ def add_output(material: bpy.types.Material) -> bool:
     if any(node.bl_idname == "ShaderNodeOutputAOV" and node.name == CHANNEL for node in tree.nodes):
         return True
     output = tree.get_output_node("CYCLES")
-    opacity: float | bpy.types.NodeSocket = 1.0
+    opacity: Value = 1.0
     if output is not None and output.inputs["Surface"].is_linked:
         followed = _opacity(tree, output.inputs["Surface"].links[0].from_socket)
         if followed is None:
             return False
         opacity = followed
-    random = tree.nodes.new("ShaderNodeObjectInfo").outputs["Random"]
-    product = _product(tree, random, opacity)
+    information = tree.nodes.new("ShaderNodeObjectInfo")
+    random = Output(information, list(information.outputs.keys()).index("Random"))
+    product = random if opacity == 1.0 else _math(tree, "MULTIPLY", random, opacity)
     aov = tree.nodes.new("ShaderNodeOutputAOV")
     aov.name = aov.label = CHANNEL
     compat.name_aov_output(aov, CHANNEL)
-    if isinstance(product, float):
-        aov.inputs["Value"].default_value = product
-    else:
-        tree.links.new(product, aov.inputs["Value"])
+    tree.links.new(product.socket, aov.inputs["Value"])
     return True
 
 
-def _math(tree: bpy.types.NodeTree, operation: str, *values):
+@dataclass(frozen=True)
+class Output:
+    """An output of a node. Sockets are looked up when they are used: every change of a tree may make them anew, and
+    Blender ends at the touch of one that is gone."""
+
+    node: bpy.types.Node
+    index: int
+
+    @classmethod
+    def of(cls, socket: bpy.types.NodeSocket) -> Output:
+        """By a socket that was just looked up."""
+        return cls(socket.node, list(socket.node.outputs).index(socket))
+
+    @property
+    def socket(self) -> bpy.types.NodeSocket:
+        """The socket as it is now."""
+        return self.node.outputs[self.index]
+
+
+Value = Union[float, Output]
+
+
+def _math(tree: bpy.types.NodeTree, operation: str, *values: Value) -> Output:
     node = tree.nodes.new("ShaderNodeMath")
     node.operation = operation
-    for socket, value in zip(node.inputs, values):
-        if isinstance(value, (int, float)):
-            socket.default_value = float(value)
+    for index, value in enumerate(values):
+        if isinstance(value, Output):
+            tree.links.new(value.socket, node.inputs[index])
         else:
-            tree.links.new(value, socket)
-    return node.outputs[0]
+            node.inputs[index].default_value = value
+    return Output(node, 0)
 
 
-def _product(tree: bpy.types.NodeTree, a, b):
-    if isinstance(a, float) and isinstance(b, float):
-        return a * b
-    if isinstance(b, float) and b == 1.0:
-        return a
-    return _math(tree, "MULTIPLY", a, b)
+def _input(socket: bpy.types.NodeSocket) -> Value:
+    """What a number's input gets."""
+    if socket.is_linked:
+        return Output.of(socket.links[0].from_socket)
+    return float(socket.default_value)
 
 
-def _opacity(tree: bpy.types.NodeTree, socket: bpy.types.NodeSocket):
-    """Opacity of a shader as a number or a socket; None where a node group hides it."""
+def _opacity(tree: bpy.types.NodeTree, socket: bpy.types.NodeSocket) -> Value | None:
+    """Opacity of a shader; None where a node group hides it."""
     node = socket.node
     if node.bl_idname in ("ShaderNodeBsdfTransparent", "ShaderNodeHoldout"):
         return 0.0
     if node.bl_idname == "ShaderNodeBsdfPrincipled":
-        alpha = node.inputs["Alpha"]
-        return alpha.links[0].from_socket if alpha.is_linked else float(alpha.default_value)
+        return _input(node.inputs["Alpha"])
     if node.bl_idname == "NodeReroute":
         return (
             _opacity(tree, node.inputs[0].links[0].from_socket) if node.inputs[0].is_linked else 1.0
@@ -112,18 +133,19 @@ def _opacity(tree: bpy.types.NodeTree, socket: bpy.types.NodeSocket):
     if node.bl_idname == "ShaderNodeGroup":
         return None
     if node.bl_idname in ("ShaderNodeMixShader", "ShaderNodeAddShader"):
-        shaders = [item for item in node.inputs if item.type == "SHADER"]
-        parts = [
-            _opacity(tree, item.links[0].from_socket) if item.is_linked else 0.0 for item in shaders
-        ]
+        shaders = [index for index, item in enumerate(node.inputs) if item.type == "SHADER"]
+        parts = []
+        for index in shaders:
+            shader = node.inputs[index]
+            linked = shader.is_linked
+            parts.append(_opacity(tree, shader.links[0].from_socket) if linked else 0.0)
         if None in parts:
             return None
         if parts[0] == parts[1] == 1.0:
             return 1.0
         if node.bl_idname == "ShaderNodeAddShader":
             return _math(tree, "MAXIMUM", *parts)
-        factor = node.inputs[0]
-        weight = factor.links[0].from_socket if factor.is_linked else float(factor.default_value)
+        weight = _input(node.inputs[0])
         first = _math(tree, "MULTIPLY", parts[0], _math(tree, "SUBTRACT", 1.0, weight))
         return _math(tree, "MULTIPLY_ADD", parts[1], weight, first)
     return 1.0

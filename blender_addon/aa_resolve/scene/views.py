@@ -50,18 +50,15 @@ class ViewSet:
         render.image_settings.views_format = "MULTIVIEW"
         for view in render.views:
             view.use = False
-        added = []
         for name in self.names:
-            view = render.views.new(name)
-            view.camera_suffix = f".{name}"
-            added.append(view)
+            render.views.new(name).camera_suffix = f".{name}"
         try:
             self.scene.camera = self.cameras[0].object
             return rendering.render(self.scene, view_layer, folder, self.names)
         finally:
             self.scene.camera = previous
-            for view in added:
-                render.views.remove(view)
+            for name in self.names:  # looked up again: a render lies between
+                render.views.remove(render.views[name])
             for view in render.views:
                 view.use = True
             render.use_multiview = False
