@@ -34,11 +34,11 @@ def set_if_present(owner, name: str, value) -> bool:
     return False
 
 
-def set_no_light_sampling(material: bpy.types.Material) -> None:
-    """Emission of this material is no longer picked as a light."""
-    cycles = material.cycles
-    if not set_if_present(cycles, "emission_sampling", "NONE"):  # since 3.5
-        set_if_present(cycles, "sample_as_light", False)
+def light_sampling_off(material: bpy.types.Material) -> dict[str, object]:
+    """What to set so that emission of this material is no longer picked as a light."""
+    if hasattr(material.cycles, "emission_sampling"):  # since 3.5
+        return {"cycles.emission_sampling": "NONE"}
+    return {"cycles.sample_as_light": False}
 
 
 def emission_color(node: bpy.types.Node) -> bpy.types.NodeSocket | None:
@@ -95,34 +95,55 @@ def compositor_in_use(scene: bpy.types.Scene) -> bool:
     return scene.render.use_compositing and scene.use_nodes and scene.node_tree is not None
 
 
-def _curve_lists(animation_data) -> list:
-    """The collections of F-curves of the current action that are this owner's."""
-    action = animation_data.action if animation_data else None
+def curve_lists(holder) -> list:
+    """The collections of F-curves by which an animated block's current action, or a strip of its NLA, moves it."""
+    action = holder.action if holder else None
     if action is None:
         return []
-    if not hasattr(animation_data, "action_slot"):  # before 4.4
+    if not hasattr(holder, "action_slot"):  # before 4.4
         return [action.fcurves]
     # An action may serve several owners, each with a slot; its own fcurves, until 5.0, are those of the first one.
     bags = [
-        strip.channelbag(animation_data.action_slot)
+        strip.channelbag(holder.action_slot)
         for layer in action.layers
         for strip in layer.strips
-        if animation_data.action_slot is not None
+        if holder.action_slot is not None
     ]
     return [bag.fcurves for bag in bags if bag]
 
 
-def action_curves(animation_data) -> list:
-    """The F-curves of the current action, whatever way this version stores them."""
-    return [curve for curves in _curve_lists(animation_data) for curve in curves]
+def action_curves(holder) -> list:
+    """The F-curves of ``curve_lists``."""
+    return [curve for curves in curve_lists(holder) for curve in curves]
 
 
-def remove_curve(animation_data, curve) -> None:
-    """Takes one F-curve out of the current action."""
-    for curves in _curve_lists(animation_data):
+def remove_curve(holder, curve) -> None:
+    """Takes one F-curve out of ``curve_lists``."""
+    for curves in curve_lists(holder):
         if curve in list(curves):
             curves.remove(curve)
             return
+
+
+def own_action(holder) -> None:
+    """Gives an animated block or an NLA strip an action of its own where it shares one, so that a curve can be taken
+    out of it alone."""
+    action = holder.action
+    if action is None or (action.users < 2 and action.library is None):
+        return
+    slot = getattr(holder, "action_slot", None)
+    handle = slot.handle if slot else None
+    holder.action = action.copy()
+    if handle is not None:  # since 4.4
+        holder.action_slot = next(slot for slot in holder.action.slots if slot.handle == handle)
+
+
+def id_kind(block: bpy.types.ID) -> str:
+    """Kind of a data-block as the target of a driver wants it."""
+    if hasattr(block, "id_type"):  # since 4.0
+        return block.id_type
+    kind = next(base for base in type(block).__mro__ if bpy.types.ID in base.__bases__).__name__
+    return {"MetaBall": "META", "ParticleSettings": "PARTICLE"}.get(kind, kind.upper())
 
 
 def corner_normals(mesh: bpy.types.Mesh) -> np.ndarray:

@@ -14,8 +14,9 @@ from .passes.table import passes_named
 from .plan import Plan
 from .progress import Progress
 from .scene import camera as cam
-from .scene import instances, lighting, movement, rendering, suitability, surfaces
+from .scene import instances, lighting, movement, ownership, rendering, suitability, surfaces
 from .scene.cuts import CameraCuts
+from .scene.ownership import own
 from .settings import Settings
 
 
@@ -25,8 +26,8 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) ->
     Raises SceneError for what a shot cannot hold."""
     view_layer, notes = suitability.refuse_unsuitable(scene, settings.view_layer)
     if settings.resolution:
-        scene.render.resolution_x, scene.render.resolution_y = settings.resolution
-        scene.render.resolution_percentage = 100
+        width, height = settings.resolution
+        own(scene.render, resolution_x=width, resolution_y=height, resolution_percentage=100)
     frame = cam.frame_of(scene)
     cuts = CameraCuts(scene)
     cuts.at(settings.first_frame)
@@ -60,6 +61,8 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) ->
     ids = instances.ObjectIds(scene, view_layer, settings.instance_ids)
     if settings.instance_ids and not ids.tells_instances and ObjectId.name in wanted:
         left_out.append("ids of instances (nothing is instanced)")
+    rendering.own_samples(scene)
+    notes += ownership.notes()
     if left_out:
         notes.append("left out: " + "; ".join(left_out))
     for note in notes + light.notes + ids.notes:

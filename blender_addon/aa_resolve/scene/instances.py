@@ -18,6 +18,7 @@ import numpy as np
 
 from ..errors import SceneError
 from .instance_output import CHANNEL, add_output, give_every_mesh_a_material, override_material
+from .ownership import own
 from .rendering import Layers
 
 _UNUSED = 2147483647  # fills persistent ids up
@@ -35,7 +36,7 @@ class ObjectIds:
         self.notes: list[str] = []
         self.table: dict[int, str] = {0: ""}
         for index, item in enumerate(sorted(bpy.data.objects, key=lambda item: item.name_full), 1):
-            item.pass_index = index
+            own(item, pass_index=index)
             self.table[index] = item.name_full
         self._indices = {name: index for index, name in self.table.items()}
         self._names: dict[int, str] = {}

@@ -22,6 +22,7 @@ from .. import compat
 from ..errors import SceneError
 from . import rendering
 from .light_sources import emissive_materials, lights_of, noise_causes
+from .ownership import follow_other, is_animated, own, own_if_present
 
 # Along its axis a Blender area light shines with power / 4 per steradian, a spot with power / (4 pi).
 _AREA_TO_SPOT_POWER = math.pi
@@ -59,7 +60,7 @@ class LightPlan:
             return []
         reasons = {
             "Emit": "emission (no material emits)",
-            "Env": "background (the scene has no world)",
+            "Env": "background (the scene shows no world)",
         }
         return [text for name, text in reasons.items() if name in self.empty_passes]
 
@@ -105,8 +106,8 @@ def set_up(
     emissive = emissive_materials()
     if not emissive:
         plan.empty_passes.add("Emit")
-    if scene.world is None:
-        plan.empty_passes.add("Env")
+    if scene.world is None or scene.render.film_transparent:
+        plan.empty_passes.add("Env")  # Combined does not hold it either
     if model == "as-is":
         causes = noise_causes(scene, 1)
         if causes:
@@ -118,21 +119,24 @@ def set_up(
     changes = []
     if cycles.max_bounces > 0:
         changes.append("no bounces")
-    cycles.max_bounces = 0
-    cycles.diffuse_bounces = (
-        cycles.glossy_bounces
-    ) = cycles.transmission_bounces = cycles.volume_bounces = 0
-    cycles.caustics_reflective = cycles.caustics_refractive = False
-    compat.set_if_present(cycles, "use_fast_gi", False)
+    own(
+        cycles,
+        max_bounces=0,
+        diffuse_bounces=0,
+        glossy_bounces=0,
+        transmission_bounces=0,
+        volume_bounces=0,
+        caustics_reflective=False,
+        caustics_refractive=False,
+    )
+    own_if_present(cycles, use_fast_gi=False)
     world = scene.world
     world_lights = False
     if world:
         visibility = world.cycles_visibility
         world_lights = visibility.diffuse
-        visibility.diffuse = (
-            visibility.glossy
-        ) = visibility.transmission = visibility.scatter = False
-        world.cycles.sampling_method = "NONE"
+        own(visibility, diffuse=False, glossy=False, transmission=False, scatter=False)
+        own(world.cycles, sampling_method="NONE")
     if ambient is not None:
         plan.ambient = ambient
     elif world_lights:
@@ -145,16 +149,20 @@ def set_up(
     plan.lights = lights_of(scene)
     changes += [change for change in map(_make_delta, plan.lights) if change]
     for material in emissive:
-        compat.set_no_light_sampling(material)
+        own(material, **compat.light_sampling_off(material))
     if emissive:
         changes.append("emitting meshes light nothing else")
     for item in bpy.data.objects:
         if item.type == "LIGHT":
             continue  # there the same switches mean whom the light shines on
         # What is left of a path after its first hit could only find emitters, at random.
-        item.visible_diffuse = (
-            item.visible_glossy
-        ) = item.visible_transmission = item.visible_volume_scatter = False
+        own(
+            item,
+            visible_diffuse=False,
+            visible_glossy=False,
+            visible_transmission=False,
+            visible_volume_scatter=False,
+        )
     if len(plan.lights) > 1:
         changes.append(f"{len(plan.lights)} lights rendered one by one and added")
     if changes:
@@ -173,38 +181,19 @@ def _make_delta(item: bpy.types.Object) -> str:
     if light.type == "AREA":
         data = light.copy()
         item.data = data
-        energy = data.energy * _AREA_TO_SPOT_POWER
-        data.type = "SPOT"
+        own(data, type="SPOT")
         data = bpy.data.lights[data.name]
-        data.energy = energy
-        data.spot_size = math.pi
-        data.spot_blend = 1.0
-        data.shadow_soft_size = 0.0
-        data.cycles.use_multiple_importance_sampling = False
+        own(data, energy=light.energy * _AREA_TO_SPOT_POWER, spot_size=math.pi, spot_blend=1.0)
+        own(data, shadow_soft_size=0.0, **{"cycles.use_multiple_importance_sampling": False})
+        if is_animated(light, "energy"):
+            follow_other(data, "energy", light, "energy", _AREA_TO_SPOT_POWER)
         item.data = data
         return f"area light '{item.name}' shines from its centre"
-    light.cycles.use_multiple_importance_sampling = False
-    if light.type == "SUN":
-        changed = light.angle > 0.0
-        light.angle = 0.0
-    else:
-        changed = light.shadow_soft_size > 0.0
-        light.shadow_soft_size = 0.0
-    _drop_curves(light, ("angle", "shadow_soft_size"))
+    own(light, **{"cycles.use_multiple_importance_sampling": False})
+    size = "angle" if light.type == "SUN" else "shadow_soft_size"
+    changed = getattr(light, size) > 0.0
+    own(light, **{size: 0.0})
     return f"'{item.name}' without size" if changed else ""
-
-
-def _drop_curves(owner: bpy.types.ID, paths: tuple[str, ...]) -> None:
-    """Takes the animation of some properties away, which would else undo what was set."""
-    animation = owner.animation_data
-    if animation is None:
-        return
-    for curve in compat.action_curves(animation):
-        if curve.data_path in paths:
-            compat.remove_curve(animation, curve)
-    for driver in list(animation.drivers):
-        if driver.data_path in paths:
-            animation.drivers.remove(driver)
 
 
 def check_visibility_animation(plan: LightPlan) -> None:
@@ -212,8 +201,7 @@ def check_visibility_animation(plan: LightPlan) -> None:
     if len(plan.lights) < 2:
         return
     for item in plan.lights:
-        curves = compat.action_curves(item.animation_data)
-        if any(curve.data_path == "hide_render" for curve in curves):
+        if is_animated(item, "hide_render"):
             raise SceneError(
                 f"light '{item.name}': its render visibility is animated, and several lights are rendered one by one; "
                 "animate its strength instead, or use --lighting as-is"

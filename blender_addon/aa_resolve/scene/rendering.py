@@ -17,6 +17,7 @@ import numpy as np
 from .. import compat, exr
 from ..errors import Cancelled, SceneError
 from ..interrupt import STOPPED
+from .ownership import own, own_if_present
 
 
 @dataclass
@@ -126,33 +127,40 @@ def render(
 
 def prepare(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> None:
     """Settings that every render of an export shares; nothing that changes the look of the scene."""
-    scene.render.engine = "CYCLES"
-    settings = scene.render.image_settings
-    compat.set_multilayer_exr(settings)
-    settings.color_depth = "32"
-    settings.exr_codec = "NONE"  # read back at once: packing would only cost time
-    scene.render.use_file_extension = False
-    scene.render.use_overwrite = True
-    scene.render.use_placeholder = False
-    scene.render.use_motion_blur = False
-    scene.render.use_freestyle = False
-    scene.render.use_stamp = False
-    scene.render.use_multiview = False
-    scene.render.use_persistent_data = True
-    scene.render.use_crop_to_border = True
+    render = scene.render
+    own(render, engine="CYCLES")
+    compat.set_multilayer_exr(render.image_settings)
+    # Read back at once: packing would only cost time.
+    own(render.image_settings, color_depth="32", exr_codec="NONE")
+    own(
+        render,
+        use_file_extension=False,
+        use_overwrite=True,
+        use_placeholder=False,
+        use_motion_blur=False,
+        use_freestyle=False,
+        use_stamp=False,
+        use_multiview=False,
+        use_persistent_data=True,
+        use_crop_to_border=True,
+        film_transparent=render.film_transparent,  # what the light model subtracts depends on it
+    )
     compat.set_compositing(scene, False)
     for layer in scene.view_layers:
-        layer.use = layer == view_layer
-    cycles = scene.cycles
-    cycles.use_adaptive_sampling = False
-    cycles.use_denoising = False
-    cycles.light_sampling_threshold = 0.0
-    cycles.sample_clamp_direct = 0.0
-    cycles.sample_clamp_indirect = 0.0
-    cycles.use_animated_seed = False
-    cycles.time_limit = 0.0
-    view_layer.samples = 0
-    view_layer.pass_alpha_threshold = 0.5
+        own(layer, use=layer == view_layer)
+    own(
+        scene.cycles,
+        use_adaptive_sampling=False,
+        use_denoising=False,
+        light_sampling_threshold=0.0,
+        sample_clamp_direct=0.0,
+        sample_clamp_indirect=0.0,
+        use_animated_seed=False,
+        time_limit=0.0,
+        scrambling_distance=1.0,
+        auto_scrambling_distance=False,
+    )
+    own(view_layer, samples=0, pass_alpha_threshold=0.5)
 
 
 def request_passes(view_layer: bpy.types.ViewLayer, names: Collection[str]) -> None:
@@ -170,7 +178,7 @@ def request_passes(view_layer: bpy.types.ViewLayer, names: Collection[str]) -> N
         "Env": "use_pass_environment",
     }
     for name, switch in switches.items():
-        setattr(view_layer, switch, name in names)
+        own(view_layer, **{switch: name in names})
     for switch in (
         "use_pass_mist",
         "use_pass_uv",
@@ -190,30 +198,37 @@ def request_passes(view_layer: bpy.types.ViewLayer, names: Collection[str]) -> N
         "use_pass_cryptomatte_material",
         "use_pass_cryptomatte_asset",
     ):
-        compat.set_if_present(view_layer, switch, False)
-    view_layer.cycles.denoising_store_passes = "Denoising Albedo" in names
+        own_if_present(view_layer, **{switch: False})
+    own(view_layer, **{"cycles.denoising_store_passes": "Denoising Albedo" in names})
 
 
 def sample_points(scene: bpy.types.Scene, samples: int) -> None:
     """All samples of a pixel at one point: the geometry stays aliased, shading noise is averaged.
 
     BOX would ignore the width; sample 0 lies at the exact centre with any filter."""
-    cycles = scene.cycles
-    cycles.pixel_filter_type = "BLACKMAN_HARRIS"
-    cycles.filter_width = 0.01
-    cycles.samples = samples
-    cycles.sample_offset = 0
-    cycles.seed = 0
+    own(
+        scene.cycles,
+        pixel_filter_type="BLACKMAN_HARRIS",
+        filter_width=0.01,
+        samples=samples,
+        sample_offset=0,
+        seed=0,
+    )
+    own_if_present(scene.cycles, use_sample_subset=False)
 
 
 def sample_pixel_area(scene: bpy.types.Scene, samples: int, seed: int) -> None:
     """Ground truth: samples spread evenly over the pixel's square."""
-    cycles = scene.cycles
-    cycles.pixel_filter_type = "BOX"
-    cycles.samples = samples
-    cycles.seed = seed
     # Cycles puts sample 0 of every pixel at the exact centre, in both halves alike; beginning later leaves it out.
-    cycles.sample_offset = samples
+    own(scene.cycles, pixel_filter_type="BOX", samples=samples, seed=seed, sample_offset=samples)
+    if hasattr(scene.cycles, "use_sample_subset"):  # there, the samples of which an offset begins a part
+        own(scene.cycles, use_sample_subset=True, samples=2 * samples, sample_subset_length=samples)
+
+
+def own_samples(scene: bpy.types.Scene) -> None:
+    """Sets once what is set anew for every picture, so that its animation is gone and told before the first."""
+    sample_pixel_area(scene, 1, 0)
+    sample_points(scene, 1)
 
 
 def temporary_folder() -> str:

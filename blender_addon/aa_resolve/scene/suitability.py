@@ -7,6 +7,7 @@ import bpy
 
 from .. import compat
 from ..errors import SceneError
+from .ownership import is_animated, own
 
 
 def refuse_unsuitable(
@@ -53,8 +54,10 @@ def refuse_unsuitable(
     if render.use_border:
         notes.append("the shot shows the render border only")
     for item in bpy.data.objects:
-        if item.type == "CAMERA" and item.data.dof.use_dof:
-            item.data.dof.use_dof = False
+        if item.type == "CAMERA" and (
+            item.data.dof.use_dof or is_animated(item.data.dof, "use_dof")
+        ):
+            own(item.data.dof, use_dof=False)
             notes.append(
                 f"depth of field of camera '{item.name}' is switched off: a shot is sharp everywhere"
             )

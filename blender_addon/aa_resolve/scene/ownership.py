@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the exporter sets, it owns: nothing in the file may set it again at the next frame.
+
+F-curves, strips of the NLA and drivers are evaluated whenever the frame changes and would undo what Python has set: a
+keyed seed makes both halves of a truth the same picture, a keyed sample count a truth of one sample. ``own`` sets
+properties and takes exactly their animation away, in the open scene that is never saved; ``follow`` lets one property
+show what another says, animated or not. What was taken away is told by ``notes``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+import bpy
+
+from .. import compat
+
+_NUMBERED = re.compile(r"\[\d+\]")
+_taken: dict[str, list[str]] = {}  # data path -> what it belonged to, since notes were last told
+
+
+def own(holder: bpy.types.bpy_struct, **values) -> None:
+    """Sets properties of a data-block, or of a struct inside one, for good. Names may lead through further structs
+    (``{"cycles.samples": 1}``)."""
+    for name, value in values.items():
+        if release(holder, name):
+            _taken.setdefault(_path(holder, name), []).append(_title(holder.id_data))
+        target, last = _reach(holder, name)
+        if getattr(target, last) != value:
+            setattr(target, last, value)
+
+
+def own_if_present(holder: bpy.types.bpy_struct, **values) -> None:
+    """``own`` for what only some versions of Blender have."""
+    own(holder, **{name: value for name, value in values.items() if hasattr(holder, name)})
+
+
+def follow(holder: bpy.types.bpy_struct, name: str, source: str) -> None:
+    """Lets ``name`` show what ``source`` (of the same struct) says in every frame, also where that is animated."""
+    moves = is_animated(holder, source)
+    release(holder, name)
+    value = getattr(holder, source)
+    if getattr(holder, name) != value:
+        setattr(holder, name, value)
+    if moves:
+        follow_other(holder, name, holder, source)
+
+
+def follow_other(
+    holder: bpy.types.bpy_struct,
+    name: str,
+    other: bpy.types.bpy_struct,
+    source: str,
+    factor: float = 1.0,
+) -> None:
+    """Drives ``name`` by ``factor`` times a property of ``other``, which may be in another data-block."""
+    release(holder, name)
+    driver = holder.driver_add(name).driver
+    driver.type = "SCRIPTED"
+    variable = driver.variables.new()
+    variable.name = "other"
+    target = variable.targets[0]
+    target.id_type = compat.id_kind(other.id_data)
+    target.id = other.id_data
+    target.data_path = _path(other, source)
+    driver.expression = f"other * {factor!r}"  # simple: Blender evaluates it without Python
+
+
+def is_animated(holder: bpy.types.bpy_struct, name: str) -> bool:
+    """True when a curve, a strip or a driver sets the property."""
+    animation = holder.id_data.animation_data
+    if animation is None:
+        return False
+    curves = list(animation.drivers)
+    for source in _sources(animation):
+        curves += compat.action_curves(source)
+    return any(_sets(curve, holder, name) for curve in curves)
+
+
+def release(holder: bpy.types.bpy_struct, name: str) -> bool:
+    """Takes the animation of one property away; True where there was some."""
+    animation = holder.id_data.animation_data
+    if animation is None:
+        return False
+    found = False
+    for source in _sources(animation):
+        if not any(_sets(curve, holder, name) for curve in compat.action_curves(source)):
+            continue
+        compat.own_action(source)
+        for curve in compat.action_curves(source):
+            if _sets(curve, holder, name):
+                compat.remove_curve(source, curve)
+        found = True
+    for driver in list(animation.drivers):
+        if _sets(driver, holder, name):
+            animation.drivers.remove(driver)
+            found = True
+    return found
+
+
+def notes() -> list[str]:
+    """One sentence per setting whose animation was taken away since the last call."""
+    told = []
+    for path, owners in _taken.items():
+        shown = ", ".join(sorted(set(owners))[:4])
+        further = f" and {len(set(owners)) - 4} more" if len(set(owners)) > 4 else ""
+        told.append(
+            f"the animation of '{path}' ({shown}{further}) is switched off: the export sets it itself"
+        )
+    _taken.clear()
+    return told
+
+
+def _sources(animation: bpy.types.AnimData) -> Iterator:
+    """The block's own action, then all strips of the NLA, those inside of others as well."""
+    if animation.action is not None:
+        yield animation
+    waiting = [strip for track in animation.nla_tracks for strip in track.strips]
+    while waiting:
+        strip = waiting.pop()
+        waiting.extend(strip.strips)
+        if strip.action is not None:
+            yield strip
+
+
+def _path(holder: bpy.types.bpy_struct, name: str) -> str:
+    """Data path of a property as curves hold it."""
+    if isinstance(holder, bpy.types.ID):
+        return name
+    return f"{holder.path_from_id()}.{name}"
+
+
+def _sets(curve: bpy.types.FCurve, holder: bpy.types.bpy_struct, name: str) -> bool:
+    """True when a curve or driver of the holder's block is one of this property."""
+    found = curve.data_path
+    if found == _path(holder, name):
+        return True
+    # A path may name a member of a list by its number as well: view_layers[0].samples.
+    prefix, _, last = found.rpartition(".")
+    if not _NUMBERED.search(prefix) or last != name.rpartition(".")[2]:
+        return False
+    try:
+        return holder.id_data.path_resolve(prefix) == _reach(holder, name)[0]
+    except ValueError:  # the path leads nowhere
+        return False
+
+
+def _reach(holder: bpy.types.bpy_struct, name: str) -> tuple[bpy.types.bpy_struct, str]:
+    *way, last = name.split(".")
+    for step in way:
+        holder = getattr(holder, step)
+    return holder, last
+
+
+def _title(block: bpy.types.ID) -> str:
+    return f"{block.bl_rna.name.lower()} '{block.name}'"
