@@ -19,6 +19,7 @@ from .picture import Kept, Made, Pictures
 from .plan import Plan
 from .prepare import make_plan
 from .progress import Progress
+from .scene.linked import identity_of_linked
 from .settings import Settings
 from .store import Store
 
@@ -64,6 +65,7 @@ class Exporter:
 
     def prepare(self) -> None:
         """Checks the scene, brings it to the light model and decides what each frame needs."""
+        self._linked = identity_of_linked()
         self.plan = make_plan(self.scene, self.settings, self.progress)
         self.pictures = Pictures(self.plan)
 
@@ -77,6 +79,7 @@ class Exporter:
         return {
             **self.settings.fingerprint(),
             "static": self.static,
+            "linked": self._linked,
             "version": self.version,
             "blender": bpy.app.version_string,
         }

@@ -7,6 +7,7 @@ from .options import options_of
 from .settings import Settings
 
 _CHANGED = {
+    "linked": "a file that the scene uses (a library, a picture, a cache)",
     "first_frame": "the first of --frames",
     "version": "the version of the add-on",
     "blender": "the version of Blender",
@@ -26,7 +27,7 @@ def difference(old: dict, new: dict) -> str | None:
     """First difference of two fingerprints in words, or None."""
     for key in sorted(set(old) | set(new)):
         if old.get(key) != new.get(key):
-            if key == "source":
+            if key in ("source", "linked"):
                 return f"{_called(key)} has changed"
             return f"{_called(key)} was {_shown(old.get(key))} and now is {_shown(new.get(key))}"
     return None

@@ -3,8 +3,8 @@
 
     blender -b FILE.blend --python-exit-code 9 -P headless.py -- --out SHOT --frames 1-16 --for noaa,taaSimplest
 
-A shot that is there is added to: what it lacks is said first, then rendered. Errors are one line on standard error;
-exit codes stand in ``--help``. The .blend file is only read.
+A shot that is there is added to: what it lacks is said first, then rendered. Every failure ends with one line on
+standard error; exit codes stand in ``--help``. The .blend file is only read.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ import argparse
 import os
 import sys
 import time
-import traceback
 
 import bpy
 
@@ -26,7 +25,7 @@ if __package__ in (None, ""):
 from . import ADDON_VERSION, interrupt  # noqa: E402
 from .adding import missing  # noqa: E402
 from .command_line import build_parser, settings_from  # noqa: E402
-from .errors import Cancelled, SceneError, UsageError  # noqa: E402
+from .errors import Cancelled, UsageError, trace_of, way_out  # noqa: E402
 from .estimate import Estimate, estimate  # noqa: E402
 from .export import Exporter, Summary  # noqa: E402
 from .progress import Progress  # noqa: E402
@@ -34,7 +33,6 @@ from .settings import Settings  # noqa: E402
 from .store import Store  # noqa: E402
 
 _ASK_ABOVE_SECONDS = 600.0  # a range that nobody named: a forgotten --frames must not cost a night
-_FAULT = 9  # exit code of what should not happen; Blender's own, with --python-exit-code 9
 
 
 def run(argv: list[str]) -> int:
@@ -45,22 +43,11 @@ def run(argv: list[str]) -> int:
         progress = Progress(arguments.json)
         _export(arguments, bpy.context.scene, progress)
         return 0
-    except (UsageError, SceneError, Cancelled) as error:
+    except (Exception, KeyboardInterrupt) as error:
         interrupt.give_way()
-        print(f"error: {error}", file=sys.stderr, flush=True)
-        return error.exit_code
-    except (
-        Exception
-    ) as error:  # one line here as well; Blender would tell it to the stream that is closed
-        interrupt.give_way()
-        place = traceback.extract_tb(error.__traceback__)[-1]
-        print(
-            f"error: a fault of the exporter: {type(error).__name__}: {error} "
-            f"({os.path.basename(place.filename)}, line {place.lineno})",
-            file=sys.stderr,
-            flush=True,
-        )
-        return _FAULT
+        line, code = way_out(error)
+        print(f"error: {line}\n{trace_of(error)}", end="", file=sys.stderr, flush=True)
+        return code
 
 
 def _export(arguments: argparse.Namespace, scene: bpy.types.Scene, progress: Progress) -> None:

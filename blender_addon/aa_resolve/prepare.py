@@ -14,7 +14,8 @@ from .passes.table import passes_named
 from .plan import Plan
 from .progress import Progress
 from .scene import camera as cam
-from .scene import instances, lighting, movement, ownership, rendering, suitability, surfaces
+from .scene import instances, lighting, linked, movement, ownership, rendering
+from .scene import suitability, surfaces
 from .scene.cuts import CameraCuts
 from .scene.ownership import own
 from .settings import Settings
@@ -25,6 +26,7 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) ->
 
     Raises SceneError for what a shot cannot hold."""
     view_layer, notes = suitability.refuse_unsuitable(scene, settings.view_layer)
+    notes += linked.notes_on_missing()
     if settings.resolution:
         width, height = settings.resolution
         own(scene.render, resolution_x=width, resolution_y=height, resolution_percentage=100)
