@@ -82,6 +82,16 @@ def displacement_method(material: bpy.types.Material) -> str:
     return owner.displacement_method
 
 
+def is_diced(scene: bpy.types.Scene, item: bpy.types.Object) -> bool:
+    """True when Cycles subdivides this object itself, as fine as the picture needs it."""
+    last = item.modifiers[-1] if len(item.modifiers) else None
+    if last is None or last.type != "SUBSURF" or not last.show_render:
+        return False
+    if hasattr(last, "use_adaptive_subdivision"):  # since 5.0
+        return last.use_adaptive_subdivision
+    return scene.cycles.feature_set == "EXPERIMENTAL" and item.cycles.use_adaptive_subdivision
+
+
 def set_compositing(scene: bpy.types.Scene, enabled: bool) -> None:
     """Compositor and sequencer on or off for renders."""
     scene.render.use_compositing = enabled

@@ -14,8 +14,19 @@ from .passes.table import passes_named
 from .plan import Plan
 from .progress import Progress
 from .scene import camera as cam
-from .scene import instances, lighting, linked, movement, ownership, rendering
-from .scene import suitability, surfaces
+from .scene import (
+    instances,
+    lighting,
+    linked,
+    movement,
+    ownership,
+    render_levels,
+    rendering,
+    scripts,
+    simulations,
+    suitability,
+    surfaces,
+)
 from .scene.cuts import CameraCuts
 from .scene.ownership import own
 from .settings import Settings
@@ -25,8 +36,10 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) ->
     """Checks the scene, brings it to the light model and says what is left out, and why.
 
     Raises SceneError for what a shot cannot hold."""
+    ownership.begin()
     view_layer, notes = suitability.refuse_unsuitable(scene, settings.view_layer)
-    notes += linked.notes_on_missing()
+    notes += linked.notes_on_missing() + scripts.notes_on_blocked()
+    notes += suitability.switch_off(scene, view_layer)
     if settings.resolution:
         width, height = settings.resolution
         own(scene.render, resolution_x=width, resolution_y=height, resolution_percentage=100)
@@ -35,7 +48,8 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) ->
     cuts.at(settings.first_frame)
     if settings.jitter_projection == "pre":
         _refuse_other_than_perspective(cuts, settings.frames)
-    suitability.show_what_renders(scene)
+    notes += render_levels.show_what_renders(scene, view_layer)
+    notes += simulations.run(scene, settings.frames)
     motion = movement.find_motion(scene, settings.frames, frame, cuts)
     passes_of = {"frames": set(settings.passes), "centre": set(settings.centre_passes)}
     left_out = _drop_what_rests(passes_of, motion) if motion.static else []
@@ -64,7 +78,7 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) ->
     if settings.instance_ids and not ids.tells_instances and ObjectId.name in wanted:
         left_out.append("ids of instances (nothing is instanced)")
     rendering.own_samples(scene)
-    notes += ownership.notes()
+    notes += ownership.notes() + scripts.hold_against_handlers()
     if left_out:
         notes.append("left out: " + "; ".join(left_out))
     for note in notes + light.notes + ids.notes:

@@ -13,7 +13,7 @@ from .camera import CameraState, Frame, same_camera, sample_positions, unproject
 
 
 class CameraCuts:
-    """Which camera looks at a frame: those bound to markers, else the scene's own.
+    """Which camera looks at a frame: those bound to markers and not hidden in renders, else the scene's own.
 
     Takes the bindings out of the (open, never saved) scene: they would put the user's camera in the place of the
     jittered one at every change of frame."""
@@ -24,7 +24,7 @@ class CameraCuts:
             (
                 (marker.frame, marker.camera)
                 for marker in scene.timeline_markers
-                if marker.camera is not None
+                if marker.camera is not None and not marker.camera.hide_render
             ),
             key=lambda pair: pair[0],
         )

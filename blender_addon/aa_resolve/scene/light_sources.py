@@ -18,8 +18,14 @@ def lights_of(scene: bpy.types.Scene) -> list[bpy.types.Object]:
         if item.type == "LIGHT"
         and item.users > 0
         and not item.hide_render
+        and not is_portal(item)
         and _is_reachable(scene, item)
     ]
+
+
+def is_portal(item: bpy.types.Object) -> bool:
+    """True for an area light that only shows Cycles where light of the world comes in."""
+    return item.type == "LIGHT" and item.data.type == "AREA" and item.data.cycles.is_portal
 
 
 def _is_reachable(scene: bpy.types.Scene, item: bpy.types.Object) -> bool:

@@ -21,7 +21,7 @@ import numpy as np
 from .. import compat
 from ..errors import SceneError
 from . import rendering
-from .light_sources import emissive_materials, lights_of, noise_causes
+from .light_sources import emissive_materials, is_portal, lights_of, noise_causes
 from .ownership import follow_other, is_animated, own, own_if_present
 
 # Along its axis a Blender area light shines with power / 4 per steradian, a spot with power / (4 pi).
@@ -146,6 +146,9 @@ def set_up(
         changes.append(
             f"ambient ({red:.3g}, {green:.3g}, {blue:.3g}) in place of light from the world"
         )
+    for item in bpy.data.objects:
+        if is_portal(item):
+            own(item, hide_render=True)  # what it lets in, the ambient stands for
     plan.lights = lights_of(scene)
     changes += [change for change in map(_make_delta, plan.lights) if change]
     for material in emissive:

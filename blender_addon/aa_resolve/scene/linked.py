@@ -44,9 +44,7 @@ def notes_on_missing() -> list[str]:
         told.append(
             f"the linked file {_some(gone)} is missing: what the scene links from it is not in the shot"
         )
-    images = [
-        image.name for image in bpy.data.images if image.users and _is_missing_picture(image)
-    ]
+    images = [image.name for image in bpy.data.images if image.users and _is_missing_picture(image)]
     if images:
         told.append(f"the picture of {_some(sorted(images))} is missing: its surfaces are magenta")
     for blocks, what in (

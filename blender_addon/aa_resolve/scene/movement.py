@@ -13,6 +13,7 @@ import numpy as np
 
 from . import camera as cam
 from .cuts import CameraCuts
+from .scripts import foreign_handlers
 
 # Modifiers that can change a mesh although nothing in the file is keyed.
 _TIME_MODIFIERS = {
@@ -85,20 +86,11 @@ def _shading_that_changes() -> str | None:
     return None
 
 
-def _own_handlers(handlers: list) -> bool:
-    return any(
-        not (handler.__module__ or "").startswith(("cycles", "bl_", "rigify"))
-        for handler in handlers
-    )
-
-
 def _may_move(scene: bpy.types.Scene) -> bool:
     """False when nothing in the file can depend on the frame: then no frame needs to be evaluated to know it."""
     if scene.rigidbody_world is not None:
         return True
-    if _own_handlers(bpy.app.handlers.frame_change_pre) or _own_handlers(
-        bpy.app.handlers.frame_change_post
-    ):
+    if foreign_handlers():
         return True
     for name in (
         "objects", "meshes", "curves", "armatures", "cameras", "lattices", "shape_keys", "metaballs", "scenes",

@@ -8,6 +8,7 @@ show what another says, animated or not. What was taken away is told by ``notes`
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator
 
@@ -17,6 +18,28 @@ from .. import compat
 
 _NUMBERED = re.compile(r"\[\d+\]")
 _taken: dict[str, list[str]] = {}  # data path -> what it belonged to, since notes were last told
+# What was set of scenes: (scene, data path) -> holder, name, value.
+_kept: dict[tuple[str, str], tuple[bpy.types.bpy_struct, str, object]] = {}
+
+
+def begin() -> None:
+    """Forgets what an earlier export owned."""
+    _taken.clear()
+    _kept.clear()
+    for called in _called():
+        if set_again in called:
+            called.remove(set_again)
+
+
+def hold_against_handlers() -> None:
+    """Calls ``set_again`` after all other functions that run at changes of the frame."""
+    for called in _called():
+        called.append(set_again)
+
+
+def _called() -> tuple[list, ...]:
+    handlers = bpy.app.handlers
+    return handlers.frame_change_post, handlers.render_init, handlers.render_pre
 
 
 def own(holder: bpy.types.bpy_struct, **values) -> None:
@@ -26,8 +49,10 @@ def own(holder: bpy.types.bpy_struct, **values) -> None:
         if release(holder, name):
             _taken.setdefault(_path(holder, name), []).append(_title(holder.id_data))
         target, last = _reach(holder, name)
-        if getattr(target, last) != value:
+        if not _holds(getattr(target, last), value):
             setattr(target, last, value)
+        if isinstance(holder.id_data, bpy.types.Scene):
+            _kept[holder.id_data.name, _path(holder, name)] = target, last, value
 
 
 def own_if_present(holder: bpy.types.bpy_struct, **values) -> None:
@@ -40,7 +65,7 @@ def follow(holder: bpy.types.bpy_struct, name: str, source: str) -> None:
     moves = is_animated(holder, source)
     release(holder, name)
     value = getattr(holder, source)
-    if getattr(holder, name) != value:
+    if not _holds(getattr(holder, name), value):
         setattr(holder, name, value)
     if moves:
         follow_other(holder, name, holder, source)
@@ -98,6 +123,16 @@ def release(holder: bpy.types.bpy_struct, name: str) -> bool:
     return found
 
 
+def set_again(*_handler) -> None:
+    """Sets once more what was set of scenes: a handler that comes after those of the file."""
+    for key, (holder, name, value) in list(_kept.items()):
+        try:
+            if not _holds(getattr(holder, name), value):
+                setattr(holder, name, value)
+        except ReferenceError:  # a scene that the exporter made and removed
+            del _kept[key]
+
+
 def notes() -> list[str]:
     """One sentence per setting whose animation was taken away since the last call."""
     told = []
@@ -150,6 +185,13 @@ def _reach(holder: bpy.types.bpy_struct, name: str) -> tuple[bpy.types.bpy_struc
     for step in way:
         holder = getattr(holder, step)
     return holder, last
+
+
+def _holds(found: object, value: object) -> bool:
+    """True when a property has the value; Blender's floats have 24 bits."""
+    if isinstance(value, float) and isinstance(found, float):
+        return math.isclose(found, value, rel_tol=1e-7)
+    return found == value
 
 
 def _title(block: bpy.types.ID) -> str:

@@ -221,7 +221,9 @@ def sample_pixel_area(scene: bpy.types.Scene, samples: int, seed: int) -> None:
     """Ground truth: samples spread evenly over the pixel's square."""
     # Cycles puts sample 0 of every pixel at the exact centre, in both halves alike; beginning later leaves it out.
     own(scene.cycles, pixel_filter_type="BOX", samples=samples, seed=seed, sample_offset=samples)
-    if hasattr(scene.cycles, "use_sample_subset"):  # there, the samples of which an offset begins a part
+    if hasattr(
+        scene.cycles, "use_sample_subset"
+    ):  # there, the samples of which an offset begins a part
         own(scene.cycles, use_sample_subset=True, samples=2 * samples, sample_subset_length=samples)
 
 

@@ -9,6 +9,13 @@ from .. import compat
 from ..errors import SceneError
 from .ownership import is_animated, own
 
+GREASE_PENCIL = ("GPENCIL", "GREASEPENCIL")  # the latter since 4.3
+_LONGEST_LAYER_NAME = 24  # bytes; ".Denoising Albedo.s15.R" follows it
+_WITHOUT_SURFACE = {
+    "VOLUME": "volume {} has no surface: its depth, normal and motion are those behind it",
+    "POINTCLOUD": "points of {} have no edges: they are no triangles",
+}
+
 
 def refuse_unsuitable(
     scene: bpy.types.Scene, layer_name: str | None
@@ -53,18 +60,10 @@ def refuse_unsuitable(
         notes.append("Freestyle lines are switched off: they are drawn after rendering")
     if render.use_border:
         notes.append("the shot shows the render border only")
-    for item in bpy.data.objects:
-        if item.type == "CAMERA" and (
-            item.data.dof.use_dof or is_animated(item.data.dof, "use_dof")
-        ):
-            own(item.data.dof, use_dof=False)
-            notes.append(
-                f"depth of field of camera '{item.name}' is switched off: a shot is sharp everywhere"
-            )
-        if item.type == "VOLUME" and not item.hide_render:
-            notes.append(
-                f"volume '{item.name}' has no surface: its depth, normal and motion are those behind it"
-            )
+    if scene.frame_step > 1:
+        notes.append(
+            f"the scene's frame step of {scene.frame_step} is ignored: methods that accumulate need every frame"
+        )
     if len(bpy.data.objects) > 32767:
         raise SceneError(
             f"{len(bpy.data.objects)} objects: Cycles tells at most 32767 apart; join some"
@@ -72,18 +71,81 @@ def refuse_unsuitable(
     return chosen, notes
 
 
-def show_what_renders(scene: bpy.types.Scene) -> None:
-    """Makes the evaluated scene that Python sees agree with what the renderer sees (in memory only)."""
-    for item in bpy.data.objects:
-        if item.library is None:
-            item.hide_viewport = False
-            for modifier in item.modifiers:
-                modifier.show_viewport = modifier.show_render
-            if item.name in bpy.context.view_layer.objects:
-                item.hide_set(False)
-    for collection in bpy.data.collections:
-        if collection.library is None and not collection.hide_render:
-            collection.hide_viewport = False
-    for particles in bpy.data.particles:
-        if particles.library is None:
-            particles.display_percentage = 100
+def switch_off(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> list[str]:
+    """Switches off, in memory, what a shot cannot hold; sentences about that, and about what it holds differently.
+
+    The export owns the name of the view layer: a file's channels have 63 bytes for it and all else.
+    """
+    if len(view_layer.name.encode()) > _LONGEST_LAYER_NAME:
+        view_layer.name = "AA Resolve"
+    told = []
+    objects = sorted(bpy.data.objects, key=lambda item: item.name_full)
+    for item in objects:
+        if item.type == "CAMERA":
+            if item.data.dof.use_dof or is_animated(item.data.dof, "use_dof"):
+                own(item.data.dof, use_dof=False)
+                told.append(
+                    f"depth of field of camera '{item.name}' is switched off: a shot is sharp everywhere"
+                )
+    rendered = [item for item in objects if not item.hide_render]
+    sketches = [item for item in rendered if item.type in GREASE_PENCIL]
+    for item in sketches:
+        own(item, hide_render=True)
+    if sketches:
+        told.append(
+            f"Grease Pencil {_some(sketches)} is left out: it is drawn over the finished picture, without depth and id"
+        )
+    catchers = [item for item in objects if item.is_shadow_catcher]
+    for item in objects:
+        if item.is_shadow_catcher or is_animated(item, "is_shadow_catcher"):
+            own(item, is_shadow_catcher=False)
+    if catchers:
+        told.append(
+            f"{_some(catchers)} catches shadows only in the scene; in the shot it is an ordinary surface"
+        )
+    holdouts = [item for item in rendered if item.is_holdout]
+    if holdouts or _any_layer(view_layer.layer_collection, "holdout"):
+        told.append(
+            f"holdouts ({_some(holdouts) if holdouts else 'a collection'}) are holes of the picture: black, and with the "
+            "depth, id and motion of the background"
+        )
+    for kind, what in _WITHOUT_SURFACE.items():
+        found = [item for item in rendered if item.type == kind]
+        if found:
+            told.append(f"{what.format(_some(found))}")
+    foggy = sorted(
+        material.name
+        for material in bpy.data.materials
+        if material.users and material.use_nodes and _has_volume(material.node_tree)
+    )
+    if foggy:
+        told.append(
+            f"the volume of material {', '.join(foggy[:4])} has no surface: its depth, normal and motion are those of "
+            "the mesh around it, or behind it"
+        )
+    if scene.world and scene.world.use_nodes and _has_volume(scene.world.node_tree):
+        told.append(
+            "the world's volume has no surface: depth, normal and motion are those behind it"
+        )
+    return told
+
+
+def _has_volume(tree: bpy.types.NodeTree | None) -> bool:
+    return tree is not None and any(
+        node.bl_idname in ("ShaderNodeOutputMaterial", "ShaderNodeOutputWorld")
+        and node.inputs["Volume"].is_linked
+        for node in tree.nodes
+    )
+
+
+def _any_layer(layer: bpy.types.LayerCollection, name: str) -> bool:
+    """True when a collection of the layer that is not excluded has the switch on."""
+    if layer.exclude:
+        return False
+    return getattr(layer, name) or any(_any_layer(child, name) for child in layer.children)
+
+
+def _some(items: list[bpy.types.Object]) -> str:
+    """Up to four names, and how many further ones there are."""
+    shown = ", ".join(f"'{item.name}'" for item in items[:4])
+    return shown + (f" and {len(items) - 4} more" if len(items) > 4 else "")
