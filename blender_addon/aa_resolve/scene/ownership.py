@@ -93,7 +93,7 @@ def follow_other(
 
 def is_animated(holder: bpy.types.bpy_struct, name: str) -> bool:
     """True when a curve, a strip or a driver sets the property."""
-    animation = holder.id_data.animation_data
+    animation = _animation(holder)
     if animation is None:
         return False
     curves = list(animation.drivers)
@@ -104,7 +104,7 @@ def is_animated(holder: bpy.types.bpy_struct, name: str) -> bool:
 
 def release(holder: bpy.types.bpy_struct, name: str) -> bool:
     """Takes the animation of one property away; True where there was some."""
-    animation = holder.id_data.animation_data
+    animation = _animation(holder)
     if animation is None:
         return False
     found = False
@@ -144,6 +144,10 @@ def notes() -> list[str]:
         )
     _taken.clear()
     return told
+
+
+def _animation(holder: bpy.types.bpy_struct) -> bpy.types.AnimData | None:
+    return getattr(holder.id_data, "animation_data", None)  # a collection has none
 
 
 def _sources(animation: bpy.types.AnimData) -> Iterator:

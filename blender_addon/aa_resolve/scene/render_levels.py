@@ -60,10 +60,9 @@ def show_what_renders(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -
         _show_rendered_curve(curve)
     for ball in bpy.data.metaballs:
         follow(ball, "resolution", "render_resolution")
-    if scene.render.use_simplify:
-        for shown, rendered in _SIMPLIFIED:
-            follow(scene.render, shown, rendered)
-        own_if_present(scene.render, use_simplify_normals=False)  # the viewport's alone
+    for shown, rendered in _SIMPLIFIED:
+        follow(scene.render, shown, rendered)
+    own_if_present(scene.render, use_simplify_normals=False)  # the viewport's alone
     for tree in bpy.data.node_groups:
         if tree.bl_idname == "GeometryNodeTree":
             _answer_for_the_renderer(tree)
@@ -102,9 +101,7 @@ def _answer_for_the_renderer(tree: bpy.types.NodeTree) -> None:
 
 def _notes_on_adaptive_subdivision(scene: bpy.types.Scene) -> list[str]:
     names = [
-        item.name
-        for item in scene.objects
-        if not item.hide_render and compat.is_diced(scene, item)
+        item.name for item in scene.objects if not item.hide_render and compat.is_diced(scene, item)
     ]
     if not names:
         return []

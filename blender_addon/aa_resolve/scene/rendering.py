@@ -160,6 +160,7 @@ def prepare(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> None:
         scrambling_distance=1.0,
         auto_scrambling_distance=False,
     )
+    own_if_present(scene.cycles, use_pixel_jitter=False)
     own(view_layer, samples=0, pass_alpha_threshold=0.5)
 
 

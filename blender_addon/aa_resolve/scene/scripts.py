@@ -21,8 +21,9 @@ def notes_on_blocked() -> list[str]:
     told = []
     if blocked:
         told.append(
-            f"{len(blocked)} drivers are Python that Blender was not allowed to run ({_some(blocked)}): what they drive "
-            "stands still; start Blender with --enable-autoexec, or allow Auto Run Python Scripts in its preferences"
+            f"Blender was not allowed to run the Python of {len(blocked)} driver{'s' if len(blocked) > 1 else ''} "
+            f"({_some(blocked)}): what they drive stands still; start Blender with "
+            "--enable-autoexec, or allow Auto Run Python Scripts in its preferences"
         )
     if texts:
         told.append(
@@ -51,7 +52,10 @@ def foreign_handlers() -> list[Callable]:
     return [
         function
         for function in (
-            *handlers.frame_change_pre, *handlers.frame_change_post, *handlers.render_init, *handlers.render_pre,
+            *handlers.frame_change_pre,
+            *handlers.frame_change_post,
+            *handlers.render_init,
+            *handlers.render_pre,
         )  # fmt: skip
         if not (function.__module__ or "").startswith(_BLENDERS_OWN)
     ]

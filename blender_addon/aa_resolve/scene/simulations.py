@@ -17,7 +17,6 @@ from dataclasses import dataclass
 
 import bpy
 
-from .ownership import own_if_present
 
 # Modifiers that simulate, and where their state is kept.
 WITH_POINT_CACHE = ("CLOTH", "SOFT_BODY", "DYNAMIC_PAINT", "PARTICLE_SYSTEM")
@@ -49,7 +48,7 @@ def run(scene: bpy.types.Scene, frames: list[int]) -> list[str]:
     begin = min([known.cache.frame_start for known in unbaked] + [first for _, first in steps])
     for known in unbaked:
         known.cache.frame_end = max(known.cache.frame_start + 1, min(known.cache.frame_end, last))
-        own_if_present(known.cache, frame_step=1)
+        known.cache.frame_step = 1  # no property that animation could reach
     if steps:
         for number in range(begin, last + 1):
             scene.frame_set(number)

@@ -95,10 +95,14 @@ def switch_off(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> list[
         told.append(
             f"Grease Pencil {_some(sketches)} is left out: it is drawn over the finished picture, without depth and id"
         )
-    catchers = [item for item in objects if item.is_shadow_catcher]
-    for item in objects:
-        if item.is_shadow_catcher or is_animated(item, "is_shadow_catcher"):
-            own(item, is_shadow_catcher=False)
+    catchers = [
+        item
+        for item in objects
+        if item.type != "LIGHT"  # there it means whether catchers see the light
+        and (item.is_shadow_catcher or is_animated(item, "is_shadow_catcher"))
+    ]
+    for item in catchers:
+        own(item, is_shadow_catcher=False)
     if catchers:
         told.append(
             f"{_some(catchers)} catches shadows only in the scene; in the shot it is an ordinary surface"
