@@ -204,11 +204,11 @@ def test_a_hidden_camera_at_a_marker() -> None:
     assert "Cube" in parts["names"].values(), parts["names"]
 
 
-def test_holdouts_volumes_and_the_frame_step() -> None:
+def test_holdouts_and_volumes() -> None:
     told, _ = attempt(lambda _s, _c, cube, _f: setattr(cube, "is_holdout", True))
     assert "holdouts ('Cube')" in told, told
 
-    def fog(scene, _camera, cube, _floor):
+    def fog(_scene, _camera, cube, _floor):
         tree = cube.data.materials[0].node_tree
         tree.links.new(
             tree.nodes.new("ShaderNodeVolumeScatter").outputs[0],
@@ -216,10 +216,9 @@ def test_holdouts_volumes_and_the_frame_step() -> None:
                 "Volume"
             ],
         )
-        scene.frame_step = 2
 
     told, _ = attempt(fog)
-    assert "volume of material Colour" in told and "frame step of 2" in told, told
+    assert "volume of material Colour" in told, told
 
 
 def test_a_long_name_of_a_view_layer() -> None:
@@ -271,7 +270,7 @@ if __name__ == "__main__":
         test_grease_pencil,
         test_a_portal_does_not_shine,
         test_a_hidden_camera_at_a_marker,
-        test_holdouts_volumes_and_the_frame_step,
+        test_holdouts_and_volumes,
         test_a_long_name_of_a_view_layer,
         test_scripts_do_not_win,
         test_blocked_drivers_are_named,

@@ -207,13 +207,6 @@ ROWS: tuple[Feature, ...] = (
         "looks from its marker on, unless it is hidden in renders",
         "cuts:CameraCuts",
     ),
-    Feature(
-        "file",
-        "frame step",
-        NOTED,
-        "ignored: methods that accumulate need every frame",
-        _REFUSE,
-    ),
     Feature("file", "several view layers", REFUSED, "until --view-layer chooses one", _REFUSE),
     Feature(
         "file",

@@ -60,10 +60,6 @@ def refuse_unsuitable(
         notes.append("Freestyle lines are switched off: they are drawn after rendering")
     if render.use_border:
         notes.append("the shot shows the render border only")
-    if scene.frame_step > 1:
-        notes.append(
-            f"the scene's frame step of {scene.frame_step} is ignored: methods that accumulate need every frame"
-        )
     if len(bpy.data.objects) > 32767:
         raise SceneError(
             f"{len(bpy.data.objects)} objects: Cycles tells at most 32767 apart; join some"
