@@ -36,6 +36,7 @@ class LightPlan:
     lights: list[bpy.types.Object] = field(default_factory=list)
     ambient: tuple[float, float, float] = (0.0, 0.0, 0.0)
     notes: list[str] = field(default_factory=list)
+    transparent_film: bool = False
     empty_passes: set[str] = field(default_factory=set)  # of Cycles, known to be 0 everywhere
 
     @property
@@ -60,7 +61,9 @@ class LightPlan:
             return []
         reasons = {
             "Emit": "emission (no material emits)",
-            "Env": "background (the scene shows no world)",
+            "Env": "background (the film is transparent)"
+            if self.transparent_film
+            else "background (the scene has no world)",
         }
         return [text for name, text in reasons.items() if name in self.empty_passes]
 
@@ -102,11 +105,13 @@ def set_up(
     """Brings the open scene (in memory) to the light model and says what had to change.
 
     ``ambient`` None: the mean colour of the world, where it lights surfaces at all."""
-    plan = LightPlan(model)
+    plan = LightPlan(
+        model, transparent_film=scene.render.film_transparent and scene.world is not None
+    )
     emissive = emissive_materials()
     if not emissive:
         plan.empty_passes.add("Emit")
-    if scene.world is None or scene.render.film_transparent:
+    if scene.world is None or plan.transparent_film:
         plan.empty_passes.add("Env")  # Combined does not hold it either
     if model == "as-is":
         causes = noise_causes(scene, 1)
