@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import filecmp
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -144,6 +145,26 @@ class Program(BundleTest):
         shadowed = f'LD_LIBRARY_PATH=/tmp/bundle/lib/unless-newer/{ours.name} "$1" devices'
         negative = self.shell("vulkan-sid", shadowed, "/tmp/bundle/libexec/aaresolve")
         self.assertNotIn("llvmpipe", negative.stdout, "the launcher would not be needed")
+
+    def test_the_newer_of_two_libraries(self) -> None:
+        """Numbers are compared and not letters: 6.0.9 is older than 6.0.30."""
+        (ours,) = self.bundle.glob("lib/unless-newer/libstdc++.so.*/libstdc++.so.6")
+        for version, taken in (("6.0.9", ours.parent), ("6.0.999", self.folder / "system")):
+            system = self.folder / "system"
+            shutil.rmtree(system, ignore_errors=True)
+            system.mkdir()
+            shutil.copy(ours, system / f"libstdc++.so.{version}")
+            (system / "libstdc++.so.6").symlink_to(f"libstdc++.so.{version}")
+            done = subprocess.run(
+                [self.bundle / "bin/aaresolve", "--version"],
+                env={**os.environ, "LD_LIBRARY_PATH": str(system), "LD_DEBUG": "libs"},
+                capture_output=True,
+                text=True,
+            )
+            self.assertEqual(done.returncode, 0, last_words(done))
+            # The launcher has had a look at the system's; the program comes last.
+            started = re.findall(r"calling init: (\S+/libstdc\+\+\.so\.6)", done.stderr)
+            self.assertEqual(started[-1], f"{taken}/libstdc++.so.6")
 
     def test_every_part_has_its_licence(self) -> None:
         licences = self.bundle / "share/doc/aaresolve/licences"
