@@ -12,7 +12,7 @@ Makes BUILD/bundle/aaresolve-VERSION-linux-x64/ and BUILD/aaresolve-VERSION-linu
     share/doc/aaresolve/     this project's pages and the licence of every part
 
 The C library and the dynamic loader stay the system's. Pictures that are neither PNG nor EXR need OpenImageIO, which is
-40 times as large as all of this; that module stays out. The same input gives the same bytes; times are those of
+20 times as large as all of this; that module stays out. The same input gives the same bytes; times are those of
 SOURCE_DATE_EPOCH, else fixed.
 """
 
