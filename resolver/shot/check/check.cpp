@@ -276,6 +276,9 @@ class ShotCheck {
         }
         // The mean is only as wide as the stated jitter: a wrong unit scales both and stays unseen.
         report_.notChecked.push_back("size of the jitter: needs a truth");
+        std::vector<dvec2> centred = samples;
+        for (auto& p : centred) p -= meanJitter;
+        jitter_ = JitterCheck(std::move(centred));
         try {
             const auto [mean, rests] = restingMean(pictures);
             for (size_t i = 0; i < count; i++) {

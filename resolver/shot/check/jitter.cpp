@@ -75,6 +75,7 @@ Registration registerSamples(const std::vector<const PlaneF*>& sample, const std
         double difference;
         size_t direction, half;
     };
+    Registration r;
     std::vector<Sample> samples;
     std::array<std::array<size_t, 2>, kDirections> count{};
     const int w = mean[0]->width(), h = mean[0]->height();
@@ -90,6 +91,8 @@ Registration registerSamples(const std::vector<const PlaneF*>& sample, const std
             const size_t direction = size_t((turn - std::floor(turn)) * kDirections) % kDirections;
             const size_t half = e.share > 0.5;
             samples.push_back({e.normal / extentAlong(e.normal, meanOver), difference, direction, half});
+            const double shown = e.share + difference;  // 0 or 1 at a sample of one of the two sides
+            if (std::abs(shown - 0.5) > 0.25) r.votes.add(e.normal, e.share, shown > 0.5);
             count[direction][half]++;
         }
     // Every direction counts the same, however many edges run that way: one wall of stripes must not drown the rest.
@@ -102,7 +105,6 @@ Registration registerSamples(const std::vector<const PlaneF*>& sample, const std
     };
     glm::dmat2 normalMatrix(0.0), weightSquares(0.0);
     dvec2 right(0.0);
-    Registration r;
     for (const Sample& s : samples) {
         if (!counts(s)) continue;
         const double weight = 0.5 / double(count[s.direction][s.half]);
@@ -145,31 +147,73 @@ std::optional<dvec2> JitterCheck::scaleFound() const {
     return cross / stated;
 }
 
+MeanOf JitterCheck::meanOf(const glm::dmat2& change) const {
+    std::vector<dvec2> places;
+    for (const dvec2& p : meanOver_) places.push_back(change * p);
+    return MeanOf(places);
+}
+
+Contest JitterCheck::contest(const std::vector<Registered>& good, const glm::dmat2& change) const {
+    const MeanOf stated = meanOf(glm::dmat2(1.0)), rival = meanOf(change);
+    Contest c;
+    for (const auto& f : good) c.add(f.found.votes, stated, f.statedPx, rival, change * f.statedPx);
+    return c;
+}
+
 void JitterCheck::judge(CheckReport& report) const {
     const std::vector<Registered> good = registered();
     if (good.empty()) {
-        report.notChecked.push_back("jitter: no frame has enough edges that can be registered");
+        report.notChecked.emplace_back("jitter: no frame has enough edges that can be registered");
         return;
     }
+    const MeanOf mean = meanOf(glm::dmat2(1.0));
     double sum = 0;
-    std::vector<const Registered*> wrong;
+    size_t undecided = 0;
+    std::vector<const Registered*> suspects, wrong;
     for (const auto& f : good) {
         const dvec2 error = f.found.offsetPx - f.statedPx;
         sum += glm::length(error);
         const dvec2 tolerance =
             glm::max(dvec2(kTolerancePx + f.slackPx) + 0.3 * glm::abs(f.statedPx), kSigmas * f.found.sigmaPx);
-        if (!(std::abs(error.x) <= tolerance.x && std::abs(error.y) <= tolerance.y)) wrong.push_back(&f);
+        if (std::abs(error.x) <= tolerance.x && std::abs(error.y) <= tolerance.y) continue;
+        suspects.push_back(&f);
+        Contest c;
+        c.add(f.found.votes, mean, f.statedPx, mean, f.found.offsetPx);
+        if (c.rivalWins()) wrong.push_back(&f);
+        undecided += !c.told();
     }
     report.measured.push_back({"jitter.frames", double(good.size())});
     report.measured.push_back({"jitter.meanErrorPx", sum / double(good.size())});
     // Many wrong frames have one cause, a few have their own.
-    if (wrong.empty() || (wrong.size() * 3 > good.size() && judgeTogether(good, report))) return;
+    if (suspects.size() * 3 > good.size() && judgeTogether(good, report)) return;
+    if (wrong.empty()) {
+        if (undecided)
+            report.notChecked.push_back("jitter of " + std::to_string(undecided) + " of " +
+                                        std::to_string(good.size()) +
+                                        " frames: their edges lie at too few places in their pixels to tell");
+        nameUntold(good, report);
+        return;
+    }
     const Registered& f = *wrong[0];
     report.findings.push_back({"jitter", f.frame, "jitter", std::nullopt,
                                "samples at " + px(f.statedPx) + " from the pixel centres (shot.json)",
                                px(f.found.offsetPx) + " in the pixels (" + std::to_string(wrong.size()) + " of " +
                                    std::to_string(good.size()) + " frames differ)",
                                "correct the frame's jitter or render it again", 0});
+}
+
+// What would stay unseen in this shot: a turned sign or exchanged axes that no edge pixel could show.
+void JitterCheck::nameUntold(const std::vector<Registered>& good, CheckReport& report) const {
+    dvec2 largest(0.0);
+    for (const auto& f : good) largest = glm::max(largest, glm::abs(f.statedPx));
+    std::string untold;
+    const auto say = [&](bool jittered, const glm::dmat2& change, const char* what) {
+        if (jittered && !contest(good, change).told()) untold += (untold.empty() ? "" : ", ") + std::string(what);
+    };
+    say(largest.x > kTolerancePx, glm::dmat2(-1, 0, 0, 1), "a turned sign in x");
+    say(largest.y > kTolerancePx, glm::dmat2(1, 0, 0, -1), "a turned sign in y");
+    say(std::max(largest.x, largest.y) > kTolerancePx, glm::dmat2(0, 1, 1, 0), "exchanged axes");
+    if (!untold.empty()) report.notChecked.push_back("jitter: the edges of this picture could not show " + untold);
 }
 
 // found = A stated over all frames: A shows flips, exchanged axes and a wrong unit at once, however noisy one frame is.
@@ -187,25 +231,27 @@ bool JitterCheck::judgeTogether(const std::vector<Registered>& good, CheckReport
     const double xx = a[0][0], yx = a[0][1], xy = a[1][0], yy = a[1][1];  // a[column][row]
     report.measured.push_back({"jitter.scaleX", xx});
     report.measured.push_back({"jitter.scaleY", yy});
+    std::string advice;
+    glm::dmat2 change = a;
+    if (std::abs(xy) + std::abs(yx) > std::abs(xx) + std::abs(yy)) {
+        advice = "exchange the axes of the jitter";
+        change = glm::dmat2(0, std::copysign(1.0, yx), std::copysign(1.0, xy), 0);
+    } else if (xx < 0 || yy < 0) {
+        advice = std::string("turn the sign of the jitter in ") +
+                 (xx < 0 && yy < 0 ? "x and y"
+                  : xx < 0         ? "x"
+                                   : "y") +
+                 " (x right, y down)";
+        change = glm::dmat2(std::copysign(1.0, xx), 0, 0, std::copysign(1.0, yy));
+    } else if (std::min(xx, yy) < 0.5 || std::max(xx, yy) > 1.6) {
+        advice = "write the jitter in pixels, sample position minus pixel centre";
+    }
+    if (advice.empty() || !contest(good, change).rivalWins()) return false;
     char found[160];
     std::snprintf(found, sizeof found, "x = %.2f jx %+.2f jy, y = %.2f jx %+.2f jy in the pixels of %zu frames", xx, xy,
                   yx, yy, good.size());
-    const auto say = [&](const std::string& advice) {
-        report.findings.push_back({"jitter", good[0].frame, "jitter", std::nullopt,
-                                   "samples at x = jx, y = jy (shot.json)", found, advice, 0});
-    };
-    if (std::abs(xy) + std::abs(yx) > std::abs(xx) + std::abs(yy))
-        say("exchange the axes of the jitter");
-    else if (xx < 0 || yy < 0)
-        say(std::string("turn the sign of the jitter in ") +
-            (xx < 0 && yy < 0 ? "x and y"
-             : xx < 0         ? "x"
-                              : "y") +
-            " (x right, y down)");
-    else if (std::min(xx, yy) < 0.5 || std::max(xx, yy) > 1.6)
-        say("write the jitter in pixels, sample position minus pixel centre");
-    else
-        return false;
+    report.findings.push_back(
+        {"jitter", good[0].frame, "jitter", std::nullopt, "samples at x = jx, y = jy (shot.json)", found, advice, 0});
     return true;
 }
 
