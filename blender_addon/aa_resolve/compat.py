@@ -41,6 +41,54 @@ def light_sampling_off(material: bpy.types.Material) -> dict[str, object]:
     return {"cycles.sample_as_light": False}
 
 
+def shader_tree(owner: bpy.types.Material | bpy.types.World | bpy.types.Light):
+    """The shader nodes that a material, world or light uses; None where it has none."""
+    return owner.node_tree if getattr(owner, "use_nodes", True) else None  # since 5.0 all use them
+
+
+def world_of(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> bpy.types.World | None:
+    """The world that a view layer renders with."""
+    return getattr(view_layer, "world_override", None) or scene.world  # overrides since 4.3
+
+
+def is_normalized(light: bpy.types.Light) -> bool:
+    """True when a light's power does not grow with its size: always before 4.5."""
+    return getattr(light, "normalize", True)
+
+
+def samples_from(cycles, first: int, count: int) -> dict[str, object]:
+    """What to set so that a render takes ``count`` samples of Cycles' sequences, beginning with ``first``."""
+    if not hasattr(cycles, "use_sample_subset"):
+        return {"samples": count, "sample_offset": first}
+    return {  # since 5.0 an offset begins a part of all samples, and alone says nothing
+        "samples": first + count,
+        "sample_offset": first,
+        "use_sample_subset": first > 0,
+        "sample_subset_length": count,
+    }
+
+
+def sampling_pattern(cycles) -> str:
+    """The one sequence of samples that all versions have."""
+    before = cycles.sampling_pattern
+    try:
+        cycles.sampling_pattern = "TABULATED_SOBOL"  # since 3.6
+    except TypeError:
+        return "PROGRESSIVE_MULTI_JITTER"  # under its first name
+    cycles.sampling_pattern = before
+    return "TABULATED_SOBOL"
+
+
+def pass_switches(owner: bpy.types.bpy_struct) -> list[str]:
+    """Switches of all passes that this version knows, of a view layer or of Cycles' part of it."""
+    return [
+        item.identifier
+        for item in owner.bl_rna.properties
+        if item.type == "BOOLEAN"
+        and item.identifier.startswith(("use_pass_", "pass_debug_", "pass_render"))
+    ]
+
+
 def emission_color(node: bpy.types.Node) -> bpy.types.NodeSocket | None:
     """The socket of a Principled BSDF that colours its emission."""
     return node.inputs.get("Emission") or node.inputs.get("Emission Color")  # the latter since 4.0

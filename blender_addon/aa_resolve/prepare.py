@@ -71,7 +71,7 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) ->
     scene.frame_set(settings.first_frame)
     rendering.prepare(scene, view_layer)
     folder = rendering.temporary_folder()
-    light = lighting.set_up(scene, settings.lighting, settings.ambient, folder)
+    light = lighting.set_up(scene, view_layer, settings.lighting, settings.ambient, folder)
     lighting.check_visibility_animation(light)
     left_out += light.left_out(frozenset().union(*(item.cycles for item in passes)))
     ids = instances.ObjectIds(scene, view_layer, settings.instance_ids)

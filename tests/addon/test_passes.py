@@ -107,7 +107,7 @@ def test_albedo_recipe() -> None:
         shader = material.node_tree.nodes["Principled BSDF"]
         shader.inputs["Base Color"].default_value = (0.8, 0.4, 0.2, 1)
         for key, value in values.items():
-            shader.inputs[key.replace("_", " ")].default_value = value
+            t.shader_input(shader, key.replace("_", " ")).default_value = value
         return material
 
     def simple(name, node, **values):
@@ -201,7 +201,7 @@ def test_static_is_found_by_evaluation() -> None:
     """Animation outside the range does not make a shot a moving one; a material that changes does."""
     scene, camera, floor = floor_scene()
     t.key(floor, "location", {20: (0, 0, 0), 30: (0, 0, 1)})
-    for curve in floor.animation_data.action.fcurves:
+    for curve in t.curves_of(floor):
         curve.extrapolation = "CONSTANT"
     assert exported("--frames", "1-3", "--truth-frames", "none")[0]["static"] is True
     scene, camera, floor = floor_scene()

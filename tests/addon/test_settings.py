@@ -40,12 +40,14 @@ def use_everything(scene, camera) -> None:
     scene.view_settings.exposure, scene.view_settings.gamma = 3.0, 0.5
     render.use_stamp = True
     scene.view_layers[0].samples = 7
-    scene.use_nodes = True
-    tree = scene.node_tree
-    tree.nodes.clear()
+    tree = t.compositor_tree(scene)
     layers, invert = tree.nodes.new("CompositorNodeRLayers"), tree.nodes.new("CompositorNodeInvert")
-    end = tree.nodes.new("CompositorNodeComposite")
     tree.links.new(layers.outputs["Image"], invert.inputs["Color"])
+    if hasattr(scene, "compositing_node_group"):  # since 5.0
+        t.add_group_socket(tree, "NodeSocketColor", "Image", True)
+        end = tree.nodes.new("NodeGroupOutput")
+    else:
+        end = tree.nodes.new("CompositorNodeComposite")
     tree.links.new(invert.outputs["Color"], end.inputs["Image"])
 
 
@@ -123,7 +125,7 @@ def test_displacement_and_cutouts_reach_the_subsamples() -> None:
         tree.links.new(coordinates.outputs["Object"], checker.inputs["Vector"])
         output = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeOutputMaterial")
         if way == "displaced":
-            material.cycles.displacement_method = "DISPLACEMENT"
+            t.set_displacement_method(material, "DISPLACEMENT")
             move = tree.nodes.new("ShaderNodeDisplacement")
             move.inputs["Scale"].default_value = 0.5
             tree.links.new(checker.outputs["Fac"], move.inputs["Height"])

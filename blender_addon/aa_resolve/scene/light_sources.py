@@ -10,6 +10,16 @@ import bpy
 from .. import compat
 
 
+_EMITTERS = frozenset(
+    {
+        "ShaderNodeEmission",
+        "ShaderNodeVolumePrincipled",
+        "ShaderNodeVolumeCoefficients",  # since 4.5
+        "ShaderNodeScript",  # may do anything
+    }
+)
+
+
 def lights_of(scene: bpy.types.Scene) -> list[bpy.types.Object]:
     """Light objects that render, wherever they are linked or instanced from."""
     return [
@@ -43,7 +53,8 @@ def emissive_materials() -> list[bpy.types.Material]:
     """Materials whose nodes can emit light."""
     found = []
     for material in bpy.data.materials:
-        if material.use_nodes and material.node_tree and _emits(material.node_tree, set()):
+        tree = compat.shader_tree(material)
+        if tree and _emits(tree, set()):
             found.append(material)
     return found
 
@@ -53,7 +64,7 @@ def _emits(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
         return False
     seen.add(tree.name)
     for node in tree.nodes:
-        if node.bl_idname in ("ShaderNodeEmission", "ShaderNodeVolumePrincipled"):
+        if node.bl_idname in _EMITTERS:
             return True
         if node.bl_idname == "ShaderNodeBsdfPrincipled":
             socket = compat.emission_color(node)

@@ -22,10 +22,11 @@ from .. import compat
 from ..errors import SceneError
 from . import rendering
 from .light_sources import emissive_materials, is_portal, lights_of, noise_causes
-from .ownership import follow_other, is_animated, own, own_if_present
+from .ownership import is_animated, own, own_if_present
 
-# Along its axis a Blender area light shines with power / 4 per steradian, a spot with power / (4 pi).
-_AREA_TO_SPOT_POWER = math.pi
+# Size of an area light that shines from one point, metres. Cycles' own power, beam and spread hold for it, which are not
+# the same in all versions; every ray to it meets its centre, to what a float can tell.
+_POINT_SIZE = 1.0e-6
 
 
 @dataclass
@@ -68,11 +69,10 @@ class LightPlan:
         return [text for name, text in reasons.items() if name in self.empty_passes]
 
 
-def mean_world_radiance(scene: bpy.types.Scene, folder: str) -> tuple[float, float, float]:
+def mean_world_radiance(
+    scene: bpy.types.Scene, world: bpy.types.World, folder: str
+) -> tuple[float, float, float]:
     """Mean radiance of the world over the sphere: a small panorama of the empty world, weighted by solid angle."""
-    world = scene.world
-    if world is None:
-        return 0.0, 0.0, 0.0
     empty = bpy.data.scenes.new("AA Resolve World")
     try:
         empty.world = world
@@ -84,6 +84,7 @@ def mean_world_radiance(scene: bpy.types.Scene, folder: str) -> tuple[float, flo
         empty.collection.objects.link(camera)
         empty.camera = camera
         empty.render.resolution_x, empty.render.resolution_y = 64, 32
+        empty.cycles.film_exposure = scene.cycles.film_exposure
         empty.frame_set(scene.frame_current)
         layer = empty.view_layers[0]
         rendering.prepare(empty, layer)
@@ -100,19 +101,26 @@ def mean_world_radiance(scene: bpy.types.Scene, folder: str) -> tuple[float, flo
 
 
 def set_up(
-    scene: bpy.types.Scene, model: str, ambient: tuple[float, float, float] | None, folder: str
+    scene: bpy.types.Scene,
+    view_layer: bpy.types.ViewLayer,
+    model: str,
+    ambient: tuple[float, float, float] | None,
+    folder: str,
 ) -> LightPlan:
     """Brings the open scene (in memory) to the light model and says what had to change.
 
     ``ambient`` None: the mean colour of the world, where it lights surfaces at all."""
-    plan = LightPlan(
-        model, transparent_film=scene.render.film_transparent and scene.world is not None
-    )
+    world = compat.world_of(scene, view_layer)
+    plan = LightPlan(model, transparent_film=scene.render.film_transparent and world is not None)
     emissive = emissive_materials()
     if not emissive:
         plan.empty_passes.add("Emit")
-    if scene.world is None or plan.transparent_film:
+    if world is None or plan.transparent_film:
         plan.empty_passes.add("Env")  # Combined does not hold it either
+    if world is None or model == "noise-free":
+        for item in filter(is_portal, bpy.data.objects):
+            # What it lets in, the ambient stands for; the only light, it makes Cycles 4.3 and 5.2 crash.
+            own(item, hide_render=True)
     if model == "as-is":
         causes = noise_causes(scene, 1)
         if causes:
@@ -135,7 +143,6 @@ def set_up(
         caustics_refractive=False,
     )
     own_if_present(cycles, use_fast_gi=False)
-    world = scene.world
     world_lights = False
     if world:
         visibility = world.cycles_visibility
@@ -145,15 +152,12 @@ def set_up(
     if ambient is not None:
         plan.ambient = ambient
     elif world_lights:
-        plan.ambient = mean_world_radiance(scene, folder)
+        plan.ambient = mean_world_radiance(scene, world, folder)
     if any(plan.ambient):
         red, green, blue = plan.ambient
         changes.append(
             f"ambient ({red:.3g}, {green:.3g}, {blue:.3g}) in place of light from the world"
         )
-    for item in bpy.data.objects:
-        if is_portal(item):
-            own(item, hide_render=True)  # what it lets in, the ambient stands for
     plan.lights = lights_of(scene)
     changes += [change for change in map(_make_delta, plan.lights) if change]
     for material in emissive:
@@ -184,24 +188,53 @@ def set_up(
 
 
 def _make_delta(item: bpy.types.Object) -> str:
-    """Takes the size from a light; returns what changed."""
-    light = item.data
+    """Takes the size from a light; returns what changed. Its transform, nodes, colour and light linking stay."""
+    light = item.data.copy()
+    cycles = {"use_multiple_importance_sampling": False, "is_caustics_light": False}
+    own(light, **{f"cycles.{name}": value for name, value in cycles.items()})
+    if not compat.is_normalized(light):
+        _keep_strength(item, light)
     if light.type == "AREA":
-        data = light.copy()
-        item.data = data
-        own(data, type="SPOT")
-        data = bpy.data.lights[data.name]
-        own(data, energy=light.energy * _AREA_TO_SPOT_POWER, spot_size=math.pi, spot_blend=1.0)
-        own(data, shadow_soft_size=0.0, **{"cycles.use_multiple_importance_sampling": False})
-        if is_animated(light, "energy"):
-            follow_other(data, "energy", light, "energy", _AREA_TO_SPOT_POWER)
-        item.data = data
-        return f"area light '{item.name}' shines from its centre"
-    own(light, **{"cycles.use_multiple_importance_sampling": False})
-    size = "angle" if light.type == "SUN" else "shadow_soft_size"
-    changed = getattr(light, size) > 0.0
-    own(light, **{size: 0.0})
-    return f"'{item.name}' without size" if changed else ""
+        change = f"area light '{item.name}' shines from its centre"
+        # Of a round one Cycles takes points by their area, without the cancellation of solid angles.
+        own(light, shape="DISK", size=_POINT_SIZE)
+    else:
+        size = "angle" if light.type == "SUN" else "shadow_soft_size"
+        change = f"'{item.name}' without size" if getattr(light, size) > 0.0 else ""
+        own(light, **{size: 0.0})
+    item.data = light
+    return change
+
+
+def _keep_strength(item: bpy.types.Object, light: bpy.types.Light) -> None:
+    """Normalizes a light whose power is meant per area of its surface (a sun: per solid angle)."""
+    area = _emitting_area(item, light)
+    sizes = ("angle", "shadow_soft_size", "size", "size_y", "shape")
+    moves = {name for name in (*sizes, "energy", "exposure") if is_animated(light, name)}
+    if moves & set(sizes) or {"energy", "exposure"} <= moves:
+        raise SceneError(
+            f"light '{item.name}': its size is animated and its power is not normalized; switch on Normalize in its "
+            "settings, or use --lighting as-is"
+        )
+    own(light, normalize=True)
+    if "energy" in moves:
+        own(light, exposure=light.exposure + math.log2(area))
+    else:
+        own(light, energy=light.energy * area)
+
+
+def _emitting_area(item: bpy.types.Object, light: bpy.types.Light) -> float:
+    """What Cycles multiplies the power of a light with that is not normalized (square metres; sun: steradians)."""
+    if light.type == "SUN":
+        return math.pi * math.sin(light.angle / 2.0) ** 2 or 1.0
+    if light.type != "AREA":
+        return 4.0 * (
+            math.pi * light.shadow_soft_size**2 or 1.0
+        )  # the object's scale does not count
+    placement = item.matrix_world
+    height = light.size_y if light.shape in ("RECTANGLE", "ELLIPSE") else light.size
+    area = light.size * height * placement.col[0].xyz.cross(placement.col[1].xyz).length
+    return area * (math.pi / 4.0 if light.shape in ("DISK", "ELLIPSE") else 1.0)
 
 
 def check_visibility_animation(plan: LightPlan) -> None:
@@ -247,5 +280,5 @@ def compose(plan: LightPlan, renders: list[rendering.Layers], view: str = "") ->
 
 def no_light(plan: LightPlan, scene: bpy.types.Scene) -> only_light:
     """Context in which no light shines, so that shading costs nothing."""
-    every = LightPlan(plan.model, lights_of(scene))
+    every = LightPlan(plan.model, [*lights_of(scene), *filter(is_portal, scene.objects)])
     return only_light(every, None)

@@ -159,8 +159,12 @@ def prepare(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> None:
         time_limit=0.0,
         scrambling_distance=1.0,
         auto_scrambling_distance=False,
+        sampling_pattern=compat.sampling_pattern(scene.cycles),
+        use_guiding=False,  # it learns from what threads find first: no two renders would be equal
+        direct_light_sampling_type="MULTIPLE_IMPORTANCE_SAMPLING",  # others miss lights without size
     )
     own_if_present(scene.cycles, use_pixel_jitter=False)
+    own_if_present(render, use_texture_cache=False)  # since 5.2; it reads textures of less detail
     own(view_layer, samples=0, pass_alpha_threshold=0.5)
 
 
@@ -178,28 +182,9 @@ def request_passes(view_layer: bpy.types.ViewLayer, names: Collection[str]) -> N
         "Emit": "use_pass_emit",
         "Env": "use_pass_environment",
     }
-    for name, switch in switches.items():
-        own(view_layer, **{switch: name in names})
-    for switch in (
-        "use_pass_mist",
-        "use_pass_uv",
-        "use_pass_material_index",
-        "use_pass_shadow",
-        "use_pass_ambient_occlusion",
-        "use_pass_diffuse_direct",
-        "use_pass_diffuse_indirect",
-        "use_pass_glossy_direct",
-        "use_pass_glossy_indirect",
-        "use_pass_transmission_direct",
-        "use_pass_transmission_indirect",
-        "use_pass_subsurface_direct",
-        "use_pass_subsurface_indirect",
-        "use_pass_subsurface_color",
-        "use_pass_cryptomatte_object",
-        "use_pass_cryptomatte_material",
-        "use_pass_cryptomatte_asset",
-    ):
-        own_if_present(view_layer, **{switch: False})
+    wanted = {switches[name] for name in switches if name in names} | {"use_pass_combined"}
+    own(view_layer, **{name: name in wanted for name in compat.pass_switches(view_layer)})
+    own(view_layer, **{f"cycles.{name}": False for name in compat.pass_switches(view_layer.cycles)})
     own(view_layer, **{"cycles.denoising_store_passes": "Denoising Albedo" in names})
 
 
@@ -211,21 +196,20 @@ def sample_points(scene: bpy.types.Scene, samples: int) -> None:
         scene.cycles,
         pixel_filter_type="BLACKMAN_HARRIS",
         filter_width=0.01,
-        samples=samples,
-        sample_offset=0,
         seed=0,
+        **compat.samples_from(scene.cycles, 0, samples),
     )
-    own_if_present(scene.cycles, use_sample_subset=False)
 
 
 def sample_pixel_area(scene: bpy.types.Scene, samples: int, seed: int) -> None:
     """Ground truth: samples spread evenly over the pixel's square."""
     # Cycles puts sample 0 of every pixel at the exact centre, in both halves alike; beginning later leaves it out.
-    own(scene.cycles, pixel_filter_type="BOX", samples=samples, seed=seed, sample_offset=samples)
-    if hasattr(
-        scene.cycles, "use_sample_subset"
-    ):  # there, the samples of which an offset begins a part
-        own(scene.cycles, use_sample_subset=True, samples=2 * samples, sample_subset_length=samples)
+    own(
+        scene.cycles,
+        pixel_filter_type="BOX",
+        seed=seed,
+        **compat.samples_from(scene.cycles, samples, samples),
+    )
 
 
 def own_samples(scene: bpy.types.Scene) -> None:

@@ -19,8 +19,7 @@ def has_cutouts() -> str | None:
             material = slot.material
             if (
                 material
-                and material.use_nodes
-                and material.node_tree
+                and compat.shader_tree(material)
                 and _is_see_through(material.node_tree, set())
             ):
                 return material.name
@@ -70,8 +69,7 @@ def notes_on_edges() -> list[str]:
         material.name
         for material in bpy.data.materials
         if material.users
-        and material.use_nodes
-        and material.node_tree
+        and compat.shader_tree(material)
         and compat.displacement_method(material) != "BUMP"
         and any(
             node.bl_idname == "ShaderNodeOutputMaterial" and node.inputs["Displacement"].is_linked
@@ -89,7 +87,7 @@ def semi_transparent_note() -> list[str]:
     """Sentences about materials whose alpha is neither 0 nor 1: one sample picks a layer at random."""
     notes = []
     for material in bpy.data.materials:
-        if not (material.use_nodes and material.node_tree and material.users):
+        if not (compat.shader_tree(material) and material.users):
             continue
         for node in material.node_tree.nodes:
             if node.bl_idname == "ShaderNodeBsdfPrincipled":
