@@ -3,7 +3,8 @@
 
 blender -b --python-exit-code 9 -P compare_in_blender.py -- OUT [ZIP]
 
-With ZIP the add-on is first installed as Blender before 4.2 does it. No package is imported but Blender's own.
+With ZIP the add-on is first installed as the buttons do it: Install, and from 4.2 on Install from Disk. No package is
+imported but Blender's own.
 """
 
 import os
@@ -14,8 +15,13 @@ import bpy
 arguments = sys.argv[sys.argv.index("--") + 1 :]
 out = arguments[0]
 if len(arguments) > 1:
-    bpy.ops.preferences.addon_install(filepath=arguments[1])
-    bpy.ops.preferences.addon_enable(module="aa_resolve")
+    if hasattr(bpy.context.preferences, "extensions"):
+        bpy.ops.extensions.package_install_files(
+            filepath=arguments[1], repo="user_default", enable_on_install=True
+        )
+    else:
+        bpy.ops.preferences.addon_install(filepath=arguments[1])
+        bpy.ops.preferences.addon_enable(module="aa_resolve")
 
 scene = bpy.context.scene  # the cube, camera and light that Blender starts with
 scene.render.engine = "CYCLES"

@@ -4,7 +4,7 @@
 
 The program in Debian 12, 13 and sid without a C++ library: from a shot to results, contact sheet and report, with the
 bits of the program that was built; with the driver of the newest Debian. The zip with the program in Debian 13 and sid
-with Blender and no other package, and in this machine's Blender. A system that cannot be had is named, and skipped.
+with Blender and numpy (Debian's own Blender has none) and no other package, and in this machine's Blender. A system that cannot be had is named, and skipped.
 """
 
 from __future__ import annotations
@@ -20,9 +20,12 @@ import unittest
 import zipfile
 from pathlib import Path
 
-import systems
-
 HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "addon"))
+
+import in_blender  # noqa: E402
+import systems  # noqa: E402
+
 BUILD = Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else Path("build").resolve()
 ZIP, ZIP_WITH_PROGRAM = BUILD / "aa_resolve.zip", BUILD / "aa_resolve-linux-x64.zip"
 
@@ -219,21 +222,20 @@ class AddOn(BundleTest):
         self.pressed_in("blender-sid")
 
     def test_in_the_blender_here(self) -> None:
-        """As an add-on of the old kind, which Blender before 4.2 knows alone and later ones still install."""
-        blender = shutil.which(os.environ.get("BLENDER", "blender"))
-        if not blender:
-            self.skipTest("no Blender on the PATH; BLENDER=/path/to/blender names one")
-        scripts = self.folder / "scripts"
+        """Installed as the buttons of its version do it."""
+        blender = in_blender.blender()
+        home = self.folder / "home"
+        home.mkdir()
         done = subprocess.run(
             [blender, "-b", "--factory-startup", "--python-exit-code", "9"]
             + ["-P", HERE / "compare_in_blender.py", "--", self.folder / "shot", ZIP_WITH_PROGRAM],
-            env={**os.environ, "BLENDER_USER_SCRIPTS": str(scripts)},
+            env={**in_blender.environment(), "BLENDER_USER_RESOURCES": str(home)},
             capture_output=True,
             text=True,
         )
         self.assertEqual(done.returncode, 0, last_words(done))
         self.assertIn("COMPARED", done.stdout)
-        program = scripts / "addons/aa_resolve/bundle/bin/aaresolve"
+        (program,) = home.rglob("aa_resolve/bundle/bin/aaresolve")
         self.assertTrue(os.access(program, os.X_OK))
 
 
