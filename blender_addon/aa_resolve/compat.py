@@ -221,6 +221,8 @@ def corner_normals(mesh: bpy.types.Mesh) -> np.ndarray:
     counts, smooth = np.empty(len(mesh.polygons), np.int32), np.empty(len(mesh.polygons), bool)
     mesh.polygons.foreach_get("loop_total", counts)
     mesh.polygons.foreach_get("use_smooth", smooth)
+    if smooth.all():
+        return at_vertices.reshape(-1, 3).take(vertices, axis=0)
     of_faces = np.empty(3 * len(mesh.polygons), np.float32)
     mesh.polygons.foreach_get("normal", of_faces)
     # The corners of a mesh lie polygon by polygon.

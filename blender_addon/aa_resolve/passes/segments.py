@@ -66,7 +66,11 @@ def outline_of(mesh: bpy.types.Mesh) -> Outline:
     cosine = (normals[one] * normals[other]).sum(axis=1)
     material = _of_all(mesh.polygons, "material_index", np.int32)[polygons]
     joined = (counts == 2) & (material[one] == material[other])
-    broken = _breaks_shading(_shading_normals(mesh)[solid], welded[solid], first, second)
+    loops = _of_all(mesh.loop_triangles, "loops", np.int32, 3).reshape(-1, 3)[solid]
+    normals_of_corners = compat.corner_normals(mesh)
+    broken = _breaks_shading(
+        normals_of_corners, loops.ravel(), welded[solid].ravel(), first, second
+    )
     kept = ~joined | (cosine <= _COPLANAR)
     planes = np.concatenate([normals, -(normals * points[:, 0]).sum(axis=1)[:, None]], axis=1)
     triangle, side = one[kept], first[kept] % 3
@@ -84,36 +88,36 @@ def _side_keys(corners: np.ndarray) -> np.ndarray:
     return np.minimum(corners, following) * _KEY_BASE + np.maximum(corners, following)
 
 
-def _of_all(items, name: str, kind) -> np.ndarray:
-    values = np.empty(len(items), kind)
+def _of_all(items, name: str, kind, each: int = 1) -> np.ndarray:
+    values = np.empty(len(items) * each, kind)
     items.foreach_get(name, values)
     return values
 
 
-def _shading_normals(mesh: bpy.types.Mesh) -> np.ndarray:
-    """T x 3 x 3: the normals with which the renderer shades the corners of each triangle."""
-    loops = np.empty(3 * len(mesh.loop_triangles), np.int32)
-    mesh.loop_triangles.foreach_get("loops", loops)
-    return compat.corner_normals(mesh)[loops].reshape(-1, 3, 3)
-
-
 def _breaks_shading(
-    normals: np.ndarray, corners: np.ndarray, first: np.ndarray, second: np.ndarray
+    normals: np.ndarray,
+    loops: np.ndarray,
+    places: np.ndarray,
+    first: np.ndarray,
+    second: np.ndarray,
 ) -> np.ndarray:
     """True for pairs of sides (3 x triangle + side each) whose triangles are shaded with different normals along them:
     at flat faces, sharp marks, and where custom normals say so.
 
-    ``corners`` (T x 3): numbers of the places, by which the ends of two sides are told apart."""
-
-    def ends(sides: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        triangle, side = sides // 3, sides % 3
-        both = np.stack([side, (side + 1) % 3], axis=1)
-        return corners[triangle[:, None], both], normals[triangle[:, None], both]
-
-    (places, one), (other_places, other) = ends(first), ends(second)
-    turned = places[:, 0] != other_places[:, 0]
-    other = np.where(turned[:, None, None], other[:, ::-1], other)
-    return ((one * other).sum(axis=2) <= _COPLANAR).any(axis=1)
+    Normals by corner of the mesh, which ``loops`` gives for every corner of the triangles; ``places`` numbers where
+    those lie, by which the ends of two sides are told apart."""
+    beyond = np.where(np.arange(len(loops)) % 3 == 2, -2, 1) + np.arange(len(loops))
+    turned = places.take(first) != places.take(second)
+    pairs = (
+        (first, np.where(turned, beyond.take(second), second)),
+        (beyond.take(first), np.where(turned, second, beyond.take(second))),
+    )
+    broken = np.zeros(len(first), bool)
+    for one, other in pairs:
+        a = normals.take(loops.take(one), axis=0)
+        b = normals.take(loops.take(other), axis=0)
+        broken |= np.einsum("ij,ij->i", a, b) <= _COPLANAR
+    return broken
 
 
 class SegmentFinder:
