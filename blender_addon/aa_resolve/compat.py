@@ -124,6 +124,13 @@ def set_multilayer_exr(settings) -> None:
     set_if_present(settings, "use_exr_interleave", True)  # else, since 5.0, a part for every pass
 
 
+def set_png(settings) -> None:
+    """Image settings for one 8-bit PNG with the scene's view transform."""
+    set_if_present(settings, "media_type", "IMAGE")  # since 5.0 it decides which formats there are
+    settings.file_format = "PNG"
+    settings.color_mode, settings.color_depth = "RGB", "8"
+
+
 def displacement_method(material: bpy.types.Material) -> str:
     """``BUMP`` where displacement only bends normals: Cycles' own setting before 4.1, the material's since."""
     owner = material if hasattr(material, "displacement_method") else material.cycles

@@ -13,13 +13,16 @@ import shutil
 import subprocess
 import tempfile
 import threading
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import bpy
 
 from ..command_line import file_identity
 
-HEADLESS = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "headless.py")
+_ROOM = os.path.dirname(os.path.abspath(__file__))
+HEADLESS = os.path.join(os.path.dirname(_ROOM), "headless.py")
+_NAME_OF_COPY = "scene"
 
 
 @dataclass
@@ -32,18 +35,24 @@ class Step:
 
 @dataclass
 class Job:
-    """Commands that run one after the other; a failure or ``cancel`` ends the chain."""
+    """Commands that run one after the other; a failure or ``cancel`` ends the chain.
+
+    ``finish`` is called once after the last step went well and returns the sentence that the panel then shows.
+    """
 
     steps: list[Step]
     folder: str
+    finish: Callable[[Job], str] = lambda finished: finished.message
     done: int = 0
     total: int = 0
     message: str = ""
     error: str = ""
-    estimate: dict | None = None
+    cancelled: bool = False
+    notes: list[str] = field(default_factory=list)
     _process: subprocess.Popen | None = None
     _lines: queue.Queue = field(default_factory=queue.Queue)
     _errors: list[str] = field(default_factory=list)
+    _readers: list[threading.Thread] = field(default_factory=list)
 
     def start(self) -> None:
         """Begins with the first step."""
@@ -57,23 +66,33 @@ class Job:
         try:
             process = subprocess.Popen(
                 step.command,
+                stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 text=True,
+                encoding="utf-8",
                 errors="replace",
             )
         except OSError as error:
             self.error = f"{step.command[0]}: cannot be started: {error.strerror}"
             return
         self._process = process
-        for stream, target in (
-            (process.stdout, self._lines.put),
-            (process.stderr, self._errors.append),
-        ):
-            threading.Thread(target=_drain, args=(stream, target), daemon=True).start()
+        self._readers = [
+            threading.Thread(target=_drain, args=(stream, target), daemon=True)
+            for stream, target in (
+                (process.stdout, self._lines.put),
+                (process.stderr, self._errors.append),
+            )
+        ]
+        for reader in self._readers:
+            reader.start()
 
     def poll(self) -> bool:
         """Takes in what happened since the last call; False when everything is over."""
+        ended = self._process is not None and self._process.poll() is not None
+        if ended:
+            for reader in self._readers:  # what the child said last
+                reader.join(timeout=1.0)
         while True:
             try:
                 self._take(self._lines.get_nowait())
@@ -81,7 +100,7 @@ class Job:
                 break
         if self.error:
             return self._end()
-        if self._process is None or self._process.poll() is None:
+        if not ended:
             return self._process is not None
         if self._process.returncode != 0:
             told = [line.strip() for line in self._errors if line.strip()]
@@ -107,8 +126,8 @@ class Job:
         if kind in ("frame", "centre", "truth"):
             self.done += 1
             self.total = self.done + event["remaining"]
-        if kind == "estimate":
-            self.estimate = event
+        if kind == "note":
+            self.notes.append(event["note"])
         if "text" in event:
             self.message = event["text"]
 
@@ -119,6 +138,7 @@ class Job:
 
     def cancel(self) -> None:
         """Ends the running child. Finished frames stay valid, an export resumes."""
+        self.cancelled = True
         if self._process is not None and self._process.poll() is None:
             self._process.kill()
             self._process.wait()
@@ -136,10 +156,22 @@ def _drain(stream, target) -> None:
 
 
 def copy_of_open_file() -> tuple[str, str]:
-    """Saves a copy of the open scene, changed or not, beside nothing of the user's; returns folder and path."""
+    """Saves a copy of the open scene, changed or not, beside nothing of the user's; returns folder and path.
+
+    Disk caches of simulations lie beside a file, in a folder of its name: the copy is shown the way to them.
+    """
     folder = tempfile.mkdtemp(prefix="aa_resolve_")
-    path = os.path.join(folder, "scene.blend")
+    path = os.path.join(folder, f"{_NAME_OF_COPY}.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path, copy=True, check_existing=False)
+    original = bpy.data.filepath
+    stem = os.path.splitext(os.path.basename(original))[0]
+    cache = os.path.join(os.path.dirname(original), f"blendcache_{stem}")
+    if original and os.path.isdir(cache):
+        seen = os.path.join(folder, f"blendcache_{_NAME_OF_COPY}")
+        try:
+            os.symlink(cache, seen, target_is_directory=True)
+        except OSError:  # Windows allows links to few users only
+            shutil.copytree(cache, seen)
     return folder, path
 
 
@@ -154,16 +186,14 @@ def identity_of_open_file() -> str | None:
     return None
 
 
-def export_command(blend: str, options: list[str]) -> list[str]:
-    """Command line of a child that exports ``blend``."""
+def script_command(blend: str, script: str, words: list[str]) -> list[str]:
+    """Command line of a child that opens ``blend`` and runs a script of the add-on."""
     command = [bpy.app.binary_path, "-b"]
     if bpy.context.preferences.filepaths.use_scripts_auto_execute:
         command.append("--enable-autoexec")
-    return [*command, blend, "--python-exit-code", "9", "-P", HEADLESS, "--", *options, "--json"]
+    return [*command, blend, "--python-exit-code", "9", "-P", script, "--", *words]
 
 
-def find_resolver(preferred: str) -> str | None:
-    """Path of ``aaresolve``: the one of the preferences, else one on the PATH."""
-    if preferred:
-        return preferred if os.path.exists(bpy.path.abspath(preferred)) else None
-    return shutil.which("aaresolve")
+def export_command(blend: str, options: list[str]) -> list[str]:
+    """Command line of a child that exports ``blend``."""
+    return script_command(blend, HEADLESS, [*options, "--json"])

@@ -1,126 +1,67 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Operators: export, estimate, export and compare, open the report.
+"""Operators: export, estimate, export and compare, preview of the light, cancel, open what was found.
 
-The window never freezes: the work runs in child processes on a copy of the open file, a timer shows its progress, Esc
-ends it. Without a window (``blender -b``) the same operators wait for the end.
+The window never freezes: the work runs in child processes on a copy of the open file. Without a window
+(``blender -b``) the same operators wait for the end.
 """
 
 # No postponed annotations here: Blender reads the properties of a class from its annotations.
 import os
+import shutil
 import time
+import types
 
 import bpy
-from bpy.props import StringProperty
+from bpy.props import BoolProperty
 
-from . import job
+from .. import program
+from ..options import options_of
+from ..settings import Settings
+from . import job, preferences, running, watch, windows
+from .running import State
 
-ADDON = __package__.rpartition(".")[0]  # as Blender knows it; the room of this file is below
-_TIMER_SECONDS = 0.2
-
-
-class AAResolvePreferences(bpy.types.AddonPreferences):
-    """Where the resolver lies."""
-
-    bl_idname = ADDON
-    resolver: StringProperty(
-        name="aaresolve",
-        description="The resolver's program; empty: the one on the PATH",
-        subtype="FILE_PATH",
-    )
-
-    def draw(self, _context) -> None:
-        self.layout.prop(self, "resolver")
-
-
-def _preferences() -> AAResolvePreferences | None:
-    addon = bpy.context.preferences.addons.get(ADDON)
-    return addon.preferences if addon else None
-
-
-class State:
-    """The one job that may run, and what it left."""
-
-    running: job.Job | None = None
-    result: str = ""
-    estimate: str = ""
-    report: str = ""
+_PREVIEW_PIXELS = 480  # of the longer side
+_PREVIEW_SAMPLES = 32  # per half of the truth, which is what is shown
+_SIDE_BY_SIDE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "side_by_side.py")
 
 
 class JobOperator:
-    """Runs a job: modal with a window, waiting without one."""
+    """Runs a job: beside the window where there is one, waiting without."""
 
     def make_job(self, context) -> job.Job | None:
         """The job to run; None after an error was reported."""
         raise NotImplementedError
-
-    def finish(self, context, finished: job.Job) -> None:
-        """After the last step went well."""
 
     @classmethod
     def poll(cls, _context) -> bool:
         return State.running is None
 
     def execute(self, context):
-        running = self.make_job(context)
-        if running is None:
+        made = self.make_job(context)
+        if made is None:
             return {"CANCELLED"}
-        running.start()
-        while running.poll():
-            time.sleep(0.05)
-        return self._close(context, running)
+        running.wait(made, lambda: time.sleep(0.05))
+        if State.failed:
+            self.report({"ERROR"}, State.result)
+            return {"CANCELLED"}
+        self.report({"INFO"}, State.result)
+        return {"FINISHED"}
 
     def invoke(self, context, _event):
         if bpy.app.background:
             return self.execute(context)
-        running = self.make_job(context)
-        if running is None:
+        made = self.make_job(context)
+        if made is None:
             return {"CANCELLED"}
-        State.running = running
-        running.start()
-        manager = context.window_manager
-        self._timer = manager.event_timer_add(_TIMER_SECONDS, window=context.window)
-        manager.modal_handler_add(self)
-        manager.progress_begin(0, 100)
-        return {"RUNNING_MODAL"}
-
-    def modal(self, context, event):
-        running = State.running
-        if event.type == "ESC" and event.value == "PRESS":
-            running.cancel()
-            State.result = (
-                "Stopped. Finished frames are valid; with the file saved, the export resumes."
-            )
-            self._leave(context)
-            self.report({"WARNING"}, State.result)
-            return {"CANCELLED"}
-        if event.type != "TIMER":
-            return {"PASS_THROUGH"}
-        alive = running.poll()
-        context.window_manager.progress_update(int(100 * running.fraction))
-        context.workspace.status_text_set(f"AA Resolve: {running.message}   (Esc stops)")
-        _redraw(context)
-        if alive:
-            return {"RUNNING_MODAL"}
-        self._leave(context)
-        return self._close(context, running)
-
-    def _leave(self, context) -> None:
-        State.running = None
-        manager = context.window_manager
-        manager.event_timer_remove(self._timer)
-        manager.progress_end()
-        context.workspace.status_text_set(None)
-        _redraw(context)
-
-    def _close(self, context, finished: job.Job):
-        if finished.error:
-            State.result = finished.error
-            self.report({"ERROR"}, finished.error)
-            return {"CANCELLED"}
-        State.result = finished.message
-        self.finish(context, finished)
-        self.report({"INFO"}, State.result)
+        running.begin(made)
         return {"FINISHED"}
+
+    def shot_folder(self, context) -> str:
+        """Folder of the shot; empty after an error was reported."""
+        folder = running.shot_folder(context.scene)
+        if not folder:
+            self.report({"ERROR"}, "Save the file first, or choose a folder for the shot")
+        return folder
 
     def export_step(
         self, context, title: str, extra: list[str], out: str
@@ -130,26 +71,12 @@ class JobOperator:
         if not settings.chosen():
             self.report({"ERROR"}, "Choose at least one method")
             return None
-        if settings.out.startswith("//") and not bpy.data.filepath:
-            self.report({"ERROR"}, "Save the file first, or choose a folder for the shot")
-            return None
         identity = job.identity_of_open_file()
         folder, blend = job.copy_of_open_file()
         options = [*settings.options(out), *extra]
         if identity:
             options += ["--source", identity]
         return folder, job.Step(title, job.export_command(blend, options))
-
-
-def _redraw(context) -> None:
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "PROPERTIES":
-                area.tag_redraw()
-
-
-def _out(context) -> str:
-    return os.path.normpath(bpy.path.abspath(context.scene.aa_resolve.out))
 
 
 class AA_RESOLVE_OT_export(JobOperator, bpy.types.Operator):
@@ -159,7 +86,8 @@ class AA_RESOLVE_OT_export(JobOperator, bpy.types.Operator):
     bl_label = "Export Shot"
 
     def make_job(self, context):
-        step = self.export_step(context, "Export", [], _out(context))
+        out = self.shot_folder(context)
+        step = self.export_step(context, "Export", [], out) if out else None
         return job.Job([step[1]], step[0]) if step else None
 
 
@@ -170,11 +98,19 @@ class AA_RESOLVE_OT_estimate(JobOperator, bpy.types.Operator):
     bl_label = "Estimate Time"
 
     def make_job(self, context):
-        step = self.export_step(context, "Measuring one frame", ["--estimate"], _out(context))
-        return job.Job([step[1]], step[0]) if step else None
+        out = self.shot_folder(context)
+        step = (
+            self.export_step(context, "Measuring one frame", ["--estimate"], out) if out else None
+        )
+        if step is None:
+            return None
+        wish = watch.wish_of(context.scene)
 
-    def finish(self, _context, finished):
-        State.estimate = finished.message
+        def finish(finished: job.Job) -> str:
+            State.estimate, State.estimate_for = finished.message, wish
+            return ""
+
+        return job.Job([step[1]], step[0], finish)
 
 
 class AA_RESOLVE_OT_compare(JobOperator, bpy.types.Operator):
@@ -184,67 +120,166 @@ class AA_RESOLVE_OT_compare(JobOperator, bpy.types.Operator):
     bl_label = "Export and Compare"
 
     def make_job(self, context):
-        preferences = _preferences()
-        resolver = job.find_resolver(preferences.resolver if preferences else "")
-        if resolver is None:
-            self.report(
-                {"ERROR"},
-                "aaresolve was not found: put it on the PATH or name it in the add-on's preferences",
-            )
+        preferred = preferences.preferred()
+        found = program.find(preferred)
+        if found is None:
+            self.report({"ERROR"}, program.problem(preferred))
             return None
-        shot = _out(context)
-        self._results = shot + "_results"
-        step = self.export_step(context, "Export", [], shot)
+        shot = self.shot_folder(context)
+        step = self.export_step(context, "Export", [], shot) if shot else None
         if step is None:
             return None
-        methods = [part for name in context.scene.aa_resolve.chosen() for part in ("-m", name)]
+        results = running.results_folder(shot)
+        sheet = os.path.join(results, "sheet.png")
+        report = os.path.join(results, "report.html")
+        methods = [
+            word for text in context.scene.aa_resolve.method_texts() for word in ("-m", text)
+        ]
         steps = [
             step[1],
-            job.Step("Running the methods", [resolver, "run", shot, *methods, "-o", self._results]),
-            job.Step(
-                "Making the contact sheet",
-                [resolver, "sheet", self._results, "-o", os.path.join(self._results, "sheet.png")],
-            ),
-            job.Step(
-                "Writing the report",
-                [
-                    resolver,
-                    "report",
-                    self._results,
-                    "-o",
-                    os.path.join(self._results, "report.html"),
-                ],
-            ),
+            job.Step("Running the methods", [found.path, "run", shot, *methods, "-o", results]),
+            job.Step("Making the contact sheet", [found.path, "sheet", results, "-o", sheet]),
+            job.Step("Writing the report", [found.path, "report", results, "-o", report]),
         ]
-        return job.Job(steps, step[0])
 
-    def finish(self, context, _finished):
-        report = os.path.join(self._results, "report.html")
-        State.report = report if os.path.exists(report) else ""
-        _show_image(context, os.path.join(self._results, "sheet.png"))
-        State.result = f"Results: {self._results}"
+        def finish(_finished: job.Job) -> str:
+            windows.show(sheet)
+            return f"Results: {results}"
 
-
-def _show_image(context, path: str) -> None:
-    """Loads a picture and shows it in every open image editor."""
-    image = bpy.data.images.load(path, check_existing=True)
-    image.reload()
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "IMAGE_EDITOR":
-                area.spaces.active.image = image
+        return job.Job(steps, step[0], finish)
 
 
-class AA_RESOLVE_OT_open_report(bpy.types.Operator):
+class AA_RESOLVE_OT_preview_light(JobOperator, bpy.types.Operator):
+    """Render the present frame small, with the scene's own light and without noise, and show both beside each other"""
+
+    bl_idname = "aa_resolve.preview_light"
+    bl_label = "Preview Light"
+
+    def make_job(self, context):
+        scene = context.scene
+        folder, blend = job.copy_of_open_file()
+        frame = str(scene.frame_current)
+        looks = {"as-is": "The scene's own light", "noise-free": "No Noise"}
+        steps, pictures = [], []
+        for lighting, title in looks.items():
+            out = os.path.join(folder, lighting)
+            words = ["--out", out, "--for", "noaa", "--frames", frame, "--truth-frames", frame]
+            words += ["--truth-samples", str(_PREVIEW_SAMPLES), "--lighting", lighting]
+            words += _said("resolution", use_resolution=True, resolution=_preview_size(scene))
+            if lighting == "noise-free" and scene.aa_resolve.use_ambient:
+                words += _said("ambient", use_ambient=True, ambient=scene.aa_resolve.ambient)
+            steps.append(job.Step(f"{title}: one frame", job.export_command(blend, words)))
+            pictures += [os.path.join(out, "truth", f"{scene.frame_current:06d}.exr"), title]
+        name = f"aa_resolve_light_{os.getpid()}.png"
+        made, kept = os.path.join(folder, name), os.path.join(bpy.app.tempdir, name)
+        steps.append(
+            job.Step(
+                "Both beside each other",
+                job.script_command(blend, _SIDE_BY_SIDE, [*pictures, made]),
+            )
+        )
+
+        def finish(_finished: job.Job) -> str:
+            shutil.copyfile(made, kept)
+            windows.show(kept)
+            return ""
+
+        return job.Job(steps, folder, finish)
+
+
+def _said(name: str, **panel) -> list[str]:
+    """The words of one option for what a panel would hold."""
+    known = next(option for field, option in options_of(Settings) if field.name == name)
+    return [known.flag, *known.words(types.SimpleNamespace(**panel))]
+
+
+def _preview_size(scene: bpy.types.Scene) -> tuple[int, int]:
+    settings = scene.aa_resolve
+    width, height = scene.render.resolution_x, scene.render.resolution_y
+    if settings.use_resolution:
+        width, height = settings.resolution
+    share = min(1.0, _PREVIEW_PIXELS / max(width, height))
+    return max(4, round(width * share)), max(4, round(height * share))
+
+
+class AA_RESOLVE_OT_cancel(bpy.types.Operator):
+    """Stop the running work. Finished frames stay valid, and an export of a saved file goes on from there"""
+
+    bl_idname = "aa_resolve.cancel"
+    bl_label = "Cancel"
+
+    by_key: BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+    @classmethod
+    def poll(cls, _context) -> bool:
+        return State.running is not None
+
+    def invoke(self, context, _event):
+        if self.by_key and (_is_playing(context) or context.space_data.context != "RENDER"):
+            return {"PASS_THROUGH"}
+        return self.execute(context)
+
+    def execute(self, _context):
+        running.cancel()
+        return {"FINISHED"}
+
+
+def _is_playing(context) -> bool:
+    return any(window.screen.is_animation_playing for window in context.window_manager.windows)
+
+
+class _OpenFile:
+    """Opens one of the files of the last results."""
+
+    name = ""
+
+    @classmethod
+    def poll(cls, context) -> bool:
+        found = watch.of(context.scene).outcome
+        return found is not None and cls.name in found.files
+
+
+class AA_RESOLVE_OT_open_report(_OpenFile, bpy.types.Operator):
     """Open the report in the web browser"""
 
     bl_idname = "aa_resolve.open_report"
     bl_label = "Open Report"
+    name = "report.html"
 
-    @classmethod
-    def poll(cls, _context) -> bool:
-        return bool(State.report) and os.path.exists(State.report)
-
-    def execute(self, _context):
-        bpy.ops.wm.path_open(filepath=State.report)
+    def execute(self, context):
+        path = os.path.join(watch.of(context.scene).outcome.folder, self.name)
+        bpy.ops.wm.path_open(filepath=path)
         return {"FINISHED"}
+
+
+class AA_RESOLVE_OT_open_sheet(_OpenFile, bpy.types.Operator):
+    """Show the contact sheet in a window of its own"""
+
+    bl_idname = "aa_resolve.open_sheet"
+    bl_label = "Open Sheet"
+    name = "sheet.png"
+
+    def execute(self, context):
+        windows.show(os.path.join(watch.of(context.scene).outcome.folder, self.name))
+        return {"FINISHED"}
+
+
+_keys: list[tuple[bpy.types.KeyMap, bpy.types.KeyMapItem]] = []
+
+
+def add_keys() -> None:
+    """Esc over the properties editor stops the work; anywhere else it keeps its meaning."""
+    keys = bpy.context.window_manager.keyconfigs.addon if bpy.context.window_manager else None
+    if keys is None:
+        return
+    keymap = keys.keymaps.new(name="Property Editor", space_type="PROPERTIES")
+    item = keymap.keymap_items.new(AA_RESOLVE_OT_cancel.bl_idname, "ESC", "PRESS")
+    item.properties.by_key = True
+    _keys.append((keymap, item))
+
+
+def remove_keys() -> None:
+    """Takes the key away again."""
+    for keymap, item in _keys:
+        keymap.keymap_items.remove(item)
+    _keys.clear()

@@ -1,65 +1,32 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Panel and presets in the Render properties."""
+"""The panel in the Render properties. Drawing reads what the scene holds and what watch.py knows, and nothing else."""
 
 # No postponed annotations here: Blender reads the properties of a class from its annotations.
-import textwrap
-
 import bpy
-from bl_operators.presets import AddPresetBase
 
 from .. import compat, registry
-from ..scene.light_sources import noise_causes
+from . import outcome, parameters, preferences, watch
 from .operators import (
+    AA_RESOLVE_OT_cancel,
     AA_RESOLVE_OT_compare,
     AA_RESOLVE_OT_estimate,
     AA_RESOLVE_OT_export,
     AA_RESOLVE_OT_open_report,
-    State,
+    AA_RESOLVE_OT_open_sheet,
+    AA_RESOLVE_OT_preview_light,
 )
-from .properties import AAResolveSettings, method_property
-
-_PRESETS = "aa_resolve"
-
-
-class AA_RESOLVE_MT_presets(bpy.types.Menu):
-    """Stored settings"""
-
-    bl_label = "AA Resolve Presets"
-    preset_subdir = _PRESETS
-    preset_operator = "script.execute_preset"
-    draw = bpy.types.Menu.draw_preset
-
-
-class AA_RESOLVE_OT_add_preset(AddPresetBase, bpy.types.Operator):
-    """Store or remove a preset of these settings"""
-
-    bl_idname = "aa_resolve.add_preset"
-    bl_label = "Add AA Resolve Preset"
-    preset_menu = "AA_RESOLVE_MT_presets"
-    preset_defines = ["settings = bpy.context.scene.aa_resolve"]
-    preset_subdir = _PRESETS
-
-    @property
-    def preset_values(self) -> list[str]:
-        names = [
-            name for name in AAResolveSettings.__annotations__ if name not in ("out", "overwrite")
-        ]
-        return [f"settings.{name}" for name in names]
-
-
-def _letters(context, margin: int) -> int:
-    """How many letters of mean width fit into a line of the panel beside ``margin`` (pixels at a scale of 1)."""
-    scale = context.preferences.system.ui_scale
-    return int((context.region.width - margin * scale) / (6.2 * scale))
-
-
-def draw_text(layout: bpy.types.UILayout, context, text: str) -> None:
-    """A sentence in as many lines as the width of the panel asks for: labels would cut it off."""
-    letters = max(20, _letters(context, 50))
-    column = layout.column(align=True)
-    column.scale_y = 0.8
-    for line in textwrap.wrap(text, letters):
-        column.label(text=line)
+from .parameters import AA_RESOLVE_OT_reset_parameters
+from .preferences import AA_RESOLVE_OT_preferences
+from .presets import (
+    BUILT_IN,
+    AA_RESOLVE_MT_presets,
+    AA_RESOLVE_OT_add_preset,
+    AA_RESOLVE_OT_choose_family,
+    AA_RESOLVE_OT_use_preset,
+)
+from .properties import families, method_property, unfold_property
+from .running import State
+from .words import draw_text, letters
 
 
 class _Panel:
@@ -82,9 +49,14 @@ class AA_RESOLVE_PT_main(_Panel, bpy.types.Panel):
 
     def draw(self, context) -> None:
         settings = context.scene.aa_resolve
+        facts = watch.of(context.scene)
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
+        draw_text(layout, context, facts.engine, icon="INFO")
+        row = layout.row(align=True)
+        for kind, known in BUILT_IN.items():
+            row.operator(AA_RESOLVE_OT_use_preset.bl_idname, text=known.title).kind = kind
         column = layout.column()
         column.prop(settings, "out")
         column.column(heading="Range").prop(settings, "use_scene_range", text="Scene")
@@ -95,11 +67,17 @@ class AA_RESOLVE_PT_main(_Panel, bpy.types.Panel):
         column.prop(settings, "use_resolution")
         if settings.use_resolution:
             column.prop(settings, "resolution", text="Pixels")
-        running = State.running
-        if running is not None:
-            compat.draw_progress(layout, running.fraction)
-            draw_text(layout, context, running.message)
-            draw_text(layout, context, "Esc stops; finished frames stay")
+        if facts.changes:
+            box = layout.box()
+            draw_text(
+                box,
+                context,
+                f"'No Noise' changes the look: {'; '.join(facts.changes)}",
+                icon="LIGHT",
+            )
+            box.operator(AA_RESOLVE_OT_preview_light.bl_idname, icon="HIDE_OFF")
+        if State.running is not None:
+            _draw_running(layout, context)
             return
         buttons = layout.grid_flow(
             columns=0, even_columns=True, align=True
@@ -107,9 +85,51 @@ class AA_RESOLVE_PT_main(_Panel, bpy.types.Panel):
         buttons.operator(AA_RESOLVE_OT_export.bl_idname, icon="RENDER_ANIMATION")
         buttons.operator(AA_RESOLVE_OT_compare.bl_idname, text="Compare", icon="VIEWZOOM")
         buttons.operator(AA_RESOLVE_OT_estimate.bl_idname, icon="TIME")
-        buttons.operator(AA_RESOLVE_OT_open_report.bl_idname, icon="URL")
-        for text in (State.estimate, State.result):
-            draw_text(layout, context, text)
+        _draw_program(layout, context)
+        draw_text(layout, context, State.estimate, icon="TIME")
+        draw_text(layout, context, State.result, icon="ERROR" if State.failed else "INFO")
+
+
+def _draw_running(layout, context) -> None:
+    running = State.running
+    box = layout.box()
+    compat.draw_progress(box, running.fraction)
+    draw_text(box, context, running.message)
+    box.operator(AA_RESOLVE_OT_cancel.bl_idname, icon="CANCEL")
+
+
+def _draw_program(layout, context) -> None:
+    """What keeps the methods from running, where something does."""
+    _, problem = preferences.verdict()
+    if problem:
+        box = layout.box()
+        draw_text(box, context, problem, icon="ERROR")
+        box.operator(AA_RESOLVE_OT_preferences.bl_idname, icon="PREFERENCES")
+
+
+class AA_RESOLVE_PT_results(_Panel, bpy.types.Panel):
+    bl_label = "Results"
+    bl_parent_id = "AA_RESOLVE_PT_main"
+
+    @classmethod
+    def poll(cls, context) -> bool:
+        return watch.of(context.scene).outcome is not None
+
+    def draw(self, context) -> None:
+        found = watch.of(context.scene).outcome
+        layout = self.layout
+        if found.trouble:
+            draw_text(layout, context, found.trouble, icon="ERROR")
+        elif found.older_than_shot:
+            draw_text(layout, context, "The shot is newer than these results", icon="INFO")
+        if found.best:
+            column = layout.column()
+            column.label(text=f"Nearest to the truth of {found.methods}")
+            for place, rank in enumerate(found.best, 1):
+                draw_text(column, context, outcome.sentence(place, rank), icon="BLANK1")
+        row = layout.row(align=True)
+        row.operator(AA_RESOLVE_OT_open_sheet.bl_idname, icon="IMAGE_DATA")
+        row.operator(AA_RESOLVE_OT_open_report.bl_idname, icon="URL")
 
 
 class AA_RESOLVE_PT_methods(_Panel, bpy.types.Panel):
@@ -118,22 +138,116 @@ class AA_RESOLVE_PT_methods(_Panel, bpy.types.Panel):
 
     def draw(self, context) -> None:
         settings = context.scene.aa_resolve
-        families: dict[str, list[str]] = {}
-        for name, method in registry.load_methods().items():
-            families.setdefault(method["family"], []).append((name, method["title"]))
-        letters = _letters(context, 64)
-        for family, methods in families.items():
-            box = self.layout.box()
-            box.label(text=family.replace("-", " ").capitalize())
-            grid = box.grid_flow(columns=0, even_columns=True, align=True)
-            for name, title in methods:
-                # A title that is cut off tells several methods apart no longer; their ids do, and stay short.
-                text = title if len(title) <= letters else name
-                grid.prop(settings, method_property(name), text=text)
-        chosen = settings.chosen()
-        if chosen:
-            passes = registry.required_passes([registry.MethodChoice(name) for name in chosen])
-            draw_text(self.layout, context, f"Passes: {', '.join(sorted(passes))}")
+        layout = self.layout
+        layout.prop(context.window_manager, "aa_resolve_search", text="", icon="VIEWZOOM")
+        wanted = context.window_manager.aa_resolve_search.lower()
+        if wanted:
+            found = [
+                (name, method)
+                for name, method in registry.load_methods().items()
+                if wanted in name.lower() or wanted in method["title"].lower()
+            ]
+            _draw_methods(layout, context, dict(found))
+            if not found:
+                layout.label(text="No method is called so")
+        choices = settings.choices()
+        if choices:
+            passes = registry.required_passes(choices)
+            draw_text(layout, context, f"Passes: {', '.join(sorted(passes))}")
+        else:
+            draw_text(layout, context, "Choose at least one method", icon="ERROR")
+
+
+def _draw_methods(layout, context, methods: dict[str, dict]) -> None:
+    """One line per method: its switch and, where it has any, its parameters to unfold."""
+    settings = context.scene.aa_resolve
+    column = layout.column(align=True)
+    wide = letters(context, 110)
+    for name, method in methods.items():
+        row = column.row(align=True)
+        # A title that is cut off tells several methods apart no longer; their ids do, and stay short.
+        text = method["title"] if len(method["title"]) <= wide else name
+        row.prop(settings, method_property(name), text=text)
+        if name not in parameters.GROUPS or not getattr(settings, method_property(name)):
+            continue
+        changed = len(settings.changed_parameters(name))
+        unfolded = getattr(settings, unfold_property(name))
+        more = row.row(align=True)
+        more.alignment = "RIGHT"
+        more.prop(
+            settings,
+            unfold_property(name),
+            text=f"{changed} changed" if changed else "",
+            icon="DOWNARROW_HLT" if unfolded else "PREFERENCES",
+            emboss=False,
+        )
+        if unfolded:
+            _draw_parameters(column.box(), settings, name)
+
+
+def _draw_parameters(layout, settings, method: str) -> None:
+    table = parameters.table_of(method)
+    group = getattr(settings, parameters.widgets_property(method))
+    values = group.values()
+    layout.use_property_split = True
+    layout.use_property_decorate = False
+    column = layout.column(align=True)
+    for name, item in table.items():
+        row = column.row(align=True)
+        field = row.row(align=True)
+        field.active = parameters.has_effect(item, values, table)
+        field.prop(group, parameters.widget_name(name))
+        reset = row.row(align=True)
+        if name in values:
+            button = reset.operator(
+                AA_RESOLVE_OT_reset_parameters.bl_idname, text="", icon="LOOP_BACK", emboss=False
+            )
+            button.method, button.parameter = method, name
+        else:
+            reset.label(text="", icon="BLANK1")
+    if values:
+        button = layout.operator(
+            AA_RESOLVE_OT_reset_parameters.bl_idname,
+            text=f"Reset {len(values)} changed",
+            icon="LOOP_BACK",
+        )
+        button.method, button.parameter = method, ""
+
+
+class _FamilyPanel(_Panel):
+    """The methods of one family, folded away behind their count."""
+
+    bl_label = ""
+    bl_parent_id = "AA_RESOLVE_PT_methods"
+    bl_options = {"DEFAULT_CLOSED"}
+    family = ""
+
+    @classmethod
+    def poll(cls, context) -> bool:
+        return not context.window_manager.aa_resolve_search
+
+    def draw_header(self, context) -> None:
+        methods = families()[self.family]
+        chosen = sum(name in methods for name in context.scene.aa_resolve.chosen())
+        title = self.family.replace("-", " ").capitalize()
+        self.layout.label(text=f"{title}: {chosen} of {len(methods)} chosen")
+
+    def draw_header_preset(self, _context) -> None:
+        row = self.layout.row(align=True)
+        for text, chosen in (("All", True), ("None", False)):
+            button = row.operator(AA_RESOLVE_OT_choose_family.bl_idname, text=text)
+            button.family, button.chosen = self.family, chosen
+
+    def draw(self, context) -> None:
+        _draw_methods(self.layout, context, families()[self.family])
+
+
+def _family_panel(family: str) -> type:
+    name = f"AA_RESOLVE_PT_family_{family.replace('-', '_')}"
+    return type(name, (_FamilyPanel, bpy.types.Panel), {"family": family, "bl_idname": name})
+
+
+FAMILY_PANELS = [_family_panel(family) for family in families()]
 
 
 class AA_RESOLVE_PT_quality(_Panel, bpy.types.Panel):
@@ -159,10 +273,9 @@ class AA_RESOLVE_PT_quality(_Panel, bpy.types.Panel):
             layout.column(heading="Ambient").prop(settings, "use_ambient", text="Own")
             if settings.use_ambient:
                 layout.prop(settings, "ambient", text="Colour")
-        else:
-            causes = noise_causes(context.scene, settings.samples)
-            if causes:
-                draw_text(layout, context, f"Noisy because of {'; '.join(causes)}")
+        noise = watch.of(context.scene).noise
+        if noise:
+            draw_text(layout, context, f"Noisy because of {'; '.join(noise)}", icon="INFO")
         row = layout.row()
         row.enabled = settings.applies("pattern")
         row.prop(settings, "pattern", text="Pattern")

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the panel holds: the properties that the table of options asks for (settings.py), and one switch per method."""
+"""What the panel holds: the properties that the table of options asks for (settings.py), and of every method a switch
+and its parameters."""
 
 # No postponed annotations here: Blender reads the properties of a class from its annotations.
+import textwrap
+
 import bpy
 from bpy.props import (
     BoolProperty,
@@ -9,12 +12,14 @@ from bpy.props import (
     FloatVectorProperty,
     IntProperty,
     IntVectorProperty,
+    PointerProperty,
     StringProperty,
 )
 
 from .. import registry
 from ..options import Option, Widget, options_of, words_of
 from ..settings import Settings
+from . import parameters
 
 
 def method_property(identity: str) -> str:
@@ -22,16 +27,26 @@ def method_property(identity: str) -> str:
     return f"method_{identity}"
 
 
-def _tooltip(method: dict) -> str:
-    parameters = "; ".join(
-        f"{item['name']} = {item['default']}: {item.get('help', '')}"
-        for item in method["parameters"]
-    )
-    text = method.get("summary") or method["title"]
-    text += f"\nReads: {', '.join(method['passes'])}"
+def unfold_property(identity: str) -> str:
+    """Name of the property that shows the parameters of a method."""
+    return f"unfold_{identity}"
+
+
+def families() -> dict[str, dict[str, dict]]:
+    """Family -> the methods of it, in the registry's order."""
+    found: dict[str, dict[str, dict]] = {}
+    for name, method in registry.load_methods().items():
+        found.setdefault(method["family"], {})[name] = method
+    return found
+
+
+def _tooltip(name: str, method: dict) -> str:
+    lines = textwrap.wrap(method.get("summary") or method["title"], 90)
+    lines.append(f"Id: {name}")
+    lines.append(f"Reads: {', '.join(method['passes'])}")
     if method.get("source"):
-        text += f"\nSource: {method['source']}"
-    return text + (f"\nParameters: {parameters}" if parameters else "")
+        lines.append(f"Source: {method['source']}")
+    return "\n".join(lines)
 
 
 def _property(widget: Widget, default, option: Option):
@@ -67,22 +82,62 @@ def _properties() -> dict:
     for name, method in registry.load_methods().items():
         made[method_property(name)] = BoolProperty(
             name=method["title"],
-            description=_tooltip(method),
+            description=_tooltip(name, method),
             default=name in ("noaa", "taaSimplest"),
         )
+    for name in parameters.GROUPS:
+        made[parameters.text_property(name)] = StringProperty(
+            name=f"Parameters of {name}", description="What differs from the defaults"
+        )
     return made
+
+
+def _views() -> dict:
+    """Properties that show something and decide nothing: the widgets over the texts, and what is unfolded."""
+    made = {}
+    for name, group in parameters.GROUPS.items():
+        made[parameters.widgets_property(name)] = PointerProperty(type=group)
+        made[unfold_property(name)] = BoolProperty(
+            name="Parameters",
+            description="Show the parameters of this method",
+            options={"SKIP_SAVE"},
+        )
+    return made
+
+
+STORED = _properties()  # what a scene, a preset and an export's command line are made from
 
 
 class AAResolveSettings(bpy.types.PropertyGroup):
     """What the panel shows; kept in the scene."""
 
-    __annotations__ = _properties()
+    __annotations__ = {**STORED, **_views()}
 
     def chosen(self) -> list[str]:
         """Ids of the methods that are ticked."""
         return [
             name for name in registry.load_methods() if getattr(self, method_property(name), False)
         ]
+
+    def changed_parameters(self, method: str) -> dict[str, str]:
+        """Parameters of a method that differ from their defaults and have an effect."""
+        if method not in parameters.GROUPS:
+            return {}
+        return parameters.effective(method, getattr(self, parameters.text_property(method)))
+
+    def choices(self) -> list[registry.MethodChoice]:
+        """The methods that are ticked, with their parameters."""
+        return [
+            registry.MethodChoice(name, self.changed_parameters(name)) for name in self.chosen()
+        ]
+
+    def method_texts(self) -> list[str]:
+        """The methods that are ticked as the command lines of exporter and resolver name them."""
+        texts = []
+        for choice in self.choices():
+            said = parameters.write(choice.parameters)
+            texts.append(f"{choice.id}:{said}" if said else choice.id)
+        return texts
 
     def range(self) -> tuple[int, int]:
         """First and last frame."""
@@ -93,8 +148,7 @@ class AAResolveSettings(bpy.types.PropertyGroup):
 
     def reads_jittered_frames(self) -> bool:
         """True when a chosen method accumulates frames."""
-        choices = [registry.MethodChoice(name) for name in self.chosen()]
-        return bool(registry.required_passes(choices, "jittered"))
+        return bool(registry.required_passes(self.choices(), "jittered"))
 
     def reads_subsamples(self) -> bool:
         """True when a chosen method reads sub-samples."""
@@ -107,6 +161,7 @@ class AAResolveSettings(bpy.types.PropertyGroup):
             field.name == name and known.applies(self) for field, known in options_of(Settings)
         )
 
-    def options(self, out: str) -> list[str]:
-        """The command line that exports what the panel shows."""
-        return words_of(Settings, self, out=[out])
+    def options(self, out: str, **given: list[str]) -> list[str]:
+        """The command line that exports what the panel shows; ``given`` words replace those of some options."""
+        words = {"out": [out], "methods": [",".join(self.method_texts())], **given}
+        return words_of(Settings, self, **words)

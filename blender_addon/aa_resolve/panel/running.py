@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The one job that may run, and how the panel comes to know of it.
+
+A timer asks the job what happened. It is no modal operator: those end when another file is opened, take Esc away from
+the animation player, and hold up Blender's automatic saving for as long as they run."""
+
+from __future__ import annotations
+
+import os
+
+import bpy
+
+from .job import Job
+
+_TIMER_SECONDS = 0.2
+
+
+class State:
+    """The one job that may run, and what it left."""
+
+    running: Job | None = None
+    result: str = ""
+    failed: bool = False  # the result is an error
+    estimate: str = ""
+    estimate_for: tuple = ()  # what the estimate holds for: watch.wish_of
+
+
+def begin(job: Job) -> None:
+    """Starts a job; the window stays free."""
+    State.running = job
+    State.result, State.failed = "", False
+    job.start()
+    if not bpy.app.timers.is_registered(_tick):
+        bpy.app.timers.register(_tick, first_interval=_TIMER_SECONDS, persistent=True)
+
+
+def wait(job: Job, pause) -> None:
+    """Runs a job to its end; ``pause`` is called between two looks at it."""
+    State.result, State.failed = "", False
+    job.start()
+    while job.poll():
+        pause()
+    _take_result(job)
+
+
+def cancel() -> None:
+    """Stops the running job; finished frames stay."""
+    job = State.running
+    if job is None:
+        return
+    State.running = None
+    job.cancel()
+    State.result = "Stopped. Finished frames are valid; with the file saved, the export resumes."
+    State.failed = False
+    _status(None)
+    redraw()
+
+
+def _tick() -> float | None:
+    job = State.running
+    if job is None:
+        return None
+    alive = job.poll()
+    if alive:
+        _status(f"AA Resolve: {job.message}")
+        redraw()
+        return _TIMER_SECONDS
+    State.running = None
+    _status(None)
+    _take_result(job)
+    redraw()
+    return None
+
+
+def _take_result(job: Job) -> None:
+    if job.error:
+        State.result, State.failed = job.error, True
+        return
+    try:
+        State.result = job.finish(job)
+    except (RuntimeError, OSError, ValueError) as error:
+        State.result, State.failed = str(error), True
+
+
+def stop() -> None:
+    """Ends everything, for when the add-on goes."""
+    if State.running is not None:
+        State.running.cancel()
+        State.running = None
+    if bpy.app.timers.is_registered(_tick):
+        bpy.app.timers.unregister(_tick)
+
+
+def _status(text: str | None) -> None:
+    for window in bpy.context.window_manager.windows:
+        window.workspace.status_text_set(text)
+
+
+def redraw(kinds: tuple[str, ...] = ("PROPERTIES", "PREFERENCES")) -> None:
+    """Asks Blender to draw the panel again."""
+    manager = bpy.context.window_manager
+    for window in manager.windows if manager else ():
+        for area in window.screen.areas:
+            if area.type in kinds:
+                area.tag_redraw()
+
+
+def shot_folder(scene: bpy.types.Scene) -> str:
+    """Folder of the shot; empty where it lies beside a file that has not been saved."""
+    out = scene.aa_resolve.out
+    if out.startswith("//") and not bpy.data.filepath:
+        return ""
+    return os.path.normpath(bpy.path.abspath(out))
+
+
+def results_folder(shot: str) -> str:
+    """Folder of what ``aaresolve run`` writes of a shot."""
+    return f"{shot}_results"
