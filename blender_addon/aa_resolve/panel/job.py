@@ -111,6 +111,10 @@ class Job:
             return self._end()
         self.steps.pop(0)
         if not self.steps:
+            try:
+                self.message = self.finish(self)
+            except (RuntimeError, OSError, ValueError) as error:
+                self.error = str(error)
             return self._end()
         self._launch()
         return True

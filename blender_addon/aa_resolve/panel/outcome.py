@@ -116,12 +116,19 @@ def _number(value) -> float:
     return float(value) if not isinstance(value, bool) else 0.0
 
 
-def sentence(place: int, rank: Rank) -> str:
-    """One line of the ranking."""
-    text = f"{place}. {rank.title}: {rank.psnr:.1f} dB"
-    if ":" in rank.text:
-        text = f"{place}. {rank.title} ({rank.text.partition(':')[2]}): {rank.psnr:.1f} dB"
+def _decibels(value: float) -> str:
+    """With its sign, and none before zero."""
+    text = f"{value:+.1f}"
+    return "0.0" if text in ("+0.0", "-0.0") else text
+
+
+def lines_of(place: int, rank: Rank) -> list[str]:
+    """One place of the ranking in words."""
+    _, _, changed = rank.text.partition(":")
+    lines = [f"{place}. {rank.title}{f' ({changed})' if changed else ''}: {rank.psnr:.1f} dB"]
     if rank.gain is not None:
-        value, low, high = rank.gain
-        text += f", {value:+.1f} dB over no anti-aliasing (95 %: {low:+.1f} to {high:+.1f})"
-    return text + ("" if rank.told_apart else "; not told apart from the one above")
+        value, low, high = map(_decibels, rank.gain)
+        lines.append(f"{value} dB over no anti-aliasing (95\u00a0%: {low} to {high})")
+    if not rank.told_apart:
+        lines.append("not told apart from the one above")
+    return lines

@@ -26,7 +26,7 @@ from .presets import (
 )
 from .properties import families, method_property, unfold_property
 from .running import State
-from .words import draw_text, letters
+from .words import draw_text, fits
 
 
 class _Panel:
@@ -79,12 +79,13 @@ class AA_RESOLVE_PT_main(_Panel, bpy.types.Panel):
         if State.running is not None:
             _draw_running(layout, context)
             return
-        buttons = layout.grid_flow(
-            columns=0, even_columns=True, align=True
-        )  # one below the other where it is narrow
-        buttons.operator(AA_RESOLVE_OT_export.bl_idname, icon="RENDER_ANIMATION")
-        buttons.operator(AA_RESOLVE_OT_compare.bl_idname, text="Compare", icon="VIEWZOOM")
-        buttons.operator(AA_RESOLVE_OT_estimate.bl_idname, icon="TIME")
+        column = layout.column(align=True)
+        large = column.row()
+        large.scale_y = 1.3
+        large.operator(AA_RESOLVE_OT_compare.bl_idname, icon="VIEWZOOM")
+        row = column.row(align=True)
+        row.operator(AA_RESOLVE_OT_export.bl_idname, icon="RENDER_ANIMATION")
+        row.operator(AA_RESOLVE_OT_estimate.bl_idname, icon="TIME")
         _draw_program(layout, context)
         draw_text(layout, context, State.estimate, icon="TIME")
         draw_text(layout, context, State.result, icon="ERROR" if State.failed else "INFO")
@@ -124,9 +125,10 @@ class AA_RESOLVE_PT_results(_Panel, bpy.types.Panel):
             draw_text(layout, context, "The shot is newer than these results", icon="INFO")
         if found.best:
             column = layout.column()
-            column.label(text=f"Nearest to the truth of {found.methods}")
+            column.label(text=f"Nearest to the truth, of {found.methods} methods:")
             for place, rank in enumerate(found.best, 1):
-                draw_text(column, context, outcome.sentence(place, rank), icon="BLANK1")
+                for line in outcome.lines_of(place, rank):
+                    draw_text(column, context, line, icon="BLANK1")
         row = layout.row(align=True)
         row.operator(AA_RESOLVE_OT_open_sheet.bl_idname, icon="IMAGE_DATA")
         row.operator(AA_RESOLVE_OT_open_report.bl_idname, icon="URL")
@@ -162,11 +164,11 @@ def _draw_methods(layout, context, methods: dict[str, dict]) -> None:
     """One line per method: its switch and, where it has any, its parameters to unfold."""
     settings = context.scene.aa_resolve
     column = layout.column(align=True)
-    wide = letters(context, 110)
+    margin = 130  # of the switch and of what is to the right
     for name, method in methods.items():
         row = column.row(align=True)
         # A title that is cut off tells several methods apart no longer; their ids do, and stay short.
-        text = method["title"] if len(method["title"]) <= wide else name
+        text = method["title"] if fits(context, method["title"], margin) else name
         row.prop(settings, method_property(name), text=text)
         if name not in parameters.GROUPS or not getattr(settings, method_property(name)):
             continue

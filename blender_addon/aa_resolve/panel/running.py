@@ -73,13 +73,7 @@ def _tick() -> float | None:
 
 
 def _take_result(job: Job) -> None:
-    if job.error:
-        State.result, State.failed = job.error, True
-        return
-    try:
-        State.result = job.finish(job)
-    except (RuntimeError, OSError, ValueError) as error:
-        State.result, State.failed = str(error), True
+    State.result, State.failed = job.error or job.message, bool(job.error)
 
 
 def stop() -> None:

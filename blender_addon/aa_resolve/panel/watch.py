@@ -18,6 +18,7 @@ from .running import State
 _PERIOD_SECONDS = 0.5
 _NOBODY_LOOKS_SECONDS = 3.0
 _SHARE = 0.05  # of the time that looking may take
+_LONGEST_PAUSE_SECONDS = 10.0
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,7 @@ class Facts:
 
 _known: dict[str, Facts] = {}
 _outcomes: dict[str, tuple[tuple, outcome.Outcome | None]] = {}  # by folder: stamp, what was read
+_wishes: dict[str, tuple] = {}  # what the panel said when the scene was looked at
 _looked = 0.0  # when the panel was drawn last
 _pause_until = 0.0
 
@@ -52,11 +54,17 @@ def wish_of(scene: bpy.types.Scene) -> tuple:
     return (bpy.data.filepath, scene.name, *scene.aa_resolve.options("", overwrite=[]), *size)
 
 
+def _shown(scene: bpy.types.Scene) -> tuple:
+    """What a user expects to be followed at once."""
+    return (*wish_of(scene), scene.aa_resolve.out, scene.render.engine)
+
+
 def look_now(scene: bpy.types.Scene) -> Facts:
     """Finds everything out, and drops an estimate that holds no longer."""
     if State.estimate and State.estimate_for != wish_of(scene):
         State.estimate = ""
     settings = scene.aa_resolve
+    _wishes[scene.name] = _shown(scene)
     without_noise = settings.lighting == "noise-free"
     shot = running.shot_folder(scene)
     _known[scene.name] = Facts(
@@ -81,13 +89,15 @@ def _tick() -> float | None:
     now = time.monotonic()
     if now - _looked > _NOBODY_LOOKS_SECONDS:
         return None
-    if now < _pause_until:
-        return _PERIOD_SECONDS
+    started = time.thread_time()
     changed = False
     for scene in _scenes_in_view():
+        if now < _pause_until and _wishes.get(scene.name) == _shown(scene):
+            continue
         before = _known.get(scene.name), State.estimate
         changed |= (look_now(scene), State.estimate) != before
-    _pause_until = now + (time.monotonic() - now) / _SHARE
+        pause = min((time.thread_time() - started) / _SHARE, _LONGEST_PAUSE_SECONDS)
+        _pause_until = time.monotonic() + pause
     if changed:
         running.redraw()
     return _PERIOD_SECONDS
@@ -101,6 +111,7 @@ def _scenes_in_view() -> set[bpy.types.Scene]:
 def forget(*_file) -> None:
     """Another file: nothing that was found of the last one holds."""
     _known.clear()
+    _wishes.clear()
     State.estimate = ""
     if State.running is None:
         State.result, State.failed = "", False
@@ -118,4 +129,5 @@ def stop() -> None:
     if bpy.app.timers.is_registered(_tick):
         bpy.app.timers.unregister(_tick)
     _known.clear()
+    _wishes.clear()
     _outcomes.clear()

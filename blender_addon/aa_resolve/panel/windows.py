@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import bpy
 
-_FIT_SECONDS = 0.1  # a new window has no size before it was drawn
-_TRIES = 20
+# A new window gets its final size, and what is drawn in it the right place, only after it was drawn a first time.
+_FIT_SECONDS = (0.1, 0.4, 0.5, 1.0)
 
 
 def show(path: str) -> None:
@@ -19,14 +19,14 @@ def show(path: str) -> None:
         return
     area = _area_with(image) or _new_area()
     area.spaces.active.image = image
-    tries = iter(range(_TRIES))
+    pauses = iter(_FIT_SECONDS[1:])
+    sizes: set[tuple[int, int]] = set()
 
     def fit() -> float | None:
-        if next(tries, None) is None or _fitted(image):
-            return None
-        return _FIT_SECONDS
+        _fit(image, sizes)
+        return next(pauses, None)
 
-    bpy.app.timers.register(fit, first_interval=_FIT_SECONDS)
+    bpy.app.timers.register(fit, first_interval=_FIT_SECONDS[0])
 
 
 def _windows() -> list[bpy.types.Window]:
@@ -52,17 +52,16 @@ def _new_area() -> bpy.types.Area:
     return area
 
 
-def _fitted(image: bpy.types.Image) -> bool:
-    """Fits the picture where it is shown; False while the place for it has no size yet."""
+def _fit(image: bpy.types.Image, sizes: set[tuple[int, int]]) -> None:
+    """Fits the picture where it is shown, again when that place has got another size (``sizes``: those it had)."""
     for window in _windows():
         for area in window.screen.areas:
             if area.type != "IMAGE_EDITOR" or area.spaces.active.image != image:
                 continue
-            region = next((item for item in area.regions if item.type == "WINDOW"), None)
-            if region is None or region.width < 2 or not image.has_data and not image.size[0]:
-                return False
-            with bpy.context.temp_override(window=window, area=area, region=region):
-                bpy.ops.image.view_all(fit_view=True)
+            region = next(item for item in area.regions if item.type == "WINDOW")
+            size = region.width, region.height
+            if size not in sizes and min(size) > 1:
+                sizes.add(size)
+                with bpy.context.temp_override(window=window, area=area, region=region):
+                    bpy.ops.image.view_all(fit_view=True)
             area.tag_redraw()
-            return True
-    return True

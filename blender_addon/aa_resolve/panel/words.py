@@ -3,17 +3,47 @@
 
 from __future__ import annotations
 
-import textwrap
+import functools
 
+import blf
 import bpy
 
-_LETTER_PIXELS = 6.2  # mean width at a scale of 1
+_FONT = 0  # Blender's own, in which it draws its labels
+_BORDER_PIXELS = 44  # of region, panel and box to both sides, at a scale of 1
+_ICON_PIXELS = 22
 
 
-def letters(context, margin: int) -> int:
-    """How many letters of mean width fit into a line of the region beside ``margin`` (pixels at a scale of 1)."""
-    scale = context.preferences.system.ui_scale
-    return int((context.region.width - margin * scale) / (_LETTER_PIXELS * scale))
+def _points(context) -> float:
+    """Size of the letters of labels, pixels."""
+    return context.preferences.ui_styles[0].widget.points * context.preferences.system.ui_scale
+
+
+def room(context, margin: int = _BORDER_PIXELS) -> float:
+    """Pixels that a line of the region has beside ``margin`` (at a scale of 1)."""
+    return context.region.width - margin * context.preferences.system.ui_scale
+
+
+@functools.lru_cache(maxsize=4096)
+def _width(text: str, points: float) -> float:
+    blf.size(_FONT, points)
+    return blf.dimensions(_FONT, text)[0]
+
+
+def fits(context, text: str, margin: int) -> bool:
+    """True when a label is not cut off."""
+    return _width(text, _points(context)) <= room(context, margin)
+
+
+def lines_of(text: str, width: float, points: float) -> list[str]:
+    """The text in lines of at most ``width`` pixels; a single word may be longer."""
+    lines = [""]
+    for word in text.split(" "):
+        longer = f"{lines[-1]} {word}" if lines[-1] else word
+        if lines[-1] and _width(longer, points) > width:
+            lines.append(word)
+        else:
+            lines[-1] = longer
+    return lines
 
 
 def draw_text(layout: bpy.types.UILayout, context, text: str, icon: str = "NONE") -> None:
@@ -22,7 +52,7 @@ def draw_text(layout: bpy.types.UILayout, context, text: str, icon: str = "NONE"
         return
     column = layout.column(align=True)
     column.scale_y = 0.8
-    wide = max(20, letters(context, 50 if icon == "NONE" else 70))
-    for line in textwrap.wrap(text, wide):
+    margin = _BORDER_PIXELS + (_ICON_PIXELS if icon != "NONE" else 0)
+    for line in lines_of(text, room(context, margin), _points(context)):
         column.label(text=line, icon=icon)
         icon = icon if icon == "NONE" else "BLANK1"
