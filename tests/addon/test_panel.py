@@ -1,100 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The add-on as a user gets it: installed from its zip, exporting by its operators, and gone without a trace."""
+"""The panel: what it shows is what the exporter and the resolver are told, and what it says of scene and disk is true."""
 
 from __future__ import annotations
 
 import glob
-import hashlib
 import json
 import os
-import subprocess
 import sys
 import types
-import zipfile
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import support as t  # noqa: E402
-from support import bpy  # noqa: E402
-
-FOLDER = t.temporary_folder()
-SCRIPT = """
-import bpy, hashlib, json, os, sys
-folder = {folder!r}
-def digest(path):
-    return hashlib.sha256(open(path, "rb").read()).hexdigest()
-before = set(dir(bpy.types))
-bpy.ops.preferences.addon_install(filepath=os.path.join(folder, "aa_resolve.zip"))
-bpy.ops.preferences.addon_enable(module="aa_resolve")
-assert "/scripts/" in sys.modules["aa_resolve"].__file__, sys.modules["aa_resolve"].__file__
-blend = bpy.data.filepath
-hash_before = digest(blend)
-scene = bpy.context.scene
-settings = scene.aa_resolve
-settings.out = os.path.join(folder, "shot")
-settings.first, settings.last = 2, 4
-settings.truth_samples = 8
-assert settings.chosen() == ["noaa", "taaSimplest"], settings.chosen()
-tooltip = settings.bl_rna.properties["method_taaSimplest"].description
-assert "motion" in tooltip, tooltip
-bpy.data.objects["Cube"].location.z += 0.25
-scene.frame_set(3)
-assert bpy.ops.aa_resolve.export() == {{"FINISHED"}}
-assert scene.frame_current == 3 and scene.render.engine == "CYCLES" and scene.cycles.samples == 77
-assert len(bpy.data.objects) == 3, [item.name for item in bpy.data.objects]
-assert digest(blend) == hash_before
-shot = json.load(open(os.path.join(folder, "shot", "shot.json")))
-assert [entry["frame"] for entry in shot["frames"]] == [2, 3, 4]
-assert [bool(entry.get("truth")) for entry in shot["frames"]] == [True, True, True]
-assert bpy.ops.aa_resolve.estimate() == {{"FINISHED"}}
-bpy.data.objects["Cube"].location.z += 0.25
-bpy.ops.wm.save_mainfile()
-try:
-    bpy.ops.aa_resolve.export()
-    raise SystemExit("a changed file must not continue an old export")
-except RuntimeError as error:
-    assert "the .blend file has changed" in str(error), error
-settings.overwrite = True
-assert bpy.ops.aa_resolve.export() == {{"FINISHED"}}
-settings.overwrite = False
-bpy.ops.wm.save_mainfile()
-hash_before = digest(blend)
-settings.period = 8
-try:
-    bpy.ops.aa_resolve.export()
-    raise SystemExit("a changed setting must be noticed")
-except RuntimeError as error:
-    assert "--period was 16 and now is 8" in str(error), error
-for name in settings.chosen():
-    setattr(settings, "method_" + name, False)
-try:
-    bpy.ops.aa_resolve.export()
-    raise SystemExit("no method must be noticed")
-except RuntimeError as error:
-    assert "at least one method" in str(error), error
-settings.period, settings.method_noaa = 5, True
-bpy.ops.aa_resolve.add_preset(name="Fast")
-settings.period, settings.method_noaa = 16, False
-preset = [os.path.join(path, "Fast.py") for path in bpy.utils.preset_paths("aa_resolve")]
-bpy.ops.script.execute_preset(filepath=preset[0], menu_idname="AA_RESOLVE_MT_presets")
-assert settings.period == 5 and settings.method_noaa, "presets come back"
-bpy.ops.preferences.addon_disable(module="aa_resolve")
-assert not hasattr(bpy.types.Scene, "aa_resolve")
-left = [name for name in set(dir(bpy.types)) - before if "resolve" in name.lower()]
-assert not left, left
-print("PANEL OK")
-"""
+from support import aa_resolve, bpy  # noqa: E402
 
 
-def digest(path: str) -> str:
-    with open(path, "rb") as file:
-        return hashlib.sha256(file.read()).hexdigest()
+def registered() -> object:
+    """The settings of a new scene with the add-on switched on."""
+    t.new_scene(64, 36)
+    if not hasattr(bpy.types.Scene, "aa_resolve"):
+        aa_resolve.register()
+    return bpy.context.scene.aa_resolve
 
 
 def test_manifests_agree() -> None:
     """blender_manifest.toml (4.2 and later) keeps the rules of extensions and says what bl_info says."""
     import tomllib
-
-    import aa_resolve
 
     folder = os.path.join(t.ROOT, "blender_addon", "aa_resolve")
     with open(os.path.join(folder, "blender_manifest.toml"), "rb") as file:
@@ -169,12 +99,10 @@ def test_settings_of_later_versions() -> None:
 
 def test_the_panel_says_what_it_shows() -> None:
     """The command line of the panel's job, parsed, holds the values of the properties, and what has no effect is unsaid."""
-    import aa_resolve
     from aa_resolve.command_line import build_parser, settings_from
 
-    aa_resolve.register()
+    shown = registered()
     scene = bpy.context.scene
-    shown = scene.aa_resolve
 
     def said() -> object:
         return settings_from(build_parser().parse_args(shown.options("/out")), scene)
@@ -201,82 +129,224 @@ def test_the_panel_says_what_it_shows() -> None:
     for flag in ("--ambient", "--subsamples", "--jitter", "--period"):
         assert flag not in words, words
     assert "--color-type" in words and said().lighting == "as-is"
-    aa_resolve.unregister()
 
 
-def test_installed_from_zip() -> None:
-    scene = t.new_scene(32, 18)
+def test_parameters_are_edited_and_said() -> None:
+    """Every parameter of every method has a widget with its range and default; changed ones reach the command lines."""
+    from aa_resolve import registry
+    from aa_resolve.panel import parameters as p
+
+    shown = registered()
+    counted = 0
+    for name, method in registry.load_methods().items():
+        for item in method["parameters"]:
+            counted += 1
+            group = getattr(shown, p.widgets_property(name))
+            kind = group.bl_rna.properties[p.widget_name(item["name"])]
+            assert item.get("help", "")[:20] in kind.description, kind.description
+            assert max(map(len, kind.description.split("\n"))) < 120, "no line is cut off"
+            value = getattr(group, p.widget_name(item["name"]))
+            if item["type"] == "flag":
+                assert value == (item["default"] == "on"), (name, item)
+            elif "choices" in item:
+                assert value == item["default"] and len(kind.enum_items) == len(item["choices"])
+            else:
+                assert abs(value - item["default"]) <= 1e-6 * max(1, abs(value)), (name, item)
+                assert abs(kind.hard_min - item["min"]) < 1e-6 and kind.hard_max == item["max"]
+    assert counted > 300, counted
+    shown.method_smaa1x = shown.method_karis = True
+    karis, smaa = shown.widgets_karis, shown.widgets_smaa1x
+    karis.set_alpha, karis.set_box, karis.set_unjitter = 0.1, "variance", True
+    smaa.set_predication, smaa.set_threshold = "depth", 0.2
+    assert shown.parameters_karis == "alpha=0.1,box=variance,unjitter=on", shown.parameters_karis
+    said = {text.partition(":")[0]: text for text in shown.method_texts()}
+    assert said["karis"] == "karis:" + shown.parameters_karis and said["noaa"] == "noaa", said
+    assert said["smaa1x"] == "smaa1x:predication=depth", "a threshold acts with preset=custom only"
+    smaa.set_preset = "custom"
+    assert "threshold=0.2" in shown.method_texts()[1], shown.method_texts()
+    words = shown.options("/out")
+    assert words[words.index("--for") + 1] == ",".join(shown.method_texts())
+    full = settings_said(words)
+    assert "depth" in full.centre_passes, "passes follow the parameters"
+    karis.set_alpha = 0.04
+    assert shown.parameters_karis == "box=variance,unjitter=on", "a default is not said"
+    bpy.ops.aa_resolve.reset_parameters(method="karis", parameter="box")
+    assert shown.parameters_karis == "unjitter=on" and karis.set_box == "minmax"
+    bpy.ops.aa_resolve.reset_parameters(method="karis", parameter="")
+    assert shown.parameters_karis == ""
+    shown.parameters_karis = "alpha=0.5,gone=3,box=sphere,gamma=100"
+    assert shown.changed_parameters("karis") == {"alpha": "0.5"}, "what the table does not know"
+    tiny = {"name": "x", "min": 0.0, "max": 1e9}
+    assert [p.number_text(value) for value in (1e-5, 2.5e7, 0.1)] == ["0.00001", "25000000", "0.1"]
+    assert p.is_known_value(tiny, "12") and not p.is_known_value(tiny, "-1")
+    path = os.path.join(t.temporary_folder(), "kept.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    kept = bpy.context.scene.aa_resolve
+    assert kept.parameters_karis == "alpha=0.5,gone=3,box=sphere,gamma=100"
+    assert kept.widgets_smaa1x.set_preset == "custom" and kept.method_karis
+
+
+def settings_said(words: list[str]) -> object:
+    """The exporter's settings for a command line."""
+    from aa_resolve.command_line import build_parser, settings_from
+
+    return settings_from(build_parser().parse_args(words), bpy.context.scene)
+
+
+def test_starts_and_families() -> None:
+    """Each preset that the add-on brings can be exported as it stands; families are chosen as a whole."""
+    from aa_resolve import registry
+    from aa_resolve.panel import presets
+    from aa_resolve.panel.properties import families
+
+    shown = registered()
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y = 1920, 1080
+    scene.frame_current = 7
+    counts = {}
+    for kind, known in presets.BUILT_IN.items():
+        assert bpy.ops.aa_resolve.use_preset(kind=kind) == {"FINISHED"}
+        assert set(shown.chosen()) == set(known.methods), kind
+        counts[kind] = len(shown.chosen())
+        settings = settings_said(shown.options("/out"))
+        assert len(settings.frames) == (known.frames or 250), settings.frames
+        assert settings.frames[0] == (7 if known.frames else 1)
+        assert settings.resolution == ((480, 270) if known.small else None)
+    assert settings.pattern == "d3d4" and settings.truth_frames == "all"
+    assert counts["QUICK"] == 5 and counts["EVERYTHING"] == len(registry.load_methods()) - 1, counts
+    bpy.ops.aa_resolve.choose_family(family="temporal", chosen=False)
+    assert not set(families()["temporal"]) & set(shown.chosen())
+    bpy.ops.aa_resolve.choose_family(family="spatial", chosen=True)
+    assert set(families()["spatial"]) <= set(shown.chosen())
+    assert sum(map(len, families().values())) == len(registry.load_methods())
+
+
+def test_the_look_is_foretold() -> None:
+    """What the panel says of 'No Noise' is what the exporter then does, and a scene without such things hears nothing."""
+    from aa_resolve.panel import look, watch
+    from aa_resolve.scene import lighting
+
+    shown = registered()
+    scene = bpy.context.scene
     t.add_camera(scene)
+    scene.cycles.max_bounces = 0
     t.add_sun(scene)
-    scene.cycles.samples = 77
-    t.key(t.add_object(scene, "Cube"), "location", {1: (-1, 0, 0.5), 11: (1, 0.4, 0.8)})
-    blend = t.save(scene, os.path.join(FOLDER, "scene.blend"))
-    packer = os.path.join(t.ROOT, "blender_addon", "make_zip.py")
-    archive = os.path.join(FOLDER, "aa_resolve.zip")
-    subprocess.run([sys.executable, packer, archive], check=True, capture_output=True)
-    sources = glob.glob(
-        os.path.join(t.ROOT, "blender_addon", "aa_resolve", "**", "*.py"), recursive=True
-    )
-    with zipfile.ZipFile(archive) as file:
-        packed = [name for name in file.namelist() if name.endswith(".py")]
-    assert len(packed) == len(sources) and "aa_resolve/passes/table.py" in packed, packed
-    with open(archive, "rb") as file:
-        first = hashlib.sha256(file.read()).digest()
-    subprocess.run([sys.executable, packer, archive], check=True, capture_output=True)
-    with open(archive, "rb") as file:
-        assert hashlib.sha256(file.read()).digest() == first, "the zip is the same each time"
-    script = os.path.join(FOLDER, "panel.py")
-    with open(script, "w", encoding="utf-8") as file:
-        file.write(SCRIPT.format(folder=FOLDER))
-    environment = {**os.environ, "BLENDER_USER_SCRIPTS": os.path.join(FOLDER, "scripts")}
-    os.makedirs(os.path.join(FOLDER, "scripts", "addons"))
-    done = subprocess.run(
-        [bpy.app.binary_path, "-b", "--factory-startup", blend, "--python-exit-code", "9", "-P", script],
-        capture_output=True, text=True, timeout=150, env=environment,
-    )  # fmt: skip
-    assert done.returncode == 0 and "PANEL OK" in done.stdout, (
-        done.stdout[-3000:] + done.stderr[-3000:]
-    )
+    assert look.changes_without_noise(scene) == []
+    assert lighting.set_up(scene, "noise-free", None, t.temporary_folder()).notes == []
+    scene.cycles.max_bounces = 8
+    for kind in ("AREA", "POINT", "SPOT"):
+        light = bpy.data.lights.new(f"The {kind.lower()}", kind)
+        if kind != "AREA":
+            light.shadow_soft_size = 0.5
+        scene.collection.objects.link(bpy.data.objects.new(light.name, light))
+    scene.world = bpy.data.worlds.new("Sky")
+    told = "; ".join(watch.look_now(scene).changes)
+    for word in ("'The area'", "'The point'", "'The spot'", "ambient", "bounces"):
+        assert word in told, told
+    assert "'Sun'" not in told and "glow" not in told, told
+    done = " ".join(lighting.set_up(scene, "noise-free", (0.5, 0.5, 0.5), "").notes)
+    for word in ("'The area'", "'The point'", "'The spot'", "ambient", "bounces"):
+        assert word in done, done
+    shown.lighting = "as-is"
+    facts = watch.look_now(scene)
+    assert not facts.changes and any("4 lights" in cause for cause in facts.noise), facts
+    assert facts.engine == ""
+    scene.render.engine = "BLENDER_WORKBENCH"
+    assert "Workbench" in watch.look_now(scene).engine and "Cycles" in watch.look_now(scene).engine
+    scene.render.engine = t.eevee_engine()
+    assert "EEVEE" in watch.look_now(scene).engine
 
 
-def test_job_reports_and_cancels() -> None:
-    """What the modal operator relies on: progress comes in without blocking, cancel leaves finished frames."""
-    from aa_resolve.panel import job
+def ranking(folder: str) -> dict:
+    """Results as the resolver writes them: three methods and a reference, one pair the other way round."""
 
-    scene = t.new_scene(32, 18)
-    t.add_camera(scene)
-    t.add_sun(scene)
-    t.key(t.add_object(scene, "Cube"), "location", {1: (-1, 0, 0.5), 11: (1, 0.4, 0.8)})
-    t.save(scene, os.path.join(FOLDER, "job.blend"))
-    before = digest(os.path.join(FOLDER, "job.blend"))
-    out = os.path.join(FOLDER, "job_shot")
-    folder, blend = job.copy_of_open_file()
-    assert bpy.data.filepath == os.path.join(
-        FOLDER, "job.blend"
-    ), "the copy does not become the open file"
-    command = job.export_command(
-        blend, ["--out", out, "--frames", "1-400", "--truth-frames", "none"]
-    )
-    work = job.Job([job.Step("Export", command)], folder)
-    work.start()
-    while work.poll() and work.done < 3:
-        pass
-    assert 0.0 < work.fraction < 0.5 and not work.error, (work.fraction, work.error)
-    work.cancel()
-    assert not os.path.exists(folder), "the copy is gone"
-    assert digest(os.path.join(FOLDER, "job.blend")) == before, "the user's file is as it was"
-    with open(os.path.join(out, "shot.json"), encoding="utf-8") as file:
-        shot = json.load(file)
-    assert len(shot["frames"]) >= 3
-    for entry in shot["frames"]:
-        t.read_part(os.path.join(out, entry["file"]), "color")
-    failing = job.Job(
-        [job.Step("Export", job.export_command("/nowhere.blend", ["--out", out]))], FOLDER + "/none"
-    )
-    failing.start()
-    while failing.poll():
-        pass
-    assert failing.error, "a failing child is an error with a sentence"
+    def method(name, family, psnr):
+        return {"text": name, "title": name.upper(), "family": family, "pooled": {"psnr": psnr}}
+
+    def pair(first, second, gain, low, high, resolved=True):
+        return {
+            "first": first, "second": second, "gainDb": gain, "gainLow95": low,
+            "gainHigh95": high, "resolved": resolved,
+        }  # fmt: skip
+
+    content = {
+        "methods": [
+            method("noaa", "reference", 30.0),
+            method("accum", "reference", "Inf"),
+            method("smaa1x", "spatial", 35.0),
+            method("karis:alpha=0.1", "temporal", 36.0),
+            method("fxaa311", "spatial", 31.0),
+            method("dlaa", "spatial", 29.0),
+        ],
+        "pairs": [
+            pair("noaa", "smaa1x", -5.0, -6.0, -4.5),
+            pair("karis:alpha=0.1", "noaa", 6.0, 5.5, 6.5),
+            pair("smaa1x", "karis:alpha=0.1", -1.0, -3.0, 1.0, False),
+            pair("fxaa311", "noaa", 1.0, -0.04, 2.0),
+        ],
+    }
+    os.makedirs(folder, exist_ok=True)
+    with open(os.path.join(folder, "results.json"), "w", encoding="utf-8") as file:
+        json.dump(content, file)
+    return content
+
+
+def test_results_are_found_on_disk() -> None:
+    """The ranking comes from the folder beside the shot, in a new session too; damage is told."""
+    from aa_resolve.panel import outcome, watch
+
+    shown = registered()
+    scene = bpy.context.scene
+    folder = t.temporary_folder()
+    shown.out = os.path.join(folder, "shot")
+    assert watch.look_now(scene).outcome is None
+    results = shown.out + "_results"
+    ranking(results)
+    found = watch.look_now(scene).outcome
+    assert [rank.text for rank in found.best] == ["karis:alpha=0.1", "smaa1x", "fxaa311"]
+    assert [rank.gain for rank in found.best] == [(6, 5.5, 6.5), (5, 4.5, 6), (1, -0.04, 2)]
+    assert [rank.told_apart for rank in found.best] == [True, False, True]
+    words = [outcome.lines_of(place, rank) for place, rank in enumerate(found.best, 1)]
+    assert words[0][0] == "1. KARIS:ALPHA=0.1 (alpha=0.1): 36.0 dB", words
+    assert "+5.0 dB over no anti-aliasing" in words[1][1] and "+4.5 to +6.0" in words[1][1]
+    assert "not told apart" in words[1][2] and "0.0 to +2.0" in words[2][1], words
+    assert found.files == () and not bpy.ops.aa_resolve.open_sheet.poll()
+    open(os.path.join(results, "sheet.png"), "w").close()
+    watch.look_now(scene)
+    assert bpy.ops.aa_resolve.open_sheet.poll() and not bpy.ops.aa_resolve.open_report.poll()
+    blend = os.path.join(folder, "scene.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=blend)
+    bpy.ops.wm.read_homefile(use_empty=True)
+    assert watch.of(bpy.context.scene).outcome is None, "another file"
+    bpy.ops.wm.open_mainfile(filepath=blend)
+    scene = bpy.context.scene
+    assert len(watch.look_now(scene).outcome.best) == 3, "found again"
+    with open(os.path.join(results, "results.json"), "w", encoding="utf-8") as file:
+        file.write('{"methods": [')
+    assert "cannot be read" in watch.look_now(scene).outcome.trouble
+    scene.aa_resolve.out = "//beside"
+    bpy.ops.wm.read_homefile(use_empty=True)
+    assert watch.look_now(bpy.context.scene).outcome is None, "no folder before the file is saved"
+
+
+def test_looking_is_not_drawing() -> None:
+    """What the panel's drawing asks for is there at once: neither the scene is walked through nor the disk read."""
+    from aa_resolve.panel import look, outcome, watch
+
+    registered()
+    scene = bpy.context.scene
+    before = watch.look_now(scene)
+
+    def refuse(*_arguments) -> None:
+        raise AssertionError("drawing must not do this")
+
+    kept = look.changes_without_noise, outcome.stamp_of
+    look.changes_without_noise = outcome.stamp_of = refuse
+    try:
+        assert watch.of(scene) == before
+    finally:
+        look.changes_without_noise, outcome.stamp_of = kept
 
 
 if __name__ == "__main__":
@@ -285,6 +355,9 @@ if __name__ == "__main__":
         test_only_compat_knows_versions,
         test_settings_of_later_versions,
         test_the_panel_says_what_it_shows,
-        test_installed_from_zip,
-        test_job_reports_and_cancels,
+        test_parameters_are_edited_and_said,
+        test_starts_and_families,
+        test_the_look_is_foretold,
+        test_results_are_found_on_disk,
+        test_looking_is_not_drawing,
     )

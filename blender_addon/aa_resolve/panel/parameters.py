@@ -37,7 +37,7 @@ def table_of(method: str) -> dict[str, dict]:
 def number_text(value: float) -> str:
     """A number as people write it, without the noise of single precision and without an exponent."""
     text = f"{value:.6g}"
-    return f"{value:.10f}".rstrip("0") if "e" in text else text
+    return f"{value:.10f}".rstrip("0").rstrip(".") if "e" in text else text
 
 
 def default_text(item: dict) -> str:
@@ -85,7 +85,7 @@ def effective(method: str, text: str) -> dict[str, str]:
 
 def tooltip(item: dict) -> str:
     """What a parameter does, its range and default; each on a line of its own that fits on a screen."""
-    lines = textwrap.wrap(item.get("help", ""), 90)
+    lines = [item.get("help", "")]
     if "min" in item:
         lines.append(f"From {number_text(item['min'])} to {number_text(item['max'])}")
     lines.append(f"Default: {default_text(item)}")
@@ -93,7 +93,7 @@ def tooltip(item: dict) -> str:
         lines.append(f"Only with {item['onlyWhen'].replace('|', ' or ')}")
     if item.get("source"):
         lines.append(f"Source: {item['source']}")
-    return "\n".join(lines)
+    return "\n".join(part for line in lines for part in textwrap.wrap(line, 90))
 
 
 class _Widgets:

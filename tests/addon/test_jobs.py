@@ -1,0 +1,284 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The panel's work in child processes: progress, cancel, comparison, preview of the light, and what they leave."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import support as t  # noqa: E402
+from support import aa_resolve, bpy, np  # noqa: E402
+
+FOLDER = t.temporary_folder()
+
+
+def digest(path: str) -> str:
+    with open(path, "rb") as file:
+        return hashlib.sha256(file.read()).hexdigest()
+
+
+def test_job_reports_and_cancels() -> None:
+    """What the modal operator relies on: progress comes in without blocking, cancel leaves finished frames."""
+    from aa_resolve.panel import job
+
+    scene = t.new_scene(32, 18)
+    t.add_camera(scene)
+    t.add_sun(scene)
+    t.key(t.add_object(scene, "Cube"), "location", {1: (-1, 0, 0.5), 11: (1, 0.4, 0.8)})
+    t.save(scene, os.path.join(FOLDER, "job.blend"))
+    before = digest(os.path.join(FOLDER, "job.blend"))
+    out = os.path.join(FOLDER, "job_shot")
+    folder, blend = job.copy_of_open_file()
+    assert bpy.data.filepath == os.path.join(
+        FOLDER, "job.blend"
+    ), "the copy does not become the open file"
+    command = job.export_command(
+        blend, ["--out", out, "--frames", "1-400", "--truth-frames", "none"]
+    )
+    work = job.Job([job.Step("Export", command)], folder)
+    work.start()
+    while work.poll() and work.done < 3:
+        pass
+    assert 0.0 < work.fraction < 0.5 and not work.error, (work.fraction, work.error)
+    work.cancel()
+    assert not os.path.exists(folder), "the copy is gone"
+    assert digest(os.path.join(FOLDER, "job.blend")) == before, "the user's file is as it was"
+    with open(os.path.join(out, "shot.json"), encoding="utf-8") as file:
+        shot = json.load(file)
+    assert len(shot["frames"]) >= 3
+    for entry in shot["frames"]:
+        t.read_part(os.path.join(out, entry["file"]), "color")
+    failing = job.Job(
+        [job.Step("Export", job.export_command("/nowhere.blend", ["--out", out]))], FOLDER + "/none"
+    )
+    failing.start()
+    while failing.poll():
+        pass
+    assert failing.error, "a failing child is an error with a sentence"
+
+
+PROGRAM = """#!{python}
+import json, os, sys
+words = sys.argv[1:]
+if words == ["--version"]:
+    print("{version}")
+    raise SystemExit
+with open({log!r}, "a") as file:
+    file.write(json.dumps(words) + "\\n")
+if words[0] == "run":
+    out = words[words.index("-o") + 1]
+    os.makedirs(out, exist_ok=True)
+    method = dict(text="noaa", title="No anti-aliasing", family="reference", pooled=dict(psnr=30.0))
+    with open(os.path.join(out, "results.json"), "w") as file:
+        json.dump(dict(methods=[method], pairs=[]), file)
+elif words[0] == "sheet":
+    import base64
+    with open(words[words.index("-o") + 1], "wb") as file:
+        file.write(base64.b64decode({png!r}))
+else:
+    open(words[words.index("-o") + 1], "w").close()
+"""
+PNG = "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="
+
+
+def program(version: str, log: str = "/dev/null") -> str:
+    """A stand-in for aaresolve that notes what it is asked for."""
+    path = os.path.join(t.temporary_folder(), "aaresolve")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(PROGRAM.format(python=sys.executable, version=version, log=log, png=PNG))
+    os.chmod(path, 0o755)
+    return path
+
+
+def preferences():
+    """The add-on's preferences, with the add-on switched on. A new scene takes them away."""
+    addons = bpy.context.preferences.addons
+    if "aa_resolve" not in addons:
+        addons.new().module = "aa_resolve"
+    if not hasattr(bpy.types.Scene, "aa_resolve"):
+        aa_resolve.register()
+    return addons["aa_resolve"].preferences
+
+
+def moving_scene(name: str) -> bpy.types.Scene:
+    """A lit cube on its way, saved."""
+    scene = t.new_scene(32, 18)
+    t.add_camera(scene)
+    t.add_sun(scene).data.angle = 0.1
+    t.key(t.add_object(scene, "Cube"), "location", {1: (-1, 0, 0.5), 11: (1, 0.4, 0.8)})
+    t.save(scene, os.path.join(FOLDER, name))
+    return scene
+
+
+def test_preferences_tell_missing_from_wrong() -> None:
+    """Found with version and place; none, a path that leads nowhere, and another version are told apart."""
+    from aa_resolve.panel import preferences as shown
+
+    wanted = preferences()
+    good, old = program(aa_resolve.ADDON_VERSION), program("0.0.9")
+    told = {}
+    for name, path in (("good", good), ("old", old), ("wrong", "/nowhere/aaresolve"), ("", "")):
+        wanted.resolver = path
+        assert shown.verdict() == ("", "") or shown.wait_for_check() is None
+        bpy.ops.aa_resolve.check_program()
+        told[name] = shown.verdict()
+    found, problem = told["good"]
+    assert aa_resolve.ADDON_VERSION in found and good in found and not problem, told
+    assert "0.0.9" in told["old"][0] and aa_resolve.ADDON_VERSION in told["old"][1], told
+    assert not told["wrong"][0] and "/nowhere/aaresolve" in told["wrong"][1], told
+    if not told[""][0]:
+        assert "not found" in told[""][1] and told[""][1] != told["wrong"][1], told
+
+
+def test_compare_runs_the_chosen() -> None:
+    """Export, run with the parameters of the panel, sheet and report; the ranking is there afterwards."""
+    from aa_resolve.panel import watch
+
+    scene = moving_scene("compare.blend")
+    wanted = preferences()
+    shown = scene.aa_resolve
+    log = os.path.join(t.temporary_folder(), "log")
+    shown.out = os.path.join(FOLDER, "compared")
+    shown.first, shown.last, shown.truth_samples = 1, 2, 2
+    shown.widgets_taaSimplest.set_k = 0.8
+    wanted.resolver = "/nowhere/aaresolve"
+    try:
+        bpy.ops.aa_resolve.compare()
+        raise AssertionError("a program that is not there must be noticed")
+    except RuntimeError as error:
+        assert "/nowhere/aaresolve" in str(error), error
+    wanted.resolver = program(aa_resolve.ADDON_VERSION, log)
+    assert bpy.ops.aa_resolve.compare() == {"FINISHED"}
+    with open(log, encoding="utf-8") as file:
+        asked = [json.loads(line) for line in file]
+    assert [words[0] for words in asked] == ["run", "sheet", "report"], asked
+    assert asked[0][1] == shown.out and asked[0][2:6] == ["-m", "noaa", "-m", "taaSimplest:k=0.8"]
+    facts = watch.look_now(scene)
+    assert facts.outcome.best[0].text == "noaa" and len(facts.outcome.files) == 2, facts
+    assert "sheet.png" in bpy.data.images, "shown where there is a window"
+    assert not bpy.data.is_dirty, "the file is as it was, so that the export resumes"
+
+
+def test_a_stale_estimate_goes() -> None:
+    """An estimate stays while what it was made for stays, and goes with any setting that it depends on."""
+    from aa_resolve.panel import watch
+    from aa_resolve.panel.running import State
+
+    scene = moving_scene("estimate.blend")
+    preferences()
+    shown = scene.aa_resolve
+    shown.out, shown.first, shown.last = os.path.join(FOLDER, "estimated"), 1, 3
+
+    def change_size() -> None:
+        scene.render.resolution_x = 40
+
+    for change in (
+        lambda: setattr(shown, "last", 4),
+        lambda: setattr(shown, "method_karis", True),
+        lambda: setattr(shown, "truth_samples", 17),
+        change_size,
+    ):
+        State.estimate, State.estimate_for = "about 3 s", watch.wish_of(scene)
+        shown.out = shown.out + "_elsewhere"
+        watch.look_now(scene)
+        assert State.estimate, "where the shot lies costs nothing"
+        change()
+        watch.look_now(scene)
+        assert not State.estimate, change
+    assert bpy.ops.aa_resolve.estimate() == {"FINISHED"}
+    watch.look_now(scene)
+    assert "about" in State.estimate and State.result == ""
+
+
+def test_preview_shows_both_lights() -> None:
+    """One frame in the scene's own light and without noise, side by side, labelled; the scene stays as it is."""
+    scene = moving_scene("preview.blend")
+    preferences()
+    sky = bpy.data.worlds.new("Sky")
+    sky.use_nodes = True
+    sky.node_tree.nodes["Background"].inputs["Color"].default_value = (0.0, 0.0, 1.0, 1.0)
+    scene.world = sky
+    scene.view_settings.view_transform = "Standard"
+    scene.render.resolution_x, scene.render.resolution_y = 960, 540
+    scene.frame_set(4)
+    # The sun alone on one side: without the sky's light the side in shadow differs.
+    sky.cycles_visibility.diffuse = False
+    before = set(bpy.data.objects), scene.render.engine, scene.frame_current
+    bpy.data.lights["Sun"].energy = 0.0
+    sky.cycles_visibility.diffuse = True
+    scene.aa_resolve.use_ambient, scene.aa_resolve.ambient = True, (1.0, 0.0, 0.0)
+    assert bpy.ops.aa_resolve.preview_light() == {"FINISHED"}
+    assert (set(bpy.data.objects), scene.render.engine, scene.frame_current) == before
+    image = next(item for item in bpy.data.images if item.name.startswith("aa_resolve_light"))
+    width, height = image.size
+    assert width == 2 * 480 + 6 and height == 270 + 26, (width, height)
+    pixels = np.empty(width * height * 4, np.float32)
+    image.pixels.foreach_get(pixels)
+    pixels = pixels.reshape(height, width, 4)[::-1]
+    label, left, right = pixels[:26], pixels[26:, :480], pixels[26:, 486:]
+    for part in (label[:, :480], label[:, 486:]):
+        assert (part[:, :, 0] > 0.7).mean() > 0.01, "letters"
+        assert (part[:, :, 0] > 0.7).mean() < 0.3
+    assert np.abs(label[:, :480] - label[:, 486:966]).max() > 0.5, "each side has its own label"
+    changed = np.abs(left - right)[:, :, :3].max(-1) > 0.1
+    assert (
+        0.005 < changed.mean() < 0.5
+    ), "the cube is lit by the sky or by the ambient, the sky is the same"
+    row, column = np.argwhere(changed).mean(0).astype(int)
+    assert left[row, column, 2] > left[row, column, 0] + 0.1, "blue light of the sky"
+    assert right[row, column, 0] > right[row, column, 2] + 0.1, "the ambient of the panel"
+
+
+def test_cancel_stops_and_says_so() -> None:
+    """What the Cancel button does; Esc while an animation plays, or beside the Render tab, is let through."""
+    from aa_resolve.panel import job, running
+    from aa_resolve.panel.running import State
+
+    scene = moving_scene("cancel.blend")
+    preferences()
+    shown = scene.aa_resolve
+    shown.out, shown.first, shown.last = os.path.join(FOLDER, "cancelled"), 1, 400
+    assert not bpy.ops.aa_resolve.cancel.poll()
+    folder, blend = job.copy_of_open_file()
+    words = shown.options(shown.out)
+    work = job.Job([job.Step("Export", job.export_command(blend, words))], folder)
+    running.begin(work)
+    assert State.running is work and not bpy.ops.aa_resolve.export.poll()
+    while work.poll() and work.done < 2:
+        pass
+    bpy.ops.wm.read_homefile(use_empty=True)
+    assert State.running is work, "another file is opened, the work goes on"
+    assert bpy.ops.aa_resolve.cancel() == {"FINISHED"}
+    assert State.running is None and "Stopped" in State.result and not os.path.exists(folder)
+    assert not State.failed and work.cancelled
+
+
+def test_disk_caches_are_seen() -> None:
+    """The copy that is exported finds the disk caches beside the original file, and removes nothing of them."""
+    from aa_resolve.panel import job
+
+    moving_scene("cached.blend")
+    cache = os.path.join(FOLDER, "blendcache_cached")
+    os.makedirs(cache)
+    with open(os.path.join(cache, "a.bphys"), "w", encoding="utf-8") as file:
+        file.write("baked")
+    folder, blend = job.copy_of_open_file()
+    seen = os.path.join(folder, "blendcache_scene", "a.bphys")
+    assert os.path.basename(blend) == "scene.blend" and os.path.exists(seen)
+    job.Job([], folder).cancel()
+    assert not os.path.exists(folder) and os.path.exists(os.path.join(cache, "a.bphys"))
+
+
+if __name__ == "__main__":
+    t.main(
+        test_job_reports_and_cancels,
+        test_preferences_tell_missing_from_wrong,
+        test_compare_runs_the_chosen,
+        test_a_stale_estimate_goes,
+        test_preview_shows_both_lights,
+        test_cancel_stops_and_says_so,
+        test_disk_caches_are_seen,
+    )
