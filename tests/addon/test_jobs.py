@@ -151,6 +151,7 @@ def test_compare_runs_the_chosen() -> None:
     except RuntimeError as error:
         assert "/nowhere/aaresolve" in str(error), error
     wanted.resolver = program(aa_resolve.ADDON_VERSION, log)
+    was_dirty = bpy.data.is_dirty  # without a window Blender 4.3 calls a file so that it just saved
     assert bpy.ops.aa_resolve.compare() == {"FINISHED"}
     with open(log, encoding="utf-8") as file:
         asked = [json.loads(line) for line in file]
@@ -159,7 +160,7 @@ def test_compare_runs_the_chosen() -> None:
     facts = watch.look_now(scene)
     assert facts.outcome.best[0].text == "noaa" and len(facts.outcome.files) == 2, facts
     assert "sheet.png" in bpy.data.images, "shown where there is a window"
-    assert not bpy.data.is_dirty, "the file is as it was, so that the export resumes"
+    assert bpy.data.is_dirty == was_dirty, "the file is as it was, so that the export resumes"
 
 
 def test_a_stale_estimate_goes() -> None:

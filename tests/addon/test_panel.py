@@ -93,7 +93,7 @@ def test_settings_of_later_versions() -> None:
     new = types.SimpleNamespace(displacement_method="BOTH", cycles=types.SimpleNamespace())
     assert compat.displacement_method(new) == "BOTH"  # 4.1
     material = bpy.data.materials.new("Displaced")
-    material.cycles.displacement_method = "DISPLACEMENT"
+    t.set_displacement_method(material, "DISPLACEMENT")
     assert compat.displacement_method(material) == "DISPLACEMENT"
 
 

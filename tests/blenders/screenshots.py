@@ -1,29 +1,83 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures of the add-on's panel as a user sees it, in whatever Blender runs this; needs a window, if only Xvfb's.
+"""Pictures of the add-on's panel as a user sees it, without a screen.
 
-    xvfb-run -s "-screen 0 1400x1000x24" env LIBGL_ALWAYS_SOFTWARE=1 \\
-        blender --factory-startup --window-geometry 0 0 1400 1000 -P tests/blenders/screenshots.py -- FOLDER [PROGRAM]
+    BLENDER=/path/to/blender python3 tests/blenders/screenshots.py FOLDER [PROGRAM]
 
-FOLDER gets one PNG per step: the panel as it opens, with parameters of methods unfolded, while a job runs, and, where
-PROGRAM (aaresolve) is given, with results and the window of the sheet; the preview of the light, and the preferences.
+Starts Xvfb (a display in memory) and in it the Blender that BLENDER names (else `blender`), drawing in software, which
+runs this file again. FOLDER gets one PNG per step: the panel as it opens, with parameters of a method unfolded, while a
+job runs, and, where PROGRAM (aaresolve) is given, the window of the sheet and the results; the preview of the light, a
+scene of EEVEE, and the preferences. Ends with 1 where a step fails.
+
+The pictures come from the display's own memory: Blender's operator for screenshots gives black ones without a graphics
+card since 4.0.
 """
 
 from __future__ import annotations
 
 import os
+import struct
+import subprocess
 import sys
 import time
 import traceback
+import zlib
 
-import bpy
+try:
+    import bpy
+except ImportError:  # not in Blender: the part that starts it
+    bpy = None
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-sys.path.insert(0, os.path.join(ROOT, "blender_addon"))
-import aa_resolve  # noqa: E402
-from aa_resolve import panel  # noqa: E402
-from aa_resolve.panel import panels, running, watch  # noqa: E402
+WIDTH, HEIGHT = 1400, 1000
+LIMIT_SECONDS = 900
 
-FOLDER, PROGRAM = [*sys.argv[sys.argv.index("--") + 1 :], ""][:2]
+
+def start(folder: str, program: str) -> int:
+    """Xvfb and a Blender in it; the exit code."""
+    os.makedirs(folder, exist_ok=True)
+    reading, writing = os.pipe()
+    server = subprocess.Popen(
+        ["Xvfb", "-displayfd", str(writing), "-screen", "0", f"{WIDTH}x{HEIGHT}x24", "-fbdir", folder],
+        pass_fds=[writing],
+        stderr=subprocess.DEVNULL,
+    )  # fmt: skip
+    try:
+        os.close(writing)
+        with os.fdopen(reading) as said:
+            number = said.readline().strip()
+        if not number:
+            raise SystemExit("Xvfb does not start")
+        words = [os.environ.get("BLENDER") or "blender", "--factory-startup"]
+        words += ["--window-geometry", "0", "0", str(WIDTH), str(HEIGHT)]
+        words += ["-P", os.path.abspath(__file__), "--", os.path.abspath(folder), program]
+        scripts = os.path.join(os.path.abspath(folder), "scripts")
+        os.makedirs(os.path.join(scripts, "addons"), exist_ok=True)
+        installed = os.path.join(scripts, "addons", "aa_resolve")
+        if not os.path.islink(installed):
+            os.symlink(os.path.join(ROOT, "blender_addon", "aa_resolve"), installed)
+        environment = {
+            **os.environ,
+            "DISPLAY": f":{number}",
+            "LIBGL_ALWAYS_SOFTWARE": "1",
+            "BLENDER_USER_SCRIPTS": scripts,
+        }
+        return subprocess.run(words, env=environment, timeout=LIMIT_SECONDS).returncode
+    finally:
+        server.terminate()
+        server.wait()
+
+
+if bpy is None:
+    if not 2 <= len(sys.argv) <= 3:
+        raise SystemExit(__doc__)
+    raise SystemExit(start(*[*sys.argv[1:], ""][:2]))
+
+import numpy as np  # noqa: E402
+
+from aa_resolve import panel  # noqa: E402
+from aa_resolve.panel import running  # noqa: E402
+
+FOLDER, PROGRAM = sys.argv[sys.argv.index("--") + 1 :]
 SHOT = os.path.join(FOLDER, "shot")
 
 
@@ -54,14 +108,41 @@ def only_our_panels() -> None:
             kind.bl_options = {"DEFAULT_CLOSED"} if closed else set()
 
 
-def picture(name: str, area: bpy.types.Area | None = None, of: bpy.types.Window | None = None):
-    """One screenshot: of an area, or of a whole window."""
-    path = os.path.join(FOLDER, f"{name}.png")
-    shown = of or window()
-    more = {"area": area, "region": area.regions[-1]} if area else {}
-    with bpy.context.temp_override(window=shown, screen=shown.screen, **more):
-        shoot = bpy.ops.screen.screenshot_area if area else bpy.ops.screen.screenshot
-        shoot(filepath=path, check_existing=False)
+def screen() -> np.ndarray:
+    """The display's pixels, H x W x 3 bytes, from the file that Xvfb keeps them in (an X window dump)."""
+    with open(os.path.join(FOLDER, "Xvfb_screen0"), "rb") as file:
+        content = file.read()
+    header = struct.unpack(">25I", content[:100])
+    size, width, height, stride, colors = (header[place] for place in (0, 4, 5, 12, 19))
+    pixels = np.frombuffer(content, np.uint8, stride * height, size + 12 * colors)
+    return pixels.reshape(height, stride // 4, 4)[:, :width, 2::-1]
+
+
+def write_png(path: str, pixels: np.ndarray) -> None:
+    """8-bit RGB."""
+    height, width = pixels.shape[:2]
+    rows = np.concatenate([np.zeros((height, 1), np.uint8), pixels.reshape(height, -1)], 1)
+    with open(path, "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n")
+        for kind, body in (
+            (b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)),
+            (b"IDAT", zlib.compress(rows.tobytes(), 9)),
+            (b"IEND", b""),
+        ):
+            file.write(struct.pack(">I", len(body)) + kind + body)
+            file.write(struct.pack(">I", zlib.crc32(kind + body)))
+
+
+def picture(name: str, area: bpy.types.Area | None = None) -> None:
+    """One PNG: of an area of the first window, or of all there is."""
+    pixels = screen()
+    if area is not None:
+        top = HEIGHT - window().y - area.y - area.height
+        left = window().x + area.x
+        pixels = pixels[top : top + area.height, left : left + area.width]
+    if pixels.max() == 0:
+        raise RuntimeError(f"{name}: nothing was drawn")
+    write_png(os.path.join(FOLDER, f"{name}.png"), pixels)
 
 
 def settled():
@@ -129,7 +210,7 @@ def steps():
         with bpy.context.temp_override(window=window(), area=area):
             bpy.ops.aa_resolve.compare("INVOKE_DEFAULT")
         yield from finished()
-        picture("4_sheet", of=bpy.context.window_manager.windows[-1])
+        picture("4_sheet")
         close_other_windows()
         yield from settled()
         picture("5_results", area)
@@ -137,7 +218,7 @@ def steps():
         bpy.ops.aa_resolve.preview_light("INVOKE_DEFAULT")
     yield from finished()
     yield from settled()
-    picture("6_light", of=bpy.context.window_manager.windows[-1])
+    picture("6_light")
     close_other_windows()
     try:
         scene.render.engine = "BLENDER_EEVEE"
@@ -149,15 +230,14 @@ def steps():
     with bpy.context.temp_override(window=window()):
         bpy.ops.aa_resolve.preferences()
     yield from settled()
-    picture("8_preferences", of=bpy.context.window_manager.windows[-1])
+    picture("8_preferences")
 
 
 def main() -> None:
     os.makedirs(FOLDER, exist_ok=True)
     bpy.context.preferences.view.show_splash = False
-    bpy.context.preferences.addons.new().module = "aa_resolve"
     only_our_panels()
-    aa_resolve.register()
+    bpy.ops.preferences.addon_enable(module="aa_resolve")
     todo = steps()
 
     def go_on() -> float | None:
