@@ -257,6 +257,37 @@ def test_cancel_stops_and_says_so() -> None:
     assert not State.failed and work.cancelled
 
 
+def test_the_panel_says_what_a_shot_lacks() -> None:
+    """Nothing of a shot that is not begun; then what is kept and what is to be rendered, and what would be refused."""
+    from aa_resolve.panel import watch
+
+    scene = moving_scene("added.blend")
+    preferences()
+    shown = scene.aa_resolve
+    shown.out = os.path.join(FOLDER, "added")
+    shown.first, shown.last, shown.truth, shown.truth_samples = 1, 2, "ALL", 2
+    assert watch.look_now(scene).shot.text == ""
+    bpy.ops.wm.save_mainfile()
+    assert bpy.ops.aa_resolve.export() == {"FINISHED"}
+    told = watch.look_now(scene).shot
+    assert not told.refused and "kept: 2 frames" in told.text, told
+    assert "nothing to render" in told.text, told
+    shown.method_karis = True
+    shown.last = 3
+    told = watch.look_now(scene).shot
+    assert "depth" in told.text and "1 frame" in told.text and "1 truth" in told.text, told
+    shown.period = 8
+    told = watch.look_now(scene).shot
+    assert told.refused and "--period was 16 and now is 8" in told.text, told
+    shown.overwrite = True
+    told = watch.look_now(scene).shot
+    assert told.text == "The old shot will be replaced" and not told.refused
+    shown.overwrite, shown.period = False, 16
+    shown.method_smaaS2x, shown.method_rsaa, shown.pattern = True, True, "d3d8"
+    told = watch.look_now(scene).shot
+    assert told.refused and "smaaS2x" in told.text, told
+
+
 def test_disk_caches_are_seen() -> None:
     """The copy that is exported finds the disk caches beside the original file, and removes nothing of them."""
     from aa_resolve.panel import job
@@ -281,5 +312,6 @@ if __name__ == "__main__":
         test_a_stale_estimate_goes,
         test_preview_shows_both_lights,
         test_cancel_stops_and_says_so,
+        test_the_panel_says_what_a_shot_lacks,
         test_disk_caches_are_seen,
     )

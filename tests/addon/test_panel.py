@@ -213,7 +213,7 @@ def test_starts_and_families() -> None:
         assert len(settings.frames) == (known.frames or 250), settings.frames
         assert settings.frames[0] == (7 if known.frames else 1)
         assert settings.resolution == ((480, 270) if known.small else None)
-    assert settings.pattern == "d3d4" and settings.truth_frames == "all"
+    assert settings.pattern == "d3d4" and settings.truth_frames == settings.frames
     assert counts["QUICK"] == 5 and counts["EVERYTHING"] == len(registry.load_methods()) - 1, counts
     bpy.ops.aa_resolve.choose_family(family="temporal", chosen=False)
     assert not set(families()["temporal"]) & set(shown.chosen())

@@ -23,6 +23,7 @@ from ..command_line import file_identity
 _ROOM = os.path.dirname(os.path.abspath(__file__))
 HEADLESS = os.path.join(os.path.dirname(_ROOM), "headless.py")
 _NAME_OF_COPY = "scene"
+_PATIENCE_SECONDS = 1.0  # for a child that is asked to end
 
 
 @dataclass
@@ -144,8 +145,12 @@ class Job:
         """Ends the running child. Finished frames stay valid, an export resumes."""
         self.cancelled = True
         if self._process is not None and self._process.poll() is None:
-            self._process.kill()
-            self._process.wait()
+            self._process.terminate()
+            try:
+                self._process.wait(timeout=_PATIENCE_SECONDS)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()
         self._end()
 
     def _end(self) -> bool:
@@ -179,13 +184,19 @@ def copy_of_open_file() -> tuple[str, str]:
     return folder, path
 
 
+def has_unsaved_changes() -> bool:
+    """True when the open file is not what lies on disk. Without a window there is nobody to change it but scripts, whose
+    changes Blender does not notice, and 4.3 calls every file changed."""
+    return not bpy.data.filepath or bpy.data.is_dirty and not bpy.app.background
+
+
 def identity_of_open_file() -> str | None:
     """Identity by which an export resumes: the content of the saved file; None while changes are unsaved.
 
     Without one the copy's own bytes decide, which differ each time: a scene that may have changed never continues an
     old export unnoticed."""
     path = bpy.data.filepath
-    if path and not bpy.data.is_dirty and os.path.exists(path):
+    if not has_unsaved_changes() and os.path.exists(path):
         return file_identity(path)
     return None
 

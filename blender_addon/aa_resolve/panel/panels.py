@@ -79,6 +79,7 @@ class AA_RESOLVE_PT_main(_Panel, bpy.types.Panel):
         if State.running is not None:
             _draw_running(layout, context)
             return
+        draw_text(layout, context, facts.shot.text, icon="ERROR" if facts.shot.refused else "INFO")
         column = layout.column(align=True)
         large = column.row()
         large.scale_y = 1.3

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import bpy
 
 from ..scene.light_sources import noise_causes
-from . import look, outcome, running
+from . import look, outcome, running, shot
 from .running import State
 
 _PERIOD_SECONDS = 0.5
@@ -28,10 +28,12 @@ class Facts:
     changes: tuple[str, ...] = ()  # of the light
     noise: tuple[str, ...] = ()  # why light as it is needs samples
     engine: str = ""
+    shot: shot.Told = shot.Told()
     outcome: outcome.Outcome | None = None
 
 
 _known: dict[str, Facts] = {}
+_shots: dict[str, tuple[tuple, shot.Told]] = {}  # by folder: stamp and wish, what was told
 _outcomes: dict[str, tuple[tuple, outcome.Outcome | None]] = {}  # by folder: stamp, what was read
 _wishes: dict[str, tuple] = {}  # what the panel said when the scene was looked at
 _looked = 0.0  # when the panel was drawn last
@@ -66,21 +68,31 @@ def look_now(scene: bpy.types.Scene) -> Facts:
     settings = scene.aa_resolve
     _wishes[scene.name] = _shown(scene)
     without_noise = settings.lighting == "noise-free"
-    shot = running.shot_folder(scene)
+    folder = running.shot_folder(scene)
     _known[scene.name] = Facts(
         tuple(look.changes_without_noise(scene)) if without_noise else (),
         () if without_noise else tuple(noise_causes(scene, settings.samples)),
         look.other_engine(scene),
-        _outcome_of(shot) if shot else None,
+        _shot_in(scene, folder) if folder else shot.Told(),
+        _outcome_of(folder) if folder else None,
     )
     return _known[scene.name]
 
 
-def _outcome_of(shot: str) -> outcome.Outcome | None:
-    folder = running.results_folder(shot)
-    stamp = outcome.stamp_of(folder, shot)
+def _shot_in(scene: bpy.types.Scene, folder: str) -> shot.Told:
+    if State.running is not None:  # it changes with every picture
+        return _shots.get(folder, ((), shot.Told()))[1]
+    stamp = (*shot.stamp_of(folder), *wish_of(scene), scene.aa_resolve.overwrite)
+    if _shots.get(folder, ((), None))[0] != stamp:
+        _shots[folder] = stamp, shot.look(scene, folder)
+    return _shots[folder][1]
+
+
+def _outcome_of(shot_folder: str) -> outcome.Outcome | None:
+    folder = running.results_folder(shot_folder)
+    stamp = outcome.stamp_of(folder, shot_folder)
     if _outcomes.get(folder, ((), None))[0] != stamp:
-        _outcomes[folder] = stamp, outcome.read(folder, shot)
+        _outcomes[folder] = stamp, outcome.read(folder, shot_folder)
     return _outcomes[folder][1]
 
 
@@ -130,4 +142,5 @@ def stop() -> None:
         bpy.app.timers.unregister(_tick)
     _known.clear()
     _wishes.clear()
+    _shots.clear()
     _outcomes.clear()
