@@ -89,6 +89,13 @@ def pass_switches(owner: bpy.types.bpy_struct) -> list[str]:
     ]
 
 
+def colors_are_albedos() -> bool:
+    """True where Cycles' colour passes add up to what a surface reflects of uniform light: since 4.0, whose Principled
+    shader shares the light among its layers. Before, its glossy colour is white and its diffuse one above 1.
+    """
+    return VERSION >= (4, 0, 0)
+
+
 def emission_color(node: bpy.types.Node) -> bpy.types.NodeSocket | None:
     """The socket of a Principled BSDF that colours its emission."""
     return node.inputs.get("Emission") or node.inputs.get("Emission Color")  # the latter since 4.0
