@@ -6,7 +6,7 @@ light free of noise at one sample per pixel, so that what is measured is aliasin
 
 * one sun with angle 0 (a delta light: every shadow ray agrees) and no bounces;
 * the ambient part is emission = albedo * ambient, seen by camera rays only, because light from the world is
-  always sampled at random. The emission is no light source (``sample_as_light`` off).
+  always sampled at random. The emission is no light source.
 
 Units: metres, z up. Colours are linear BT.709.
 """
@@ -173,7 +173,10 @@ def material(
     result = bpy.data.materials.new(name)
     result.use_nodes = True
     result.diffuse_color = (*albedo, 1.0)
-    result.cycles.sample_as_light = False
+    if hasattr(result.cycles, "emission_sampling"):  # since 3.5
+        result.cycles.emission_sampling = "NONE"
+    else:
+        result.cycles.sample_as_light = False
     tree = result.node_tree
     tree.nodes.clear()
     output = tree.nodes.new("ShaderNodeOutputMaterial")
@@ -489,10 +492,24 @@ def key_linear(
     for frame, value in keys:
         setattr(target, path, value)
         target.keyframe_insert(path, frame=frame)
-    for curve in target.animation_data.action.fcurves:
+    for curve in curves_of(target):
         curve.extrapolation = "LINEAR"
         for point in curve.keyframe_points:
             point.interpolation = "LINEAR"
+
+
+def curves_of(target: bpy.types.Object) -> list[bpy.types.FCurve]:
+    """F-curves of the action that animates an object."""
+    action = target.animation_data.action
+    if hasattr(action, "fcurves"):
+        return list(action.fcurves)
+    return [  # since 5.0 actions have layers alone
+        curve
+        for layer in action.layers
+        for strip in layer.strips
+        for bag in strip.channelbags
+        for curve in bag.fcurves
+    ]
 
 
 def run(
