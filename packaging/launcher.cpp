@@ -13,6 +13,7 @@
 #include <link.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -94,8 +95,7 @@ int main(int, char** argv) {
     char program[PATH_MAX];
     std::snprintf(program, sizeof program, "%s/libexec/aaresolve", root);
     execv(program, argv);
-    std::fprintf(stderr, "error: %s: cannot be started: ", program);
-    std::perror(nullptr);
-    std::fprintf(stderr, "unpack the whole bundle again\n");
+    std::fprintf(stderr, "error: %s: cannot be started (%s); unpack the whole bundle again\n", program,
+                 std::strerror(errno));
     return kUnusable;
 }

@@ -4,7 +4,8 @@
 
 The program in Debian 12, 13 and sid without a C++ library: from a shot to results, contact sheet and report, with the
 bits of the program that was built; with the driver of the newest Debian. The zip with the program in Debian 13 and sid
-with Blender and numpy (Debian's own Blender has none) and no other package, and in this machine's Blender. A system that cannot be had is named, and skipped.
+with Blender, numpy (which Debian's own Blender lacks there) and no other package, and in this machine's Blender. A
+system that cannot be had is named, and skipped.
 """
 
 from __future__ import annotations
@@ -168,6 +169,16 @@ class Program(BundleTest):
             # The launcher has had a look at the system's; the program comes last.
             started = re.findall(r"calling init: (\S+/libstdc\+\+\.so\.6)", done.stderr)
             self.assertEqual(started[-1], f"{taken}/libstdc++.so.6")
+
+    def test_a_bundle_that_is_not_whole(self) -> None:
+        (self.bundle / "libexec/aaresolve").unlink()
+        done = subprocess.run(
+            [self.bundle / "bin/aaresolve", "--version"], capture_output=True, text=True
+        )
+        self.assertEqual(done.returncode, 3, last_words(done))
+        self.assertRegex(
+            done.stderr, "^error: .*libexec/aaresolve: .*unpack the whole bundle again\n$"
+        )
 
     def test_every_part_has_its_licence(self) -> None:
         licences = self.bundle / "share/doc/aaresolve/licences"
