@@ -3,8 +3,9 @@
     python3 tests/blenders/run.py PROGRAM [-j 2] [--suites trixie sid host] [--only light scenes e2e.import]
 
 In each suite (`host`: the Blender of BLENDER or PATH): the add-on's tests; the scenes of `make demo` in small, exported and
-checked; the whole-program tests that start a Blender. Blender alone runs in the other Debian, the rest on this machine.
-A suite that cannot be had is named, with the reason, and skipped.
+checked; the whole-program tests that start a Blender; and one scene compared with what the host's Blender exports of it.
+Blender runs in the other Debian with what it starts itself, the rest on this machine. A suite that cannot be had is
+named, with the reason, and skipped.
 """
 
 from __future__ import annotations
@@ -33,9 +34,14 @@ SCRIPTS = (
     *in_blender.NAMES,
     *(f"scenes.{name}" for name in SCENES),
     *(f"e2e.{name}" for name in WHOLE_PROGRAM),
+    "agree",
 )
 PASSES = "albedo,depth,normal,object,motion,subsamples,edges,segments"
+STREET_PASSES = "depth,normal,object,albedo,motion,edges"
+HEADLESS = ROOT / "blender_addon/aa_resolve/headless.py"
+FAIL = ("--python-exit-code", "9")  # before -P, or it has no effect
 RAN = re.compile(r"^Ran (\d+) tests? in", re.MULTILINE)
+AGREES = re.compile(r"^(ok|WRONG) ", re.MULTILINE)
 NOT_PASSED = re.compile(r"(?:failures|errors|skipped)=(\d+)")
 
 
@@ -53,12 +59,20 @@ def whole(_text: str) -> tuple[int, int]:
     return 1, 1
 
 
+def counted_by_agree(text: str) -> tuple[int, int]:
+    words = AGREES.findall(text)
+    return words.count("ok"), len(words)
+
+
 class Blender:
     """One Blender and where its scripts' words go."""
 
     def __init__(self, name: str, path: str, program: Path, logs: Path) -> None:
         self.name, self.path, self.program, self.logs = name, path, program, logs / name
         self.environment = {**in_blender.environment(), "BLENDER": path}
+        bundles = sorted(program.parent.glob("bundle/aaresolve-*/bin/aaresolve"))
+        if name != "host" and bundles:
+            self.environment["AA_PROGRAM_IN_BLENDER"] = str(bundles[-1])
         told = subprocess.run([path, "--version"], capture_output=True, text=True).stdout
         found = re.search(r"^Blender (\S+)", told, re.MULTILINE)
         if not found:
@@ -67,37 +81,55 @@ class Blender:
 
     def run(self, script: str) -> in_blender.Outcome:
         kind, _, name = script.rpartition(".")
-        folder = Path(tempfile.mkdtemp(prefix="aa_blenders_")) if kind == "scenes" else None
+        folder = Path(tempfile.mkdtemp(prefix="aa_blenders_"))
         try:
             if kind == "scenes":
-                assert folder
                 commands, count = self.scene(name, folder), whole
             elif kind == "e2e":
                 test = ROOT / f"tests/e2e/{name}_test.py"
                 commands, count = [[sys.executable, test, self.program, ROOT]], counted_by_unittest
+            elif script == "agree":
+                commands, count = self.agree(folder), counted_by_agree
             else:
-                commands, count = (
-                    [in_blender.command(name, self.path)],
-                    in_blender.counted_by_support,
-                )
+                commands = [in_blender.command(name, self.path)]
+                count = in_blender.counted_by_support
             return in_blender.run_logged(
                 script, commands, self.log(script), count, env=self.environment
             )
         finally:
-            if folder:
-                shutil.rmtree(folder, ignore_errors=True)
+            shutil.rmtree(folder, ignore_errors=True)
+
+    def agree(self, folder: Path) -> list[list[object]]:
+        """The street by the host's Blender and by this one."""
+        # Python with the modules of the host's Blender.
+        python = shutil.which("python3", path=self.environment["PATH"])
+        agree = ROOT / "tests/blenders/agree.py"
+        shots = [folder / "host", folder / "here"]
+        return [
+            *self.street(in_blender.blender(), shots[0]),
+            *self.street(self.path, shots[1]),
+            [python, agree, *shots],
+        ]
+
+    def street(self, blender: str, shot: Path) -> list[list[object]]:
+        blend = shot.with_suffix(".blend")
+        street = ROOT / "tests/blenders/street.py"
+        options = ["--for", "taaSimplest,rsaa", "--passes", STREET_PASSES, "--frames", "1-4"]
+        options += ["--color-type", "float", "--truth-frames", "none"]
+        return [
+            [blender, "-b", "--factory-startup", *FAIL, "-P", street, "--", blend],
+            [blender, "-b", blend, *FAIL, "-P", HEADLESS, "--", "--out", shot, *options],
+        ]
 
     def scene(self, name: str, folder: Path) -> list[list[object]]:
         """Build, export with every pass, check."""
         blend, shot = folder / "scene.blend", folder / "shot"
-        headless = ROOT / "blender_addon/aa_resolve/headless.py"
-        end = ["--python-exit-code", "9", "-P"]
         options = ["--for", "uncharted", "--passes", PASSES, "--resolution", "160", "90"]
         frames = ["--frames", "1-3", "--truth-samples", "16"]
-        start = [self.path, "-b", "--factory-startup", *end, ROOT / f"scenes/{name}.py"]
+        build = [*FAIL, "-P", ROOT / f"scenes/{name}.py", "--", "--out", blend]
         return [
-            [*start, "--", "--out", blend],
-            [self.path, "-b", blend, *end, headless, "--", "--out", shot, *options, *frames],
+            [self.path, "-b", "--factory-startup", *build],
+            [self.path, "-b", blend, *FAIL, "-P", HEADLESS, "--", "--out", shot, *options, *frames],
             [self.program, "check", shot],
         ]
 

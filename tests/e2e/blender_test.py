@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import struct
 import zlib
 from pathlib import Path
@@ -11,6 +12,8 @@ from pathlib import Path
 from program import PROGRAM, ROOT, ProgramTest, main, run_blender
 
 
+# A Blender of another Debian cannot start what was built for this one: make bundle makes one that it can.
+PROGRAM_IN_BLENDER = os.environ.get("AA_PROGRAM_IN_BLENDER") or str(PROGRAM)
 ALL_PASSES = "albedo,depth,normal,object,motion,subsamples,edges,segments"
 OBJ = """# as other programs write it: y up, quads, groups, two materials, texture coordinates
 mtllib model.mtl
@@ -180,7 +183,7 @@ sys.path.insert(0, {str(ROOT / "blender_addon")!r})
 import aa_resolve
 from aa_resolve.panel import job, operators
 aa_resolve.register()
-job.find_resolver = lambda _preferred: {str(PROGRAM)!r}
+job.find_resolver = lambda _preferred: {PROGRAM_IN_BLENDER!r}
 settings = bpy.context.scene.aa_resolve
 settings.out, settings.first, settings.last = {str(shot)!r}, 1, 3
 settings.use_resolution, settings.resolution = True, (96, 54)
