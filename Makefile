@@ -60,7 +60,7 @@ test-addon:
 	@python3 tests/addon/in_blender.py -j $(JOBS) $(ONLY)
 
 # Without the right to install mmdebstrap the script says that it is missing, and skips.
-test-blenders: program
+test-blenders: bundle
 	@CI_PACKAGES=mmdebstrap .ci/bootstrap || true
 	@python3 tests/blenders/run.py $(BUILD)/aaresolve -j $(JOBS) --suites $(SUITES) --only $(ONLY)
 

@@ -102,7 +102,7 @@ def emission_color(node: bpy.types.Node) -> bpy.types.NodeSocket | None:
 
 
 def panorama_settings(camera: bpy.types.Camera):
-    """Owner of ``panorama_type``: Cycles' own settings before 4.4, the camera since."""
+    """Owner of ``panorama_type``: Cycles' own settings in 3.4, the camera in 4.3 and since."""
     return camera if hasattr(camera, "panorama_type") else camera.cycles
 
 

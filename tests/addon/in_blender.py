@@ -151,18 +151,19 @@ def main() -> int:
     parser.add_argument("-j", "--jobs", type=int, default=1, help="scripts at a time")
     parser.add_argument("--logs", type=Path, help="folder for what each says")
     a = parser.parse_args()
-    for name in a.names:
+    names = [name for word in a.names for name in word.split(",") if name]
+    for name in names:
         if name not in NAMES:
             parser.error(f"no script test_{name}.py; there are {', '.join(NAMES)}")
-    if len(a.names) == 1:
+    if len(names) == 1:
         version()
-        return subprocess.run(command(a.names[0]), env=environment()).returncode
+        return subprocess.run(command(names[0]), env=environment()).returncode
 
     of_blender = version()
     logs = a.logs or Path(tempfile.mkdtemp(prefix="aa_addon_logs_"))
     with ThreadPoolExecutor(a.jobs) as pool:
         outcomes = []
-        for outcome in pool.map(lambda name: run_script(name, logs), a.names or NAMES):
+        for outcome in pool.map(lambda name: run_script(name, logs), names or NAMES):
             outcomes.append(outcome)
             show(outcome, of_blender, logs / f"{outcome.name}.log")
     print(f"\n| Blender | {' | '.join(o.name for o in outcomes)} |")

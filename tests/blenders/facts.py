@@ -14,6 +14,7 @@ import glob
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 import traceback
@@ -23,6 +24,7 @@ from typing import Callable
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "addon"))
 import support as t  # noqa: E402
 from support import bpy, np, oiio  # noqa: E402
+from aa_resolve import compat  # noqa: E402
 
 WIDTH, HEIGHT = 96, 54
 
@@ -41,10 +43,19 @@ class Fact:
 FACTS: list[Fact] = []
 
 
+def check_places(depends: str) -> None:
+    """A place that is named must be there."""
+    for name in re.findall(r"\bcompat\.(\w+)", depends):
+        assert hasattr(compat, name), f"compat.py has no {name}"
+    for path in re.findall(r"\b\w+/\w+\.py", depends):
+        assert os.path.exists(os.path.join(t.ROOT, "blender_addon/aa_resolve", path)), path
+
+
 def fact(group: str, question: str, depends: str, decides: bool = False):
     """Enters a function into the table; `decides`: the exporter would be another one if it were otherwise."""
 
     def enter(measure: Callable[[], str]) -> Callable[[], str]:
+        check_places(depends)
         FACTS.append(Fact(group, question, depends, decides, measure))
         return measure
 
@@ -1050,7 +1061,7 @@ def alpha_threshold() -> str:
     return ", ".join(share_of_front(alpha) for alpha in (1.0, 0.7, 0.3, 0.0))
 
 
-@fact("data", "smooth by angle", "compat.shading_limits")
+@fact("data", "smooth by angle", "compat.corner_normals")
 def auto_smooth() -> str:
     plain_scene()
     mesh = bpy.data.meshes.new("M")

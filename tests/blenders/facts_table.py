@@ -79,6 +79,10 @@ def main() -> int:
         except debian.CannotBeHad as reason:
             sys.exit(f"facts: {suite} cannot be had: {reason}")
         columns.append(measured(path))
+    for version, facts in columns:
+        for entry in facts:
+            if entry["value"].startswith("not measured"):
+                sys.exit(f"facts: {version}: {entry['question']}: {entry['value']}")
     versions = ", ".join(version for version, _facts in columns)
     said = f"Measured on {datetime.date.today()} in Blender {versions}.\n{table(columns)}\n"
     if a.print:
