@@ -648,9 +648,16 @@ def noise_sun() -> str:
     return noise(("SUN", {"angle": 0.0}))
 
 
-@fact("light", "noise at 1 sample: area light of the least size", LIGHTS)
+@fact(
+    "light", "noise at 1 sample: round area light of 1e-6 m", LIGHTS + ": _POINT_SIZE", decides=True
+)
 def noise_area() -> str:
-    return noise(("AREA", {"size": 0.0}))
+    return noise(("AREA", {"size": 1e-6, "shape": "DISK"}))
+
+
+@fact("light", "area light of size 0", LIGHTS + ": _POINT_SIZE is not 0")
+def area_of_nothing() -> str:
+    return "dark" if noise(("AREA", {"size": 0.0})) == "no light at all" else "shines"
 
 
 @fact("light", "noise at 1 sample: area light of 1 m", LIGHTS)
@@ -722,6 +729,15 @@ def power_disk() -> str:
     return against_formula("AREA", wanted, samples=256, energy=100.0, size=0.1, shape="DISK")
 
 
+@fact("light", "areas of 1e-6 m, round and square, through one of 0.1 m", LIGHTS + ": round")
+def power_tiny_area() -> str:
+    found = []
+    for shape in ("DISK", "SQUARE"):
+        large = float(against_formula("AREA", 1.0, samples=256, energy=1000.0, size=0.1))
+        found.append(against_formula("AREA", large, energy=1000.0, size=1e-6, shape=shape))
+    return ", ".join(value if float(value) < 2 else "thousands" for value in found)
+
+
 @fact("light", "point of power P and radius 0.1 m at d, through P/(4 pi^2 d^2)", LIGHTS)
 def power_sphere() -> str:
     wanted = 100.0 / (4 * math.pi**2 * 4)
@@ -733,7 +749,7 @@ def power_sun() -> str:
     return against_formula("SUN", 3.0 / math.pi, energy=3.0, angle=0.0)
 
 
-@fact("light", "properties of a light that older ones lack", LIGHTS)
+@fact("light", "properties of a light that older ones lack", "compat.is_normalized")
 def light_properties() -> str:
     plain_scene()
     light = bpy.data.lights.new("Point", "POINT")
@@ -786,7 +802,7 @@ def sky_picture() -> str:
 @fact(
     "light",
     "material keeps its emission from being sampled as a light",
-    "compat.set_no_light_sampling",
+    "compat.light_sampling_off",
 )
 def emission_sampling() -> str:
     plain_scene()
@@ -1070,7 +1086,7 @@ def auto_smooth() -> str:
     return f"property of the mesh: {words}; modifier: {'yes' if operator else 'no'}"
 
 
-@fact("data", "adaptive subdivision: its owner", "scene/suitability.py")
+@fact("data", "adaptive subdivision: its owner", "compat.is_diced")
 def adaptive() -> str:
     scene = plain_scene()
     item = t.add_object(scene, "Box")
@@ -1119,7 +1135,7 @@ def sequencer() -> str:
     return has(editor, "strips_all", "sequences_all")
 
 
-@fact("data", "Grease Pencil: types of object", "scene/suitability.py")
+@fact("data", "Grease Pencil: types of object", "scene/feature_rows.py")
 def grease_pencil() -> str:
     items = bpy.types.Object.bl_rna.properties["type"].enum_items
     return ", ".join(i.identifier for i in items if "PENCIL" in i.identifier) or "none"
@@ -1156,6 +1172,29 @@ def defaults() -> str:
     cycles = bpy.context.scene.cycles
     tree = getattr(cycles, "use_light_tree", "no such")
     return f"{cycles.samples}, {cycles.use_adaptive_sampling}, {cycles.use_denoising}, {tree}"
+
+
+@fact("data", "sequences of samples", "compat.sampling_pattern")
+def patterns() -> str:
+    cycles, found = plain_scene().cycles, []
+    for name in ("SOBOL", "PROGRESSIVE_MULTI_JITTER", "TABULATED_SOBOL", "BLUE_NOISE", "AUTOMATIC"):
+        try:
+            cycles.sampling_pattern = name
+            found.append(name)
+        except TypeError:
+            pass
+    return ", ".join(found)
+
+
+@fact("data", "a part of all samples", "compat.samples_from")
+def subset() -> str:
+    return has(plain_scene().cycles, "sample_offset", "use_sample_subset")
+
+
+@fact("data", "world of a view layer", "compat.world_of")
+def layer_world() -> str:
+    plain_scene()
+    return has(bpy.context.view_layer, "world_override")
 
 
 @fact("data", "denoising on in a render", "scene/rendering.py: denoising is off", decides=True)

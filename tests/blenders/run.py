@@ -46,12 +46,12 @@ NOT_PASSED = re.compile(r"(?:failures|errors|skipped)=(\d+)")
 
 
 def counted_by_unittest(text: str) -> tuple[int, int]:
-    """A skipped test has not passed."""
+    """A skipped test has not passed; of one test several parts may fail."""
     ran = RAN.findall(text)
     if not ran:
         return 0, 0
     bad = sum(map(int, NOT_PASSED.findall(text[text.rindex("\nRan ") :])))
-    return int(ran[-1]) - bad, int(ran[-1])
+    return max(int(ran[-1]) - bad, 0), int(ran[-1])
 
 
 def whole(_text: str) -> tuple[int, int]:

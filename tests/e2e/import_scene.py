@@ -82,6 +82,8 @@ layer.use_pass_cryptomatte_object = True
 layer.cycles.denoising_store_passes = True
 bpy.ops.wm.save_as_mainfile(filepath=blend)
 
+if hasattr(scene.render.image_settings, "media_type"):
+    scene.render.image_settings.media_type = "MULTI_LAYER_IMAGE"
 scene.render.image_settings.file_format = "OPEN_EXR_MULTILAYER"
 scene.render.image_settings.color_depth = "32"
 # 64: the edges of so small a truth are registered to 0.15 px only where it is quiet, in every Blender.
