@@ -89,6 +89,15 @@ def pass_switches(owner: bpy.types.bpy_struct) -> list[str]:
     ]
 
 
+def render_in_rec709() -> str | None:
+    """Lets the open file compute with the primaries of BT.709; the colour space that it had before, if another."""
+    space = getattr(getattr(bpy.data, "colorspace", None), "working_space", "Linear Rec.709")
+    if space == "Linear Rec.709":  # all files before 5.0
+        return None
+    bpy.ops.wm.set_working_color_space(working_space="Linear Rec.709", convert_colors=True)
+    return space
+
+
 def colors_are_albedos() -> bool:
     """True where Cycles' colour passes add up to what a surface reflects of uniform light: since 4.0, whose Principled
     shader shares the light among its layers. Before, its glossy colour is white and its diffuse one above 1.

@@ -308,6 +308,22 @@ def test_ambient_of_a_varying_world() -> None:
     assert np.allclose(shot["color"]["ambient"], 0.5, atol=0.01), shot["color"]["ambient"]
 
 
+def test_exposure_of_the_film_scales_everything() -> None:
+    """Light, emission, background and the ambient that stands for the world."""
+    pictures = []
+    for exposure in (1.0, 2.0):
+        scene = room((0.2, 0.3, 0.5))
+        scene.cycles.film_exposure = exposure
+        for kind, location, energy, values in SOFT[:2]:
+            add_light(scene, kind, location, energy, **values)
+        out = os.path.join(t.temporary_folder(), "s")
+        t.export(out, "--frames", "1", "--truth-frames", "none")
+        color = t.read_part(os.path.join(out, "frames/000001.exr"), "color")
+        pictures.append(t.stacked(color, "R G B").astype(np.float64))
+    error = np.abs(pictures[1] / pictures[0] - 2).max()
+    assert error < 1e-4, error
+
+
 def test_world_of_the_view_layer() -> None:
     """A view layer's own world gives the ambient light and the background."""
     if "world_override" not in bpy.types.ViewLayer.bl_rna.properties:
@@ -333,5 +349,6 @@ if __name__ == "__main__":
         test_light_linking,
         test_a_portal_does_not_shine,
         test_ambient_of_a_varying_world,
+        test_exposure_of_the_film_scales_everything,
         test_world_of_the_view_layer,
     )

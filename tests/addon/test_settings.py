@@ -40,6 +40,34 @@ def use_everything(scene, camera) -> None:
     scene.view_settings.exposure, scene.view_settings.gamma = 3.0, 0.5
     render.use_stamp = True
     scene.view_layers[0].samples = 7
+    switches = {  # what some versions have
+        cycles: {
+            "use_guiding": True,
+            "use_pixel_jitter": True,
+            "use_sample_subset": True,
+            "sample_offset": 7,
+            "sample_subset_length": 3,
+            "scrambling_distance": 0.2,
+            "auto_scrambling_distance": True,
+            "use_light_tree": False,
+            "direct_light_sampling_type": "FORWARD_PATH_TRACING",
+        },
+        render: {"use_texture_cache": True, "use_auto_generate_texture_cache": False},
+    }
+    for owner, values in switches.items():
+        for name, value in values.items():
+            if hasattr(owner, name):
+                setattr(owner, name, value)
+    for pattern in ("SOBOL", "SOBOL_BURLEY", "BLUE_NOISE"):
+        try:
+            cycles.sampling_pattern = pattern
+        except TypeError:
+            pass  # not in this version
+    layer = scene.view_layers[0]
+    for owner in (layer, layer.cycles):
+        for name in owner.bl_rna.properties.keys():
+            if name.startswith(("use_pass_", "pass_debug_", "denoising_pass_")):
+                setattr(owner, name, True)
     tree = t.compositor_tree(scene)
     layers, invert = tree.nodes.new("CompositorNodeRLayers"), tree.nodes.new("CompositorNodeInvert")
     tree.links.new(layers.outputs["Image"], invert.inputs["Color"])
@@ -72,6 +100,55 @@ def test_nothing_of_a_production_render_is_left() -> None:
         assert pictures[0][name] == pictures[1][name], f"{name} differs"
     for word in ("motion blur", "depth of field", "denoiser", "compositor", "Freestyle"):
         assert word in notes[1] and word not in notes[0].replace("denoiser", ""), (word, notes)
+
+
+def test_halves_of_a_truth_share_no_sample() -> None:
+    """Cycles puts its first sample of every pixel at the centre, whatever the seed; the truth begins after it."""
+    scene = t.new_scene(32, 32)
+    camera = t.add_camera(scene, (0, -10, 0), (0, 0, 0))
+    camera.data.type, camera.data.ortho_scale = "ORTHO", 32.0
+    mesh = bpy.data.meshes.new("Wall")
+    mesh.from_pydata([(-40, 0, -40), (40, 0, -40), (40, 0, 40), (-40, 0, 40)], [], [(0, 1, 2, 3)])
+    material = bpy.data.materials.new("Gradient")
+    material.use_nodes = True
+    tree = material.node_tree
+    tree.nodes.clear()
+    window = tree.nodes.new("ShaderNodeTexCoord").outputs["Window"]
+    emission = tree.nodes.new("ShaderNodeEmission")
+    output = tree.nodes.new("ShaderNodeOutputMaterial")
+    tree.links.new(window, emission.inputs["Color"])
+    tree.links.new(emission.outputs[0], output.inputs["Surface"])
+    mesh.materials.append(material)
+    t.add_object(scene, "Wall", mesh)
+    _, out = exported("--frames", "1", "--truth-samples", "1", "--jitter", "none")
+    path = os.path.join(out, "truth/000001.exr")
+    x = (np.arange(32) + 0.5) / 32
+    a, b = (32 * (t.read_part(path, half)["R"].astype(np.float64) - x) for half in "ab")
+    for offsets in (a, b):  # pixels, from the centres
+        assert np.abs(offsets).max() < 0.51 and 0.2 < offsets.std() < 0.35, offsets.std()
+        assert (np.abs(offsets) < 1e-3).mean() < 0.05, "samples at the centre"
+    assert (
+        abs(np.corrcoef(a.ravel(), b.ravel())[0, 1]) < 0.2
+    ), "samples of the halves belong together"
+
+
+def test_working_space_of_the_file() -> None:
+    """A file that computes in ACEScg is exported with the same colours, and the shot says so."""
+    if not hasattr(bpy.data, "colorspace"):
+        return  # before 5.0
+    shown = []
+    for space in ("Linear Rec.709", "ACEScg"):
+        scene, _ = moving_cube()
+        bpy.data.objects["Sun"].data.color = (1.0, 0.5, 0.25)
+        bpy.ops.wm.set_working_color_space(working_space=space, convert_colors=True)
+        shot, out = exported("--frames", "3", "--passes", "albedo", "--truth-frames", "none")
+        assert ("ACEScg" in " ".join(shot["notes"])) == (space == "ACEScg"), shot["notes"]
+        path = os.path.join(out, "frames/000003.exr")
+        color = t.stacked(t.read_part(path, "color"), "R G B")
+        albedo = t.stacked(t.read_part(path, "albedo"), "albedo.R albedo.G albedo.B")
+        shown.append(np.concatenate([color, albedo]))
+    assert np.abs(shown[0] - shown[1]).max() < 1e-4, np.abs(shown[0] - shown[1]).max()
+    assert np.abs(albedo.max(axis=(0, 1)) - (0.3, 0.5, 0.7)).max() < 1e-4, albedo.max(axis=(0, 1))
 
 
 def test_one_of_two_view_layers() -> None:
@@ -232,6 +309,8 @@ def test_light_as_it_is() -> None:
 if __name__ == "__main__":
     t.main(
         test_nothing_of_a_production_render_is_left,
+        test_halves_of_a_truth_share_no_sample,
+        test_working_space_of_the_file,
         test_one_of_two_view_layers,
         test_displacement_and_cutouts_reach_the_subsamples,
         test_what_was_left_out_is_one_line,

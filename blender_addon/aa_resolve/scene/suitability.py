@@ -26,6 +26,12 @@ def refuse_unsuitable(
     notes = []
     if not compat.is_cycles_available():
         raise SceneError("Cycles is not enabled: switch on the add-on 'Cycles Render Engine'")
+    space = compat.render_in_rec709()
+    if space:
+        notes.append(
+            f"rendered in linear BT.709, which a shot holds; the file computes in {space}, where saturated light and "
+            "colours multiply to others"
+        )
     render = scene.render
     if render.use_multiview:
         raise SceneError(
