@@ -396,18 +396,11 @@ def test_meshes_made_by_nodes() -> None:
         assert len(shared) == (0 if material else 1), shot["notes"]
 
 
-def test_deforming_nodes() -> None:
-    """Nodes that move all points: by the scene's time and, where Blender has it, by a simulation."""
-
-    def moved(points, _name):
-        return points - np.array((0.1, 0.0, 0.0))
-
-    scene, _ = stage()
-    item = t.add_object(scene, "Shape", None, (0.4, -1, 0.5))
+def move_by_time(item: bpy.types.Object) -> None:
+    """Gives an object nodes that move its points by 0.1 along x a frame."""
     tree = t.geometry_group("Move")
-    place, time = tree.nodes.new("GeometryNodeSetPosition"), tree.nodes.new(
-        "GeometryNodeInputSceneTime"
-    )
+    place = tree.nodes.new("GeometryNodeSetPosition")
+    time = tree.nodes.new("GeometryNodeInputSceneTime")
     times, vector = tree.nodes.new("ShaderNodeMath"), tree.nodes.new("ShaderNodeCombineXYZ")
     times.operation, times.inputs[1].default_value = "MULTIPLY", 0.1
     tree.links.new(time.outputs["Frame"], times.inputs[0])
@@ -416,7 +409,18 @@ def test_deforming_nodes() -> None:
     tree.links.new(tree.nodes["Start"].outputs[0], place.inputs["Geometry"])
     tree.links.new(place.outputs[0], tree.nodes["End"].inputs[0])
     item.modifiers.new("Move", "NODES").node_group = tree
-    check(scene, "moved by nodes", {"Shape": moved})
+
+
+def moved_by_time(points: np.ndarray, _name: str) -> np.ndarray:
+    return points - np.array((0.1, 0.0, 0.0))
+
+
+def test_deforming_nodes() -> None:
+    """Nodes that move all points: by the scene's time and, where Blender has it, by a simulation."""
+    scene, _ = stage()
+    item = t.add_object(scene, "Shape", None, (0.4, -1, 0.5))
+    move_by_time(item)
+    check(scene, "moved by nodes", {"Shape": moved_by_time})
 
     if not hasattr(bpy.types, "GeometryNodeSimulationInput"):  # since 3.6
         return
@@ -435,7 +439,7 @@ def test_deforming_nodes() -> None:
     item.modifiers.new("Simulate", "NODES").node_group = tree
     for frame in range(1, FRAME + 2):
         scene.frame_set(frame)
-    check(scene, "simulated", {"Shape": moved})
+    check(scene, "simulated", {"Shape": moved_by_time})
 
 
 def test_subdivision() -> None:
@@ -452,18 +456,26 @@ def test_hair_curves() -> None:
     """Objects of the new hair system; Cycles rounds strands more."""
     if "add_curves" not in bpy.types.Curves.bl_rna.functions:  # before 4.0 scripts cannot make any
         return
-    scene, _ = stage()
-    data, count = bpy.data.hair_curves.new("Hair"), 200
-    data.add_curves([4] * count)
-    roots = np.random.default_rng(1).uniform((-0.5, -1.5, -0.5), (0.5, -0.5, 0.5), (count, 3))
-    points = roots[:, None] + np.linspace(0, 1, 4)[:, None] * np.array((0.2, 0, 0.8))
-    data.attributes["position"].data.foreach_set("vector", points.astype(np.float32).ravel())
-    radius = data.attributes.get("radius") or data.attributes.new("radius", "FLOAT", "POINT")
-    radius.data.foreach_set("value", np.full(4 * count, 0.02, np.float32))
-    item = bpy.data.objects.new("Hair", data)
-    scene.collection.objects.link(item)
+
+    def hairy():
+        scene, _ = stage()
+        data, count = bpy.data.hair_curves.new("Hair"), 200
+        data.add_curves([4] * count)
+        roots = np.random.default_rng(1).uniform((-0.5, -1.5, -0.5), (0.5, -0.5, 0.5), (count, 3))
+        points = roots[:, None] + np.linspace(0, 1, 4)[:, None] * np.array((0.2, 0, 0.8))
+        data.attributes["position"].data.foreach_set("vector", points.astype(np.float32).ravel())
+        radius = data.attributes.get("radius") or data.attributes.new("radius", "FLOAT", "POINT")
+        radius.data.foreach_set("value", np.full(4 * count, 0.02, np.float32))
+        item = bpy.data.objects.new("Hair", data)
+        scene.collection.objects.link(item)
+        return scene, item
+
+    scene, item = hairy()
     t.key(item, "location", {1: (-1, 0, 0.3), 11: (1, 0, 0.7)})
     check(scene, "hair curves")
+    scene, item = hairy()
+    move_by_time(item)
+    check(scene, "hair curves moved by nodes", {"Hair": moved_by_time})
 
 
 def test_one_action_for_several_owners() -> None:
