@@ -111,6 +111,7 @@ test-bundle: bundle
 
 # Generated: the page of methods and the add-on's copy of the registry, the table of precision and memory.
 docs: program
+	@python3 blender_addon/write_scenes_page.py
 	@$(BUILD)/aaresolve list --markdown > docs/methods.md
 	@$(BUILD)/aaresolve list --json > blender_addon/aa_resolve/methods.json
 	@$(BUILD)/aaresolve bench --family temporal --markdown --size 480x270 --frames 8 --repeats 1 --threads 1 > docs/precision.md

@@ -40,6 +40,8 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) ->
     view_layer, notes = suitability.refuse_unsuitable(scene, settings.view_layer)
     notes += linked.notes_on_missing() + scripts.notes_on_blocked()
     notes += suitability.switch_off(scene, view_layer)
+    rendering.prepare(scene, view_layer)
+    rendering.own_samples(scene)
     if settings.resolution:
         width, height = settings.resolution
         own(scene.render, resolution_x=width, resolution_y=height, resolution_percentage=100)
@@ -69,7 +71,6 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) ->
         notes += surfaces.notes_on_edges()
     notes += surfaces.semi_transparent_note()
     scene.frame_set(settings.first_frame)
-    rendering.prepare(scene, view_layer)
     folder = rendering.temporary_folder()
     light = lighting.set_up(scene, view_layer, settings.lighting, settings.ambient, folder)
     lighting.check_visibility_animation(light)
@@ -77,7 +78,6 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) ->
     ids = instances.ObjectIds(scene, view_layer, settings.instance_ids)
     if settings.instance_ids and not ids.tells_instances and ObjectId.name in wanted:
         left_out.append("ids of instances (nothing is instanced)")
-    rendering.own_samples(scene)
     notes += ownership.notes() + scripts.hold_against_handlers()
     if left_out:
         notes.append("left out: " + "; ".join(left_out))

@@ -150,6 +150,22 @@ def attempt(change, *options: str) -> tuple[str, dict]:
     return " ".join(shot["notes"]), {**parts, "names": shot["objects"]}
 
 
+def test_an_animated_exposure_is_not_static() -> None:
+    """Nothing moves and no colour of a material changes, but the pictures differ; a keyed seed alone changes nothing."""
+    for path, static in (("cycles.film_exposure", False), ("cycles.seed", True)):
+        scene = t.new_scene(16, 9)
+        t.add_camera(scene)
+        t.add_sun(scene)
+        t.add_object(scene, "Cube")
+        for number in (1, 2):
+            setattr(scene.cycles, path[7:], number)
+            scene.keyframe_insert(path, frame=number)
+        shot = t.export(
+            os.path.join(t.temporary_folder(), "s"), "--frames", "1-2", "--truth-frames", "none"
+        )
+        assert shot["static"] == static, (path, shot["notes"])
+
+
 def test_shadow_catchers() -> None:
     told, parts = attempt(lambda _s, _c, _cube, floor: setattr(floor, "is_shadow_catcher", True))
     _, plain = attempt(lambda *_: None)
@@ -266,6 +282,7 @@ if __name__ == "__main__":
         test_no_row_covers_another_and_all_functions_exist,
         test_the_page_is_fresh,
         test_what_the_table_calls_owned_loses_its_curves_and_nothing_else,
+        test_an_animated_exposure_is_not_static,
         test_shadow_catchers,
         test_grease_pencil,
         test_a_portal_does_not_shine,

@@ -10,7 +10,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import support as t  # noqa: E402
 from support import bpy, np  # noqa: E402
 
-from aa_resolve.scene import ownership  # noqa: E402
+from aa_resolve.scene import ownership, render_levels  # noqa: E402
 
 FRAMES = ("--frames", "1-2", "--truth-samples", "8", "--for", "taaSimplest", "--passes", "object")
 
@@ -137,6 +137,39 @@ def test_shared_actions_lose_one_user_only() -> None:
     ownership.notes()
 
 
+def test_linked_and_overridden_blocks() -> None:
+    """Levels, an index and a size that a library says, and animates, are the exporter's as well."""
+    scene = t.new_scene(32, 18)
+    ball = t.add_object(scene, "Ball")
+    levels = ball.modifiers.new("Levels", "SUBSURF")
+    levels.levels, levels.render_levels = 0, 3
+    key_path(ball, "pass_index", {1: 1, 10: 9})
+    key_path(t.add_sun(scene).data, "angle", {1: 0.1, 10: 0.3})
+    library = t.save(scene, os.path.join(t.temporary_folder(), "library.blend"))
+    for overridden in (False, True):
+        scene = t.new_scene(32, 18)
+        with bpy.data.libraries.load(library, link=True) as (_, wanted):
+            wanted.objects = ["Ball", "Sun"]
+        for item in wanted.objects:
+            scene.collection.objects.link(item)
+        bpy.context.view_layer.update()
+        if overridden:
+            for item in wanted.objects:
+                item.override_create(remap_local_usages=True)
+            scene.objects["Sun"].data.override_create(remap_local_usages=True)
+        ball, sun = scene.objects["Ball"], scene.objects["Sun"]
+        assert (ball.library is None) == overridden
+        ownership.begin()
+        render_levels.show_what_renders(scene, scene.view_layers[0])
+        ownership.own(ball, pass_index=7)
+        ownership.own(sun.data, angle=0.0)
+        scene.frame_set(5)
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        count = len(ball.evaluated_get(depsgraph).to_mesh().vertices)
+        assert (count, ball.pass_index, sun.data.angle) == (386, 7, 0.0), count
+        assert len(ownership.notes()) == 2
+
+
 def test_area_light_keeps_its_animated_power() -> None:
     scene, _, sun, item = make_scene()
     item.animation_data_clear()
@@ -192,6 +225,7 @@ if __name__ == "__main__":
         test_strips_and_drivers,
         test_members_by_number,
         test_shared_actions_lose_one_user_only,
+        test_linked_and_overridden_blocks,
         test_area_light_keeps_its_animated_power,
         test_transparent_film_with_several_lights,
         test_a_level_follows_an_animated_one,

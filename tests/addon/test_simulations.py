@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import hashlib
 import os
-import subprocess
+import shutil
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import support as t  # noqa: E402
 from support import bpy, np  # noqa: E402
 
+from aa_resolve.panel import job  # noqa: E402
 from aa_resolve.scene import ownership, simulations  # noqa: E402
 
 LAST = 8
@@ -172,12 +173,10 @@ def test_caches_on_disk_are_found_and_not_harmed() -> None:
     said, shown = exported(blend)
     assert contents(caches) == before, "the user's caches are as they were"
     assert "Loose" in said and "Baked" not in said, said
-    # A copy elsewhere, as the panel makes it.
     bpy.ops.wm.open_mainfile(filepath=blend)
-    copy = os.path.join(t.temporary_folder(), "scene.blend")
-    bpy.ops.wm.save_as_mainfile(filepath=copy, copy=True, check_existing=False)
-    simulations.link_caches(blend, copy)
+    copied, copy = job.copy_of_open_file()
     said, linked = exported(copy)
+    shutil.rmtree(copied)  # as the panel does at the end of its job
     assert "Baked" not in said and np.array_equal(linked, shown), said
     assert contents(caches) == before
     # And a copy that finds none: said, and simulated anew.

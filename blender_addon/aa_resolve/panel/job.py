@@ -19,6 +19,7 @@ from dataclasses import dataclass, field
 import bpy
 
 from ..command_line import file_identity
+from ..scene.simulations import link_caches
 
 _ROOM = os.path.dirname(os.path.abspath(__file__))
 HEADLESS = os.path.join(os.path.dirname(_ROOM), "headless.py")
@@ -172,15 +173,7 @@ def copy_of_open_file() -> tuple[str, str]:
     folder = tempfile.mkdtemp(prefix="aa_resolve_")
     path = os.path.join(folder, f"{_NAME_OF_COPY}.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path, copy=True, check_existing=False)
-    original = bpy.data.filepath
-    stem = os.path.splitext(os.path.basename(original))[0]
-    cache = os.path.join(os.path.dirname(original), f"blendcache_{stem}")
-    if original and os.path.isdir(cache):
-        seen = os.path.join(folder, f"blendcache_{_NAME_OF_COPY}")
-        try:
-            os.symlink(cache, seen, target_is_directory=True)
-        except OSError:  # Windows allows links to few users only
-            shutil.copytree(cache, seen)
+    link_caches(bpy.data.filepath, path)
     return folder, path
 
 

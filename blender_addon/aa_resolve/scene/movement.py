@@ -13,6 +13,7 @@ import numpy as np
 
 from . import camera as cam
 from .cuts import CameraCuts
+from .ownership import has_animation
 from .scripts import foreign_handlers
 
 # Modifiers that can change a mesh although nothing in the file is keyed.
@@ -70,13 +71,15 @@ def _uses_moving_images(tree: bpy.types.NodeTree) -> bool:
     return False
 
 
-def _shading_that_changes() -> str | None:
+def _shading_that_changes(scene: bpy.types.Scene) -> str | None:
     """Name of the first animated data-block that changes what no place or vertex tells: colours, volumes."""
     for collection in (bpy.data.materials, bpy.data.lights, bpy.data.worlds):
         for block in collection:
             tree = getattr(block, "node_tree", None) if getattr(block, "use_nodes", False) else None
             if _is_keyed(block) or (tree and (_is_keyed(tree) or _uses_moving_images(tree))):
                 return f"'{block.name}' is animated"
+    if has_animation(scene):  # exposure, film; not what the exporter has set itself
+        return f"a setting of scene '{scene.name}' is animated"
     for volume in bpy.data.volumes:
         if volume.is_sequence:
             return f"volume '{volume.name}' is a sequence of files"
@@ -210,7 +213,7 @@ def find_motion(
         return (
             Motion(False, "one frame") if _may_move(scene) else Motion(True, "nothing is animated")
         )
-    changing = _shading_that_changes()
+    changing = _shading_that_changes(scene)
     if changing:
         return Motion(False, changing)
     if not cuts.is_cut and not _may_move(scene):

@@ -93,13 +93,12 @@ def follow_other(
 
 def is_animated(holder: bpy.types.bpy_struct, name: str) -> bool:
     """True when a curve, a strip or a driver sets the property."""
-    animation = _animation(holder)
-    if animation is None:
-        return False
-    curves = list(animation.drivers)
-    for source in _sources(animation):
-        curves += compat.action_curves(source)
-    return any(_sets(curve, holder, name) for curve in curves)
+    return any(_sets(curve, holder, name) for curve in _curves(holder))
+
+
+def has_animation(block: bpy.types.ID) -> bool:
+    """True when a curve, a strip or a driver sets anything of a data-block."""
+    return bool(_curves(block))
 
 
 def release(holder: bpy.types.bpy_struct, name: str) -> bool:
@@ -144,6 +143,17 @@ def notes() -> list[str]:
         )
     _taken.clear()
     return told
+
+
+def _curves(holder: bpy.types.bpy_struct) -> list[bpy.types.FCurve]:
+    """Curves and drivers of the holder's data-block."""
+    animation = _animation(holder)
+    if animation is None:
+        return []
+    curves = list(animation.drivers)
+    for source in _sources(animation):
+        curves += compat.action_curves(source)
+    return curves
 
 
 def _animation(holder: bpy.types.bpy_struct) -> bpy.types.AnimData | None:
