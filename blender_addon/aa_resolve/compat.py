@@ -34,6 +34,11 @@ def set_if_present(owner, name: str, value) -> bool:
     return False
 
 
+def known(owner, values: dict[str, object]) -> dict[str, object]:
+    """Those of ``values`` that are properties in this version."""
+    return {name: value for name, value in values.items() if hasattr(owner, name)}
+
+
 def light_sampling_off(material: bpy.types.Material) -> dict[str, object]:
     """What to set so that emission of this material is no longer picked as a light."""
     if hasattr(material.cycles, "emission_sampling"):  # since 3.5

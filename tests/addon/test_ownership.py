@@ -82,6 +82,18 @@ def test_plain_scene_has_two_halves_and_no_note() -> None:
     assert not np.array_equal(PLAIN["truth a 1"], PLAIN["truth b 1"]), "halves are independent"
 
 
+def test_no_half_of_the_truth_has_the_centre_sample() -> None:
+    """Cycles puts sample 0 at the exact centre whatever the seed: with one sample both halves would be one picture."""
+    make_scene()
+    out = os.path.join(t.temporary_folder(), "s")
+    shot = t.export(out, "--frames", "1", "--truth-samples", "1", "--jitter", "none")
+    a, b = (
+        t.stacked(t.read_part(os.path.join(out, shot["frames"][0]["truth"]), half), "R G B")
+        for half in "ab"
+    )
+    assert (np.abs(a - b).max(axis=-1) > 0.01).sum() > 2, "no edge pixel differs"
+
+
 def test_keyed_settings_of_the_render() -> None:
     def spoil(scene, *_):
         key_path(scene, "cycles.seed", {1: 5, 2: 5})
@@ -221,6 +233,7 @@ def test_a_level_follows_an_animated_one() -> None:
 if __name__ == "__main__":
     t.main(
         test_plain_scene_has_two_halves_and_no_note,
+        test_no_half_of_the_truth_has_the_centre_sample,
         test_keyed_settings_of_the_render,
         test_strips_and_drivers,
         test_members_by_number,

@@ -57,7 +57,7 @@ def own(holder: bpy.types.bpy_struct, **values) -> None:
 
 def own_if_present(holder: bpy.types.bpy_struct, **values) -> None:
     """``own`` for what only some versions of Blender have."""
-    own(holder, **{name: value for name, value in values.items() if hasattr(holder, name)})
+    own(holder, **compat.known(holder, values))
 
 
 def follow(holder: bpy.types.bpy_struct, name: str, source: str) -> None:

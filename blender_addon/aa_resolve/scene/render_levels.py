@@ -21,11 +21,11 @@ LEVELS: dict[str, tuple[tuple[str, str], ...]] = {
     "SCREW": (("steps", "render_steps"),),
     "OCEAN": (("viewport_resolution", "resolution"),),
 }
-_PARTICLES = (
-    ("child_percent", "rendered_child_count"),  # since 4.0
-    ("child_nbr", "rendered_child_count"),
-    ("display_step", "render_step"),
-)
+_PARTICLES = {
+    "child_percent": "rendered_child_count",  # since 4.0
+    "child_nbr": "rendered_child_count",
+    "display_step": "render_step",
+}
 _SIMPLIFIED = (
     ("simplify_subdivision", "simplify_subdivision_render"),
     ("simplify_child_particles", "simplify_child_particles_render"),
@@ -53,9 +53,8 @@ def show_what_renders(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -
                 follow(modifier, shown, rendered)
     for particles in bpy.data.particles:
         own(particles, display_percentage=100, display_method="RENDER")
-        for shown, rendered in _PARTICLES:
-            if hasattr(particles, shown):
-                follow(particles, shown, rendered)
+        for shown, rendered in compat.known(particles, _PARTICLES).items():
+            follow(particles, shown, rendered)
     for curve in bpy.data.curves:
         _show_rendered_curve(curve)
     for ball in bpy.data.metaballs:
