@@ -21,7 +21,8 @@ ROWS: tuple[Feature, ...] = (
     Feature(
         "setting",
         "cycles.use_sample_subset cycles.sample_subset_length cycles.scrambling_distance "
-        "cycles.auto_scrambling_distance cycles.use_pixel_jitter",
+        "cycles.auto_scrambling_distance cycles.use_pixel_jitter cycles.sampling_pattern "
+        "cycles.use_guiding cycles.direct_light_sampling_type render.use_texture_cache",
         HANDLED,
         "the same",
         _OWNED,
@@ -59,21 +60,16 @@ ROWS: tuple[Feature, ...] = (
     ),
     Feature(
         "setting",
-        "layer.samples layer.use layer.pass_alpha_threshold layer.use_pass_z "
-        "layer.use_pass_normal layer.use_pass_vector layer.use_pass_position "
-        "layer.use_pass_object_index layer.use_pass_*_color layer.use_pass_emit "
-        "layer.use_pass_environment layer.use_pass_mist layer.use_pass_uv "
-        "layer.use_pass_material_index layer.use_pass_shadow layer.use_pass_ambient_occlusion "
-        "layer.use_pass_*_direct layer.use_pass_*_indirect layer.use_pass_cryptomatte_object "
-        "layer.use_pass_cryptomatte_material layer.use_pass_cryptomatte_asset "
-        "layer.cycles.denoising_store_passes",
+        "layer.samples layer.use layer.pass_alpha_threshold layer.use_pass_* "
+        "layer.cycles.denoising_store_passes layer.cycles.use_pass_* layer.cycles.pass_debug_* "
+        "layer.cycles.pass_render*",
         HANDLED,
         "passes are those that the shot needs",
         _OWNED,
     ),
     Feature(
         "setting",
-        "layer.use_pass_* layer.pass_cryptomatte_* layer.active_* layer.use_motion_blur "
+        "layer.pass_cryptomatte_* layer.active_* layer.use_motion_blur "
         "layer.use_freestyle layer.use_grease_pencil layer.cycles.*",
         NOTHING,
         "further passes are not read",
@@ -110,10 +106,10 @@ ROWS: tuple[Feature, ...] = (
     Feature(
         "setting",
         "cycles.film_* cycles.transparent_max_bounces cycles.min_* cycles.blur_glossy "
-        "cycles.direct_light_sampling_type cycles.use_light_tree cycles.*guiding* cycles.ao_* "
+        "cycles.use_light_tree cycles.*guiding* cycles.ao_* "
         "cycles.fast_gi_method cycles.volume_* cycles.texture_* cycles.dicing_rate "
         "cycles.offscreen_dicing_scale cycles.max_subdivisions cycles.*_cull* cycles.feature_set "
-        "cycles.shading_system cycles.sampling_pattern cycles.device cycles.debug_* "
+        "cycles.shading_system cycles.device cycles.debug_* "
         "cycles.tile_size cycles.use_auto_tile cycles.use_layer_samples cycles.adaptive_*",
         SHOWN,
         "as in a render, the same for frames and truth",

@@ -122,14 +122,15 @@ def switch_off(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> list[
     foggy = sorted(
         material.name
         for material in bpy.data.materials
-        if material.users and material.use_nodes and _has_volume(material.node_tree)
+        if material.users and _has_volume(compat.shader_tree(material))
     )
     if foggy:
         told.append(
             f"the volume of material {', '.join(foggy[:4])} has no surface: its depth, normal and motion are those of "
             "the mesh around it, or behind it"
         )
-    if scene.world and scene.world.use_nodes and _has_volume(scene.world.node_tree):
+    world = compat.world_of(scene, view_layer)
+    if world and _has_volume(compat.shader_tree(world)):
         told.append(
             "the world's volume has no surface: depth, normal and motion are those behind it"
         )
