@@ -10,6 +10,7 @@ import bpy
 
 from . import camera as cam
 from . import rendering
+from .ownership import own
 
 _PREFIX = "AA Resolve View"
 
@@ -45,7 +46,7 @@ class ViewSet:
         """Renders all views with the current passes, lights and materials."""
         render = self.scene.render
         previous = self.scene.camera
-        render.use_multiview = True
+        own(render, use_multiview=True)
         render.views_format = "MULTIVIEW"
         render.image_settings.views_format = "MULTIVIEW"
         for view in render.views:
@@ -61,5 +62,5 @@ class ViewSet:
                 render.views.remove(render.views[name])
             for view in render.views:
                 view.use = True
-            render.use_multiview = False
+            own(render, use_multiview=False)
             render.image_settings.views_format = "INDIVIDUAL"
