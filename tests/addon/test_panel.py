@@ -233,7 +233,10 @@ def test_the_look_is_foretold() -> None:
     scene.cycles.max_bounces = 0
     t.add_sun(scene)
     assert look.changes_without_noise(scene) == []
-    assert lighting.set_up(scene, "noise-free", None, t.temporary_folder()).notes == []
+    assert (
+        lighting.set_up(scene, scene.view_layers[0], "noise-free", None, t.temporary_folder()).notes
+        == []
+    )
     scene.cycles.max_bounces = 8
     for kind in ("AREA", "POINT", "SPOT"):
         light = bpy.data.lights.new(f"The {kind.lower()}", kind)
@@ -245,7 +248,9 @@ def test_the_look_is_foretold() -> None:
     for word in ("'The area'", "'The point'", "'The spot'", "ambient", "bounces"):
         assert word in told, told
     assert "'Sun'" not in told and "glow" not in told, told
-    done = " ".join(lighting.set_up(scene, "noise-free", (0.5, 0.5, 0.5), "").notes)
+    done = " ".join(
+        lighting.set_up(scene, scene.view_layers[0], "noise-free", (0.5, 0.5, 0.5), "").notes
+    )
     for word in ("'The area'", "'The point'", "'The spot'", "ambient", "bounces"):
         assert word in done, done
     shown.lighting = "as-is"
