@@ -124,7 +124,7 @@ class Blender:
     def scene(self, name: str, folder: Path) -> list[list[object]]:
         """Build, export with every pass, check."""
         blend, shot = folder / "scene.blend", folder / "shot"
-        options = ["--for", "uncharted", "--passes", PASSES, "--resolution", "160", "90"]
+        options = ["--for", "uncharted", "--passes", PASSES, "--resolution", "160x90"]
         frames = ["--frames", "1-3", "--truth-samples", "16"]
         build = [*FAIL, "-P", ROOT / f"scenes/{name}.py", "--", "--out", blend]
         return [
