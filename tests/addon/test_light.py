@@ -308,6 +308,53 @@ def test_ambient_of_a_varying_world() -> None:
     assert np.allclose(shot["color"]["ambient"], 0.5, atol=0.01), shot["color"]["ambient"]
 
 
+def under_a_sky(lighting, elevation, rotation, shown=True) -> tuple[np.ndarray, dict]:
+    """A pole on a floor, seen from above, under a sky texture of the kind that this version has first."""
+    scene = t.new_scene(32, 32)
+    t.add_camera(scene, (0, -0.01, 9), (0, 0, 0), 100)
+    mesh = bpy.data.meshes.new("Floor")
+    mesh.from_pydata([(-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)], [], [(0, 1, 2, 3)])
+    for item in (
+        t.add_object(scene, "Floor", mesh),
+        t.add_object(scene, "Pole", t.cube_mesh("Pole", 0.4), (0, 0, 0.5)),
+    ):
+        item.data.materials.append(t.diffuse("White", (0.8, 0.8, 0.8)))
+    scene.world = bpy.data.worlds.new("Sky")
+    scene.world.use_nodes = True
+    tree = scene.world.node_tree
+    sky, background = tree.nodes.new("ShaderNodeTexSky"), tree.nodes["Background"]
+    sky.sun_elevation, sky.sun_rotation = elevation, rotation
+    background.inputs["Strength"].default_value = 0.1
+    if shown:
+        tree.links.new(sky.outputs["Color"], background.inputs["Color"])
+    scene.cycles.max_bounces = 0
+    out = os.path.join(t.temporary_folder(), "s")
+    options = ("--samples", "64") if lighting == "as-is" else ()
+    shot = t.export(
+        out, "--frames", "1", "--truth-frames", "none", "--jitter", "none", "--lighting", lighting, *options
+    )  # fmt: skip
+    color = t.read_part(os.path.join(out, "frames/000001.exr"), "color")
+    return t.stacked(color, "R G B").astype(np.float64), shot
+
+
+def test_sun_of_a_sky_texture() -> None:
+    """It shines from where the sky draws it, as bright, and casts its shadow there; the rest of the sky is ambient."""
+    for elevation, rotation in ((0.9, 0.7), (0.7, 3.6)):
+        real, _ = under_a_sky("as-is", elevation, rotation)
+        delta, shot = under_a_sky("noise-free", elevation, rotation)
+        assert "the sky's sun is a light without size" in " ".join(shot["notes"]), shot["notes"]
+        lit, shadow = real[..., 0] > 0.9 * np.median(real[..., 0]), real[..., 0] < 0.5
+        assert shadow.sum() > 10
+        assert np.abs(np.median(delta[lit], 0) / np.median(real[lit], 0) - 1).max() < 0.1
+        assert ((delta[..., 0] < 0.5) == shadow).mean() > 0.96, "the shadow lies elsewhere"
+        sun = [
+            np.median(picture[lit, 0]) - np.median(picture[shadow, 0]) for picture in (real, delta)
+        ]
+        assert abs(sun[1] / sun[0] - 1) < 0.04, sun
+    _, shot = under_a_sky("noise-free", 0.9, 0.7, shown=False)
+    assert "the sky's sun" not in " ".join(shot["notes"]), shot["notes"]
+
+
 def test_exposure_of_the_film_scales_everything() -> None:
     """Light, emission, background and the ambient that stands for the world."""
     pictures = []
@@ -349,6 +396,7 @@ if __name__ == "__main__":
         test_light_linking,
         test_a_portal_does_not_shine,
         test_ambient_of_a_varying_world,
+        test_sun_of_a_sky_texture,
         test_exposure_of_the_film_scales_everything,
         test_world_of_the_view_layer,
     )

@@ -20,7 +20,7 @@ import numpy as np
 
 from .. import compat
 from ..errors import SceneError
-from . import rendering
+from . import rendering, world_light
 from .light_sources import emissive_materials, is_portal, lights_of, noise_causes
 from .ownership import is_animated, own, own_if_present
 
@@ -67,37 +67,6 @@ class LightPlan:
             else "background (the scene has no world)",
         }
         return [text for name, text in reasons.items() if name in self.empty_passes]
-
-
-def mean_world_radiance(
-    scene: bpy.types.Scene, world: bpy.types.World, folder: str
-) -> tuple[float, float, float]:
-    """Mean radiance of the world over the sphere: a small panorama of the empty world, weighted by solid angle."""
-    empty = bpy.data.scenes.new("AA Resolve World")
-    try:
-        empty.world = world
-        data = bpy.data.cameras.new("AA Resolve Panorama")
-        data.type = "PANO"
-        compat.panorama_settings(data).panorama_type = "EQUIRECTANGULAR"
-        camera = bpy.data.objects.new("AA Resolve Panorama", data)
-        camera.rotation_euler = (math.pi / 2.0, 0.0, 0.0)
-        empty.collection.objects.link(camera)
-        empty.camera = camera
-        empty.render.resolution_x, empty.render.resolution_y = 64, 32
-        empty.cycles.film_exposure = scene.cycles.film_exposure
-        empty.frame_set(scene.frame_current)
-        layer = empty.view_layers[0]
-        rendering.prepare(empty, layer)
-        rendering.request_passes(layer, {"Depth"})
-        rendering.sample_pixel_area(empty, 16, 0)
-        picture = (
-            rendering.render(empty, layer, folder).get("Combined")[:, :, :3].astype(np.float64)
-        )
-        weight = np.sin((np.arange(32) + 0.5) / 32.0 * math.pi)[:, None, None]
-        mean = (picture * weight).sum(axis=(0, 1)) / (weight.sum() * 64.0)
-        return float(mean[0]), float(mean[1]), float(mean[2])
-    finally:
-        bpy.data.scenes.remove(empty)
 
 
 def set_up(
@@ -152,12 +121,14 @@ def set_up(
     if ambient is not None:
         plan.ambient = ambient
     elif world_lights:
-        plan.ambient = mean_world_radiance(scene, world, folder)
+        plan.ambient = world_light.mean_radiance(scene, world, folder)
     if any(plan.ambient):
         red, green, blue = plan.ambient
         changes.append(
             f"ambient ({red:.3g}, {green:.3g}, {blue:.3g}) in place of light from the world"
         )
+    if world_lights:
+        changes += _add_sky_suns(scene, world, folder)
     plan.lights = lights_of(scene)
     changes += [change for change in map(_make_delta, plan.lights) if change]
     for material in emissive:
@@ -185,6 +156,24 @@ def set_up(
             f"lights inside instanced collections ({', '.join(sorted(instanced))}) are several at once: noise remains"
         )
     return plan
+
+
+def _add_sky_suns(scene: bpy.types.Scene, world: bpy.types.World, folder: str) -> list[str]:
+    """Lights for the suns of sky textures; returns what changed."""
+    changes = []
+    for sun in world_light.suns_of(scene, world, folder):
+        light = bpy.data.lights.new("AA Resolve Sky Sun", "SUN")
+        light.angle = 0.0
+        light.energy = float(sun.irradiance.max())
+        light.color = sun.irradiance / sun.irradiance.max()
+        item = bpy.data.objects.new("AA Resolve Sky Sun", light)
+        item.rotation_euler = sun.towards.to_track_quat("Z", "Y").to_euler()
+        scene.collection.objects.link(item)
+        changes.append(
+            "the sky's sun is a light without size"
+            + (", at rest where it stands in the first frame" if sun.moves else "")
+        )
+    return changes
 
 
 def _make_delta(item: bpy.types.Object) -> str:
