@@ -6,6 +6,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import pty
 import signal
 import subprocess
 import sys
@@ -84,7 +85,17 @@ def test_wrong_usage_is_2_and_one_line() -> None:
         (("--out", "x", "--frames", "1-3", "--truth-frames", "7"), "not among --frames"),
         (("--out", "x", "--subsamples", "d3d9", "--passes", "subsamples"), "d3d9"),
         (("--out", "x", "--subsamples", "d3d8"), "no effect"),
-        (("--out", "x", "--wrong", "1"), "--wrong"),
+        (("--out", "x", "--wrong", "1"), "unknown option --wrong"),
+        (("--out", "x", "--trut-samples", "1"), "did you mean --truth-samples?"),
+        (("--out", "x", "--sample", "1"), "unknown option --sample; did you mean --samples?"),
+        (
+            ("--out", "x", "--resolution", "48", "27"),
+            "expected WIDTHxHEIGHT in one word, as in 480x270",
+        ),
+        (("--out", "x", "--resolution", "2x2"), "--resolution: expected 4 to 65536"),
+        (("--out", "x", "--samples", "many"), "--samples: expected a whole number, found 'many'"),
+        (("--out", "x", "--frames", "1-2", "3"), "unexpected '3'"),
+        (("--out", "x", "--frames", "-3--5"), "ends before"),
     )
     script = os.path.join(FOLDER, "cases.py")
     with open(script, "w", encoding="utf-8") as file:  # one Blender for all of them
@@ -120,7 +131,92 @@ def test_exit_codes_of_the_process() -> None:
     assert unwritable.returncode == 3 and "cannot be made" in unwritable.stderr, unwritable.stderr
     told = t.run_headless(BLEND, "--help")
     assert told.returncode == 0 and "--truth-samples" in told.stdout and "halton23" in told.stdout
+    for word in ("This run:", "examples:", "exit codes:", "--resolution WxH", "--yes", "--plan"):
+        assert word in told.stdout, (word, told.stdout)
     assert digest(BLEND) == BEFORE
+
+
+def ranged_blend(step: int) -> str:
+    """The scene with a range of its own."""
+    bpy.ops.wm.open_mainfile(filepath=BLEND)
+    scene = bpy.context.scene
+    scene.frame_start, scene.frame_end, scene.frame_step = 3, 8, step
+    return t.save(scene, os.path.join(FOLDER, f"range{step}.blend"))
+
+
+def test_without_frames_the_scene_decides() -> None:
+    """Its range and its step, after an estimate; what takes long wants a yes."""
+    out, blend = os.path.join(FOLDER, "range"), ranged_blend(2)
+    done = t.run_headless(blend, "--out", out, "--truth-samples", "4", "--json")
+    assert done.returncode == 0, done.stderr
+    events = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
+    assert "steps of 2" in events[0]["note"] and "--frames 3-8" in events[0]["note"], events[0]
+    kinds = [event["event"] for event in events]
+    assert kinds.index("missing") < kinds.index("estimate") < kinds.index("frame"), kinds
+    cost = events[kinds.index("estimate")]
+    assert cost["bytes"] > 0 and cost["seconds"] > 0 and "3 frames" in cost["text"], cost
+    assert [event["frame"] for event in events if event["event"] == "frame"] == [3, 5, 7]
+    assert all(entry["reset"] for entry in t.read_manifest(out)["frames"])
+    again = t.run_headless(blend, "--out", out, "--truth-samples", "4", "--plan")
+    assert again.returncode == 0 and "nothing to render" in again.stdout, again.stdout
+
+    long, blend = os.path.join(FOLDER, "long"), ranged_blend(1)
+    wish = ("--out", long, "--truth-samples", "1000000")
+    for options in (wish, (*wish, "--json")):
+        refused = t.run_headless(blend, *options)
+        assert refused.returncode == 2 and refused.stderr.count("\n") == 1, refused.stderr
+        assert "--yes" in refused.stderr and "MB" in refused.stderr, refused.stderr
+        assert not os.path.exists(long), "nothing is written before a yes"
+    ours, theirs = pty.openpty()
+    process = subprocess.Popen(
+        t.blender_command(blend, *wish),
+        stdin=theirs, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    os.close(theirs)
+    os.write(ours, b"n\n")
+    output, errors = process.communicate(timeout=120)
+    os.close(ours)
+    assert "Go on? [y/N]" in output and process.returncode == 1, (output, errors)
+    assert "nothing was written" in errors and not os.path.exists(long), errors
+    process = subprocess.Popen(
+        t.blender_command(blend, *wish, "--yes"), stdout=subprocess.PIPE, text=True
+    )
+    for line in process.stdout:
+        if line.startswith("frame 3"):
+            break
+    else:
+        raise AssertionError("with --yes the export begins")
+    process.kill()
+    process.wait()
+    process.stdout.close()
+
+
+def test_a_fault_is_one_line() -> None:
+    """What should not happen is said on standard error, although Blender's own stream is closed then; so is a full
+    disk behind standard output."""
+    script = os.path.join(FOLDER, "fault.py")
+    with open(script, "w", encoding="utf-8") as file:
+        file.write(
+            "import sys\n"
+            f"sys.path.insert(0, {os.path.join(t.ROOT, 'blender_addon')!r})\n"
+            "from aa_resolve import export, headless\n"
+            "export.make_plan = lambda *_: {}['missing key']\n"
+            f"sys.exit(headless.run(['--out', {os.path.join(FOLDER, 'fault')!r}, '--frames', '1']))\n"
+        )
+    done = subprocess.run(
+        [bpy.app.binary_path, "-b", "--factory-startup", BLEND, "--python-exit-code", "9", "-P", script],
+        capture_output=True, text=True, timeout=60,
+    )  # fmt: skip
+    said = [line for line in done.stderr.splitlines() if line.startswith("error")]
+    assert done.returncode == 9 and len(said) == 1, (done.returncode, done.stderr)
+    assert "KeyError" in said[0] and "fault.py, line" in said[0], said
+    if os.path.exists("/dev/full"):
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            done = subprocess.run(
+                t.blender_command(BLEND, "--out", os.path.join(FOLDER, "full"), "--frames", "1"),
+                stdout=full, stderr=subprocess.PIPE, text=True, timeout=60,
+            )  # fmt: skip
+        assert done.returncode == 3 and "standard output cannot be written" in done.stderr
 
 
 def test_kill_and_resume() -> None:
@@ -308,6 +404,8 @@ if __name__ == "__main__":
     t.main(
         test_wrong_usage_is_2_and_one_line,
         test_exit_codes_of_the_process,
+        test_without_frames_the_scene_decides,
+        test_a_fault_is_one_line,
         test_kill_and_resume,
         test_interrupt_stops_cleanly,
         test_full_disk_and_resume,
