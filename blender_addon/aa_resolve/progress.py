@@ -7,6 +7,7 @@ them; this package writes to a copy of it.
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import sys
@@ -20,7 +21,8 @@ class Progress:
 
     def __init__(self, as_json: bool) -> None:
         self.as_json = as_json
-        sys.stdout.flush()
+        with _output():
+            sys.stdout.flush()
         self._stream: IO[str] = os.fdopen(os.dup(1), "w", encoding="utf-8")
         silence = os.open(os.devnull, os.O_WRONLY)
         os.dup2(silence, 1)
@@ -35,8 +37,15 @@ class Progress:
         self._write(question, end="")
 
     def _write(self, text: str, end: str = "\n") -> None:
-        try:
+        with _output():
             self._stream.write(text + end)
             self._stream.flush()
-        except OSError as error:
-            raise SceneError(f"standard output cannot be written: {error.strerror}") from error
+
+
+@contextlib.contextmanager
+def _output():
+    """Within this context the system's errors are those of standard output."""
+    try:
+        yield
+    except OSError as error:
+        raise SceneError(f"standard output cannot be written: {error.strerror}") from error

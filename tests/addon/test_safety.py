@@ -164,7 +164,7 @@ def test_without_frames_the_scene_decides() -> None:
     wish = ("--out", long, "--truth-samples", "1000000")
     for options in (wish, (*wish, "--json")):
         refused = t.run_headless(blend, *options)
-        assert refused.returncode == 2 and refused.stderr.count("\n") == 1, refused.stderr
+        assert refused.returncode == 2 and len(said(refused.stderr)) == 1, refused.stderr
         assert "--yes" in refused.stderr and "MB" in refused.stderr, refused.stderr
         assert not os.path.exists(long), "nothing is written before a yes"
     ours, theirs = pty.openpty()
@@ -207,16 +207,17 @@ def test_a_fault_is_one_line() -> None:
         [bpy.app.binary_path, "-b", "--factory-startup", BLEND, "--python-exit-code", "9", "-P", script],
         capture_output=True, text=True, timeout=60,
     )  # fmt: skip
-    said = [line for line in done.stderr.splitlines() if line.startswith("error")]
-    assert done.returncode == 9 and len(said) == 1, (done.returncode, done.stderr)
-    assert "KeyError" in said[0] and "fault.py, line" in said[0], said
+    lines = said(done.stderr)
+    assert done.returncode == 9 and len(lines) == 1, (done.returncode, done.stderr)
+    assert "KeyError" in lines[0] and "fault.py, line" in lines[0], lines
     if os.path.exists("/dev/full"):
         with open("/dev/full", "w", encoding="utf-8") as full:
             done = subprocess.run(
                 t.blender_command(BLEND, "--out", os.path.join(FOLDER, "full"), "--frames", "1"),
                 stdout=full, stderr=subprocess.PIPE, text=True, timeout=60,
             )  # fmt: skip
-        assert done.returncode == 3 and "standard output cannot be written" in done.stderr
+        assert done.returncode != 0, "Python's own code for it, 120, may take the place of ours"
+        assert "error: standard output cannot be written: No space" in done.stderr, done.stderr
 
 
 def test_kill_and_resume() -> None:
