@@ -135,7 +135,7 @@ void execute(const Options& o) {
     const Exec exec = o.work.exec();
     if (o.work.device != "cpu") return benchDevice(o, specs);
     BenchFrames source{o.shot, o.scene, 0, 0, o.frames};
-    std::tie(source.width, source.height) = sizeOf(o.sizes.front());
+    std::tie(source.width, source.height) = sizeOf("--size", o.sizes.front());
     if (o.sizes.size() > 1) throw UsageError("--size: more than one size needs --device vulkan");
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
     withThreads(o.work.threads, [&] {
@@ -162,13 +162,6 @@ void execute(const Options& o) {
 }
 
 }  // namespace
-
-std::pair<int, int> sizeOf(const std::string& text) {
-    int width = 0, height = 0;
-    if (std::sscanf(text.c_str(), "%dx%d", &width, &height) != 2)
-        throw UsageError("--size: expected WIDTHxHEIGHT, found '" + text + "'");
-    return {width, height};
-}
 
 void addBench(CommandLine& line, Context&) {
     auto o = std::make_shared<Options>();

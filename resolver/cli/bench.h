@@ -16,7 +16,6 @@ struct BenchOptions {
     bool json = false, markdown = false;
     WorkOptions work = {.threads = 1};
 };
-std::pair<int, int> sizeOf(const std::string& text);  // "1920x1080"; throws UsageError
 void benchDevice(const BenchOptions& options, const std::vector<MethodSpec>& methods);
 
 }  // namespace aa

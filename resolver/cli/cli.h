@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "cli/command.h"
 #include "kernels/table.h"
@@ -32,6 +33,8 @@ struct WorkOptions {
 void addWorkOptions(Command& command, WorkOptions& work);
 // --device and what goes with it.
 void addDeviceOptions(Command& command, WorkOptions& work);
+// Width and height of an option's "480x270"; throws UsageError.
+std::pair<int, int> sizeOf(const std::string& option, const std::string& text);
 // Runs `body` in an arena of the asked number of threads.
 void withThreads(int threads, const std::function<void()>& body);
 

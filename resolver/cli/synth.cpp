@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <tuple>
 
 #include "cli/cli.h"
 #include "cli/progress.h"
@@ -17,8 +18,8 @@ struct Options {
     SynthOptions synth;
     std::string out;
     std::vector<std::string> methods;
-    std::vector<int> resolution = {480, 270}, nanPixel;
-    std::string jitterProjection = "post";
+    std::vector<int> nanPixel;
+    std::string resolution = "480x270", jitterProjection = "post";
     int threads = 0;
     bool quiet = false, list = false;
 };
@@ -66,8 +67,7 @@ int synth(Options& o) {
     if (o.list) return printScenes(), 0;
     if (o.synth.scene.empty() || o.out.empty())
         throw UsageError("synth: expected NAME -o SHOT; `aaresolve synth --list` shows the names");
-    o.synth.width = o.resolution[0];
-    o.synth.height = o.resolution[1];
+    std::tie(o.synth.width, o.synth.height) = sizeOf("--resolution", o.resolution);
     if (!o.nanPixel.empty()) o.synth.nanPixel = glm::ivec2(o.nanPixel[0], o.nanPixel[1]);
     o.synth.premultiplied = o.jitterProjection == "pre";
     if (!o.methods.empty()) planFor(o.methods, o.synth);
@@ -95,7 +95,7 @@ void addSynth(CommandLine& line, Context& context) {
     Command c = line.command("synth", "Analytic shots with exact truth, without Blender");
     c.option("NAME", o->synth.scene, "scene; --list shows them");
     c.option("-o,--out", o->out, "folder of the shot");
-    c.option("--resolution", o->resolution, "width and height, px").values(2, 2);
+    c.option("--resolution", o->resolution, "width and height, px");
     c.option("--for", o->methods, "only the passes that these methods read; all passes without it").separatedBy(',');
     c.option("--frames", o->synth.frames, "number of frames");
     c.option("--jitter", o->synth.jitter, "sequence; `none` samples pixel centres");

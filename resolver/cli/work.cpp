@@ -1,6 +1,8 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <filesystem>
 
 #include "cli/cli.h"
@@ -31,6 +33,14 @@ void addDeviceOptions(Command& command, WorkOptions& work) {
                    "a folder of SPIR-V, as temporal/karis.spv, that stands for the program's own shaders");
     command.flag("--gpu-validate", work.gpuValidate,
                  "run under Vulkan's validation layer; its first complaint ends the run");
+}
+
+std::pair<int, int> sizeOf(const std::string& option, const std::string& text) {
+    int width = 0, height = 0, read = 0;
+    const int found = std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &read);
+    if (found != 2 || size_t(read) != text.size() || std::min(width, height) < 1)
+        throw UsageError(option + ": expected WIDTHxHEIGHT in one word, as in 480x270, found '" + text + "'");
+    return {width, height};
 }
 
 std::shared_ptr<gpu::Session> WorkOptions::session() const {

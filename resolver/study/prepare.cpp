@@ -10,6 +10,7 @@
 #include "gpu/method.h"
 #include "image/error.h"
 #include "image/io.h"
+#include "methods/spec.h"
 #include "metrics/temporal.h"
 
 namespace aa {
@@ -18,6 +19,11 @@ namespace {
 // All of `asked`, or nothing: the figures along the motion need every one of them.
 PassSet passesThatAreThere(PassSet asked, PassSet offered) {
     return asked.without(offered).empty() ? asked : PassSet{};
+}
+std::string listed(PassSet passes) {
+    std::string text;
+    for (const auto name : names(passes)) text += (text.empty() ? "" : ", ") + std::string(name);
+    return text;
 }
 }  // namespace
 
@@ -57,16 +63,20 @@ std::vector<size_t> selectFrames(const Manifest& manifest, const std::string& li
 void requirePasses(const ShotReader& shot, const std::vector<MethodSpec>& methods) {
     const PassSet jittered = shot.offered();
     const PassSet centre = shot.hasCentreFrames() ? shot.offered(Sampling::centre) : jittered;
-    for (const auto& m : methods)
-        if (const auto missing =
-                names(m.passes().without(m.method->sampling() == Sampling::centre ? centre : jittered));
-            !missing.empty()) {
-            std::string all;
-            for (const auto& s : methods) all += (all.empty() ? "" : ",") + std::string(s.method->id);
-            throw InputError(shot.manifest().folder.string() + ": method '" + m.text + "' needs the pass '" +
-                             std::string(missing[0]) + "', which the shot does not have; export again with --for " +
-                             all);
-        }
+    std::string first, unserved;
+    for (const auto& m : methods) {
+        const bool atCentres = shot.hasCentreFrames() && m.method->sampling() == Sampling::centre;
+        const PassSet lacking = m.passes().without(atCentres ? centre : jittered);
+        if (names(lacking).empty()) continue;
+        unserved += (unserved.empty() ? "" : ",") + withoutStages(m.text);
+        if (!first.empty()) continue;
+        // What the shot has of jittered frames is no help to a method that reads the pixel centres.
+        first = "method '" + m.text + "' reads the " + (atCentres ? "pictures at the pixel centres" : "frames") +
+                ", which lack " + listed(lacking);
+    }
+    if (!first.empty())
+        throw InputError(shot.manifest().folder.string() + ": " + first + "; export with --for " + unserved +
+                         ", which adds to a shot of the add-on what it lacks");
 }
 
 std::vector<std::string> applyHistory(RunOptions& o, const Manifest& manifest) {

@@ -14,7 +14,7 @@ namespace aa {
 // Frames as a list `1-16,20` (frame numbers of the manifest; empty = all). Throws UsageError, InputError (no such
 // frame).
 std::vector<size_t> selectFrames(const Manifest& manifest, const std::string& list);
-// Throws InputError naming the first method that asks for a pass which the shot lacks.
+// Throws InputError naming the first method that asks for passes which the shot lacks, and what adds them for all.
 void requirePasses(const ShotReader& shot, const std::vector<MethodSpec>& methods);
 // Makes the methods fit options.protocol.history: ramp sets warmup=ramp wherever a method has the parameter and it was
 // not given. Returns the methods that accumulate and have no ramp. Throws UsageError: a full history of a moving shot.

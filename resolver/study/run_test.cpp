@@ -84,13 +84,35 @@ TEST(Study, FramesAreChosenByNumber) {
     EXPECT_THROW(selectFrames(m, "2-1"), UsageError);
     EXPECT_THROW(selectFrames(m, "9"), InputError);
 }
-TEST(Study, AMissingPassIsNamed) {
+std::string complaint(const ShotReader& shot, std::initializer_list<const char*> methods) {
+    std::vector<MethodSpec> specs;
+    for (const char* m : methods) specs.push_back(parseMethod(m));
     try {
-        requirePasses(shot("moving"), {parseMethod("msaa")});
-        FAIL() << "msaa ran without sub-samples";
+        requirePasses(shot, specs);
     } catch (const InputError& e) {
-        EXPECT_NE(std::string(e.what()).find("'msaa' needs the pass 'subsamples'"), std::string::npos) << e.what();
+        return e.what();
     }
+    return "";
+}
+TEST(Study, MissingPassesAreNamedWithWhatAddsThem) {
+    const std::string said = complaint(shot("moving"), {"taaSimplest", "msaa"});
+    EXPECT_NE(said.find("'msaa' reads the frames, which lack subsamples"), std::string::npos) << said;
+    EXPECT_NE(said.find("export with --for msaa,"), std::string::npos) << said;
+}
+TEST(Study, PassesOfJitteredFramesDoNotServeThePixelCentres) {
+    SynthOptions o;
+    o.scene = "moving", o.width = 16, o.height = 12, o.frames = 2, o.period = 4;
+    o.wanted = PassSet(Pass::color) | Pass::depth | Pass::motion;
+    o.centreWanted = PassSet(Pass::color);
+    const fs::path folder = fs::temp_directory_path() / ("aaresolve_study_split_" + std::to_string(::getpid()));
+    writeSynth(o, folder);
+    const ShotReader split(folder);
+    EXPECT_EQ(complaint(split, {"taaSimplest", "fxaa311"}), "");
+    const std::string said = complaint(split, {"rsaa:S=4+sharpen=norm", "taaSimplest", "msaa"});
+    EXPECT_NE(said.find("reads the pictures at the pixel centres, which lack"), std::string::npos) << said;
+    for (const char* pass : {"depth", "subsamples"}) EXPECT_NE(said.find(pass), std::string::npos) << said;
+    EXPECT_NE(said.find("--for rsaa:S=4,msaa,"), std::string::npos) << said;
+    fs::remove_all(folder);
 }
 TEST(Sweep, ParametersGoBeforeTheStages) {
     EXPECT_EQ(withParameters("uncharted", "kmin=1"), "uncharted:kmin=1");

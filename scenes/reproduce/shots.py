@@ -103,7 +103,14 @@ def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
             frames,
             "-q",
         ]
-        command += ["--resolution", *shot.size, "--jitter", shot.jitter, "--period", shot.period]
+        command += [
+            "--resolution",
+            "{}x{}".format(*shot.size),
+            "--jitter",
+            shot.jitter,
+            "--period",
+            shot.period,
+        ]
         command += ["--subsamples", shot.pattern] if shot.pattern else []
         shop.run(f"synth.{shot.name}", command)
         return _ready(shot, stamp, wish, started, "exact truth", folder)

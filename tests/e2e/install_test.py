@@ -73,7 +73,7 @@ class Install(ProgramTest):
             ).stdout
 
         self.assertEqual(run("--version").strip(), version_of(ROOT))
-        run("synth", "circles", "-o", "shot", "--resolution", "32", "24", "--frames", "2")
+        run("synth", "circles", "-o", "shot", "--resolution", "32x24", "--frames", "2")
         run("run", "shot", "-m", "noaa", "-m", "fxaa311", "-o", "out", "-q")
         run("report", "out", "-o", "report.html")
         self.assertIn("fxaa311", (self.folder / "report.html").read_text())

@@ -58,7 +58,15 @@ class ProgramTest(unittest.TestCase):
     ) -> None:
         """Makes an analytic shot of `size` pixels."""
         self.aaresolve(
-            "synth", scene, "-o", shot, "--resolution", *size, "--frames", frames, *options
+            "synth",
+            scene,
+            "-o",
+            shot,
+            "--resolution",
+            "{}x{}".format(*size),
+            "--frames",
+            frames,
+            *options,
         )
 
     def refused(self, code: int, *arguments: object, says: tuple[str, ...], **options) -> str:

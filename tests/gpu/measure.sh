@@ -27,9 +27,9 @@ say() { echo "[$(($(date +%s) - started)) s] $*" >&2; }
 # The analytic shots hold every pass; the pictures are small, because every pixel is compared.
 say "making frames"
 for scene in half_planes thin_lines moving; do
-    "$program" synth $scene -o "$work/$scene" --resolution 240 135 --frames 16 --subsamples d3d8 --subsample-color -q
+    "$program" synth $scene -o "$work/$scene" --resolution 240x135 --frames 16 --subsamples d3d8 --subsample-color -q
 done
-"$program" synth half_planes -o "$work/still" --resolution 240 135 --frames 64 --subsamples d3d2 --subsample-color -q
+"$program" synth half_planes -o "$work/still" --resolution 240x135 --frames 64 --subsamples d3d2 --subsample-color -q
 {
     printf '{"format": "aaresolve-gpu", "version": 1, "date": "%s",\n"system": "%s",\n"devices": ' "$(date -u +%F)" "$(uname -srm)"
     "$program" devices --json
