@@ -31,6 +31,13 @@ AMBIENT_UP: RGB = (0.27, 0.31, 0.38)  # light from the sky, for normals that poi
 AMBIENT_DOWN: RGB = (0.15, 0.13, 0.11)  # light from the ground, for normals that point down
 
 
+def _size(text: str) -> tuple[int, int]:
+    width, _, height = text.partition("x")
+    if not (width.isdigit() and height.isdigit()) or min(int(width), int(height)) < 1:
+        raise argparse.ArgumentTypeError(f"expected WxH as in 480x270, found '{text}'")
+    return int(width), int(height)
+
+
 def parse_arguments(
     description: str, extra: Callable[[argparse.ArgumentParser], None] | None = None
 ):
@@ -39,18 +46,11 @@ def parse_arguments(
     parser = argparse.ArgumentParser(prog="scene", description=description)
     parser.add_argument("--out", required=True, help="the .blend file to write")
     parser.add_argument(
-        "--resolution",
-        nargs=2,
-        type=int,
-        default=[480, 270],
-        metavar=("W", "H"),
-        help="pixels (480 270)",
+        "--resolution", type=_size, default=(480, 270), metavar="WxH", help="pixels (480x270)"
     )
     if extra:
         extra(parser)
     arguments = parser.parse_args(argv)
-    if min(arguments.resolution) < 1:
-        parser.error(f"--resolution: expected two positive numbers, found {arguments.resolution}")
     return arguments
 
 
