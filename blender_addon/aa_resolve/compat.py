@@ -261,6 +261,11 @@ def corner_normals(mesh: bpy.types.Mesh) -> np.ndarray:
     )
 
 
+def path_options() -> set[str]:
+    """Options of a property that holds a path and may begin with ``//``: since 4.5 others are marked as wrong there."""
+    return {"PATH_SUPPORTS_BLEND_RELATIVE"} if VERSION >= (4, 5, 0) else set()
+
+
 def is_cycles_available() -> bool:
     """True when the Cycles add-on is enabled."""
     return hasattr(bpy.types.Scene, "cycles")

@@ -270,7 +270,7 @@ def test_the_panel_says_what_a_shot_lacks() -> None:
     bpy.ops.wm.save_mainfile()
     assert bpy.ops.aa_resolve.export() == {"FINISHED"}
     told = watch.look_now(scene).shot
-    assert not told.refused and "kept: 2 frames" in told.text, told
+    assert not told.refused and "The shot has 2 frames" in told.text, told
     assert "nothing to render" in told.text, told
     shown.method_karis = True
     shown.last = 3

@@ -16,69 +16,26 @@ from __future__ import annotations
 
 import os
 import struct
-import subprocess
 import sys
 import time
 import traceback
 import zlib
 
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import display  # noqa: E402
+
 try:
     import bpy
-except ImportError:  # not in Blender: the part that starts it
-    bpy = None
-
-ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-WIDTH, HEIGHT = 1400, 1000
-LIMIT_SECONDS = 900
-
-
-def start(folder: str, program: str) -> int:
-    """Xvfb and a Blender in it; the exit code."""
-    os.makedirs(folder, exist_ok=True)
-    reading, writing = os.pipe()
-    server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(writing), "-screen", "0", f"{WIDTH}x{HEIGHT}x24", "-fbdir", folder],
-        pass_fds=[writing],
-        stderr=subprocess.DEVNULL,
-    )  # fmt: skip
-    try:
-        os.close(writing)
-        with os.fdopen(reading) as said:
-            number = said.readline().strip()
-        if not number:
-            raise SystemExit("Xvfb does not start")
-        words = [os.environ.get("BLENDER") or "blender", "--factory-startup"]
-        words += ["--window-geometry", "0", "0", str(WIDTH), str(HEIGHT)]
-        words += ["-P", os.path.abspath(__file__), "--", os.path.abspath(folder), program]
-        scripts = os.path.join(os.path.abspath(folder), "scripts")
-        os.makedirs(os.path.join(scripts, "addons"), exist_ok=True)
-        installed = os.path.join(scripts, "addons", "aa_resolve")
-        if not os.path.islink(installed):
-            os.symlink(os.path.join(ROOT, "blender_addon", "aa_resolve"), installed)
-        environment = {
-            **os.environ,
-            "DISPLAY": f":{number}",
-            "LIBGL_ALWAYS_SOFTWARE": "1",
-            "BLENDER_USER_SCRIPTS": scripts,
-        }
-        return subprocess.run(words, env=environment, timeout=LIMIT_SECONDS).returncode
-    finally:
-        server.terminate()
-        server.wait()
-
-
-if bpy is None:
+except ImportError:  # not in Blender yet
     if not 2 <= len(sys.argv) <= 3:
-        raise SystemExit(__doc__)
-    raise SystemExit(start(*[*sys.argv[1:], ""][:2]))
+        raise SystemExit(__doc__) from None
+    raise SystemExit(display.run(__file__, *[*sys.argv[1:], ""][:2])) from None
 
 import numpy as np  # noqa: E402
-
 from aa_resolve import panel  # noqa: E402
 from aa_resolve.panel import running  # noqa: E402
 
 FOLDER, PROGRAM = sys.argv[sys.argv.index("--") + 1 :]
-SHOT = os.path.join(FOLDER, "shot")
 
 
 def window() -> bpy.types.Window:
@@ -137,7 +94,7 @@ def picture(name: str, area: bpy.types.Area | None = None) -> None:
     """One PNG: of an area of the first window, or of all there is."""
     pixels = screen()
     if area is not None:
-        top = HEIGHT - window().y - area.y - area.height
+        top = display.HEIGHT - window().y - area.y - area.height
         left = window().x + area.x
         pixels = pixels[top : top + area.height, left : left + area.width]
     if pixels.max() == 0:
@@ -171,7 +128,7 @@ def steps():
     """The pictures, one after the other; each ``yield`` lets Blender draw."""
     scene = bpy.context.scene
     settings = scene.aa_resolve
-    settings.out = SHOT
+    settings.out = "//shot"
     scene.render.engine = "CYCLES"
     scene.cycles.device = "CPU"
     scene.render.resolution_x, scene.render.resolution_y = 320, 180
@@ -224,7 +181,7 @@ def steps():
         scene.render.engine = "BLENDER_EEVEE"
     except TypeError:  # its name in 4.2 to 4.5
         scene.render.engine = "BLENDER_EEVEE_NEXT"
-    settings.out = os.path.join(FOLDER, "another")
+    settings.out = "//another"
     yield from settled()
     picture("7_eevee", area)
     with bpy.context.temp_override(window=window()):

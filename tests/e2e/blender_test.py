@@ -181,15 +181,17 @@ class FromBlender(ProgramTest):
 import sys, bpy
 sys.path.insert(0, {str(ROOT / "blender_addon")!r})
 import aa_resolve
-from aa_resolve.panel import job, operators
+from aa_resolve.panel import running, watch
+bpy.context.preferences.addons.new().module = "aa_resolve"
 aa_resolve.register()
-job.find_resolver = lambda _preferred: {PROGRAM_IN_BLENDER!r}
+bpy.context.preferences.addons["aa_resolve"].preferences.resolver = {PROGRAM_IN_BLENDER!r}
 settings = bpy.context.scene.aa_resolve
 settings.out, settings.first, settings.last = {str(shot)!r}, 1, 3
 settings.use_resolution, settings.resolution = True, (96, 54)
 settings.truth_samples, settings.method_fxaa311 = 4, True
-assert bpy.ops.aa_resolve.compare() == {{"FINISHED"}}, operators.State.result
-assert operators.State.report.endswith("report.html"), operators.State.report
+assert bpy.ops.aa_resolve.compare() == {{"FINISHED"}}, running.State.result
+best = watch.look_now(bpy.context.scene).outcome.best
+assert best and best[0].gain is not None, best
 sheet = [image for image in bpy.data.images if image.name.startswith("sheet")]
 assert sheet and sheet[0].size[0] > 96, list(bpy.data.images)
 assert bpy.ops.aa_resolve.open_report.poll()

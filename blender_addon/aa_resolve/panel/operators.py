@@ -144,7 +144,7 @@ class AA_RESOLVE_OT_compare(JobOperator, bpy.types.Operator):
 
         def finish(_finished: job.Job) -> str:
             windows.show(sheet)
-            return f"Results: {results}"
+            return f"Results: {os.path.basename(results)}, beside the shot"
 
         return job.Job(steps, step[0], finish)
 
@@ -215,17 +215,16 @@ class AA_RESOLVE_OT_cancel(bpy.types.Operator):
         return State.running is not None
 
     def invoke(self, context, _event):
-        if self.by_key and (_is_playing(context) or context.space_data.context != "RENDER"):
+        # Esc comes here after the player, which it has stopped by then.
+        if self.by_key and (
+            running.is_playing() or State.playing or context.space_data.context != "RENDER"
+        ):
             return {"PASS_THROUGH"}
         return self.execute(context)
 
     def execute(self, _context):
         running.cancel()
         return {"FINISHED"}
-
-
-def _is_playing(context) -> bool:
-    return any(window.screen.is_animation_playing for window in context.window_manager.windows)
 
 
 class _OpenFile:

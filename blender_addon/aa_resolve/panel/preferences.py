@@ -7,7 +7,7 @@ import threading
 import bpy
 from bpy.props import StringProperty
 
-from .. import ADDON_VERSION, program
+from .. import ADDON_VERSION, compat, program
 from . import running
 from .words import draw_text
 
@@ -95,13 +95,16 @@ class AAResolvePreferences(bpy.types.AddonPreferences):
         name="Program",
         description="The program aaresolve; empty: the one that came with the add-on, else the one on the PATH",
         subtype="FILE_PATH",
+        options=compat.path_options(),
     )
 
     def draw(self, context) -> None:
         layout = self.layout
         row = layout.row(align=True)
         row.prop(self, "resolver")
-        row.operator(AA_RESOLVE_OT_check_program.bl_idname, text="Check", icon="FILE_REFRESH")
+        button = row.row(align=True)
+        button.ui_units_x = 5
+        button.operator(AA_RESOLVE_OT_check_program.bl_idname, text="Check", icon="FILE_REFRESH")
         found, problem = verdict()
         if found:
             draw_text(layout, context, found, icon="CHECKMARK")

@@ -16,7 +16,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from .. import registry
+from .. import compat, registry
 from ..options import Option, Widget, options_of, words_of
 from ..settings import Settings
 from . import parameters
@@ -56,11 +56,10 @@ def _property(widget: Widget, default, option: Option):
         return BoolProperty(**more)
     if isinstance(default, str):
         items = widget.items or tuple((name, *said) for name, said in option.choices.items())
-        return (
-            EnumProperty(items=items, **more)
-            if items
-            else StringProperty(**more, subtype=widget.subtype)
-        )
+        if items:
+            return EnumProperty(items=items, **more)
+        options = compat.path_options() if widget.subtype.endswith("_PATH") else set()
+        return StringProperty(**more, subtype=widget.subtype, options={"ANIMATABLE", *options})
     if option.span is not None:
         more["min"], more["max"] = option.span
     if isinstance(default, int):

@@ -21,6 +21,7 @@ class State:
     running: Job | None = None
     result: str = ""
     failed: bool = False  # the result is an error
+    playing: bool = False  # an animation was being played when the timer looked last
     estimate: str = ""
     estimate_for: tuple = ()  # what the estimate holds for: watch.wish_of
 
@@ -60,6 +61,7 @@ def _tick() -> float | None:
     job = State.running
     if job is None:
         return None
+    State.playing = is_playing()
     alive = job.poll()
     if alive:
         _status(f"AA Resolve: {job.message}")
@@ -88,6 +90,11 @@ def stop() -> None:
 def _status(text: str | None) -> None:
     for window in bpy.context.window_manager.windows:
         window.workspace.status_text_set(text)
+
+
+def is_playing() -> bool:
+    """True while an animation is played in some window."""
+    return any(window.screen.is_animation_playing for window in bpy.context.window_manager.windows)
 
 
 def redraw(kinds: tuple[str, ...] = ("PROPERTIES", "PREFERENCES")) -> None:

@@ -71,9 +71,8 @@ def look(scene: bpy.types.Scene, folder: str) -> Told:
             return Told(store.other_settings(found.changed), True)
     except (UsageError, SceneError) as error:
         return Told(str(error), True)
+    text = f"The shot has {found.sentence().removeprefix('kept: ')}"
     if found.work and has_unsaved_changes():
-        return Told(
-            f"The shot: {found.sentence()}. Save the file first: only its saved state can be added to",
-            True,
-        )
-    return Told(f"The shot: {found.sentence()}")
+        text += ". Save the file first: only its saved state can be added to"
+        return Told(text, True)
+    return Told(text)

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the panel does in a window: Esc, another file while it works, drawing without reading, the window of a picture.
+
+    BLENDER=/path/to/blender python3 tests/blenders/window.py FOLDER
+
+Starts Xvfb and a Blender in it, which runs this file again with simulated keys; ends with 1 where a check fails.
+"""
+
+from __future__ import annotations
+
+import builtins
+import os
+import sys
+import time
+import traceback
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import display  # noqa: E402
+
+try:
+    import bpy
+except ImportError:  # not in Blender yet
+    if len(sys.argv) != 2:
+        raise SystemExit(__doc__) from None
+    raise SystemExit(
+        display.run(__file__, sys.argv[1], flags=("--enable-event-simulate",))
+    ) from None
+
+FOLDER = sys.argv[sys.argv.index("--") + 1]
+PICTURE = os.path.join(display.ROOT, "docs", "hard_edges_sheet.jpg")
+_PATIENCE_SECONDS = 60
+
+
+def window() -> bpy.types.Window:
+    return bpy.context.window_manager.windows[0]
+
+
+def area_of(kind: str) -> bpy.types.Area:
+    return max(
+        (area for area in window().screen.areas if area.type == kind),
+        key=lambda area: area.width * area.height,
+    )
+
+
+def press(key: str, area: bpy.types.Area) -> None:
+    """A key with the pointer in the middle of an area."""
+    place = area.x + area.width // 2, area.y + area.height // 2
+    for value in ("PRESS", "RELEASE"):
+        window().event_simulate(type="MOUSEMOVE", value="NOTHING", x=place[0], y=place[1])
+        window().event_simulate(type=key, value=value, x=place[0], y=place[1])
+
+
+def pause(seconds: float = 1.5):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        yield
+
+
+def begin_export() -> None:
+    with bpy.context.temp_override(window=window(), area=area_of("PROPERTIES")):
+        bpy.ops.aa_resolve.export("INVOKE_DEFAULT")
+
+
+def steps():
+    """The checks; each ``yield`` gives Blender time."""
+    from aa_resolve.panel import running, watch, windows
+    from aa_resolve.panel.running import State
+
+    settings = bpy.context.scene.aa_resolve
+    bpy.context.scene.cycles.device = "CPU"
+    settings.out = os.path.join(FOLDER, "shot")
+    settings.use_resolution, settings.resolution = True, (64, 36)
+    settings.first, settings.last, settings.truth = 1, 5000, "NONE"
+    area = area_of("PROPERTIES")
+    area.spaces.active.context = "RENDER"
+    bpy.ops.wm.save_as_mainfile(filepath=os.path.join(FOLDER, "scene.blend"))
+    assert not bpy.data.is_dirty
+    yield from pause()
+
+    begin_export()
+    yield from pause(1.0)
+    press("ESC", area_of("VIEW_3D"))
+    yield from pause()
+    assert State.running is not None, f"Esc over the 3D view is not ours: {State.result}"
+    with bpy.context.temp_override(window=window()):
+        bpy.ops.screen.animation_play()
+    assert window().screen.is_animation_playing
+    yield from pause(1.0)
+    press("ESC", area_of("PROPERTIES"))
+    yield from pause()
+    assert State.running is not None, f"Esc during playback stops that only: {State.result}"
+    assert not window().screen.is_animation_playing
+    yield from pause()
+    press("ESC", area_of("PROPERTIES"))
+    end = time.monotonic() + _PATIENCE_SECONDS
+    while State.running is not None and time.monotonic() < end:
+        yield
+    assert State.running is None and "Stopped" in State.result, "Esc over the panel stops"
+
+    begin_export()
+    yield from pause(1.0)
+    job = State.running
+    bpy.ops.wm.read_homefile(app_template="")
+    yield from pause()
+    assert State.running is job and job.poll(), "the work goes on with another file open"
+    running.cancel()
+    assert State.running is None
+
+    bpy.ops.wm.open_mainfile(filepath=os.path.join(FOLDER, "scene.blend"))
+    yield from pause()
+    area = area_of("PROPERTIES")
+    area.spaces.active.context = "RENDER"
+    yield from pause(3.0)
+    facts = watch.of(bpy.context.scene)
+    assert facts.changes, "the panel was drawn and the scene looked at"
+    read: list[str] = []
+    kept = builtins.open, os.stat, os.path.exists
+
+    def noting(function):
+        def noted(path, *more, **named):
+            read.append(str(path))
+            return function(path, *more, **named)
+
+        return noted
+
+    watch._looked = 0.0  # nobody looks: the timer rests, the drawing alone is heard
+    yield from pause(1.0)
+    builtins.open, os.stat, os.path.exists = (noting(function) for function in kept)
+    with bpy.context.temp_override(window=window()):
+        area.tag_redraw()
+        bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP", iterations=3)
+    builtins.open, os.stat, os.path.exists = kept
+    assert not read, read
+
+    windows.show(PICTURE)
+    yield from pause(4.0)
+    shown = bpy.context.window_manager.windows[-1].screen.areas[0]
+    assert len(bpy.context.window_manager.windows) == 2 and shown.type == "IMAGE_EDITOR"
+    assert shown.spaces.active.image.name == "hard_edges_sheet.jpg"
+    windows.show(PICTURE)
+    yield from pause()
+    assert len(bpy.context.window_manager.windows) == 2, "the same window again"
+
+
+def main() -> None:
+    bpy.context.preferences.view.show_splash = False
+    from aa_resolve.panel import panels
+
+    panels.AA_RESOLVE_PT_main.bl_options = set()
+    bpy.ops.preferences.addon_enable(module="aa_resolve")
+    todo = steps()
+
+    def go_on() -> float | None:
+        try:
+            next(todo)
+            return 0.1
+        except StopIteration:
+            print("WINDOW OK", flush=True)
+            os._exit(0)
+        except BaseException:
+            traceback.print_exc()
+            sys.stderr.flush()
+            os._exit(1)
+
+    bpy.app.timers.register(go_on, first_interval=1.0, persistent=True)
+
+
+main()
