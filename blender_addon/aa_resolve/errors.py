@@ -27,13 +27,18 @@ class Cancelled(Exception):
 
     exit_code = 1
 
+    def __init__(
+        self, told: str = "stopped; finished frames are valid, the same command goes on from there"
+    ) -> None:
+        super().__init__(told)
+
 
 def way_out(error: BaseException) -> tuple[str, int]:
     """The line that is told of an exception, and the exit code. What is none of the above is a fault of ours: 9."""
     if isinstance(error, (UsageError, SceneError, Cancelled)):
         return _in_one_line(str(error)), error.exit_code
     if isinstance(error, KeyboardInterrupt):
-        return "stopped; finished frames are valid", Cancelled.exit_code
+        return str(Cancelled()), Cancelled.exit_code
     if isinstance(error, OSError):
         place = f"{error.filename}: " if error.filename else ""
         reason = error.strerror or str(error) or type(error).__name__

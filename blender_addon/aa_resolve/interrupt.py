@@ -21,7 +21,6 @@ import bpy
 
 from .errors import Cancelled
 
-STOPPED = "stopped; finished frames are valid, the same command goes on from there"
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 _clean_up: list[Callable[[], None]] = []
@@ -61,6 +60,6 @@ def _wait(receiver: socket.socket) -> None:
         for action in _clean_up:
             action()
         shutil.rmtree(bpy.app.tempdir, ignore_errors=True)
-        print(f"error: {STOPPED}", file=sys.stderr, flush=True)
+        print(f"error: {Cancelled()}", file=sys.stderr, flush=True)
     finally:
         os._exit(Cancelled.exit_code)  # the main thread may be inside a render for minutes

@@ -16,7 +16,6 @@ import numpy as np
 
 from .. import compat, exr
 from ..errors import Cancelled, SceneError
-from ..interrupt import STOPPED
 from .ownership import own, own_if_present
 
 
@@ -115,7 +114,7 @@ def render(
     finally:
         bpy.app.handlers.render_cancel.remove(note_cancel)
     if cancelled:  # the operator itself calls it finished
-        raise Cancelled(STOPPED)
+        raise Cancelled()
     if not os.path.exists(path):
         raise SceneError(
             f"Cycles wrote no picture for frame {scene.frame_current}; is the temporary folder full?"
