@@ -71,6 +71,7 @@ def steps():
     settings.out = os.path.join(FOLDER, "shot")
     settings.use_resolution, settings.resolution = True, (64, 36)
     settings.first, settings.last, settings.truth = 1, 5000, "NONE"
+    settings.overwrite = True  # of another run of this script
     area = area_of("PROPERTIES")
     area.spaces.active.context = "RENDER"
     bpy.ops.wm.save_as_mainfile(filepath=os.path.join(FOLDER, "scene.blend"))
@@ -95,7 +96,7 @@ def steps():
     end = time.monotonic() + _PATIENCE_SECONDS
     while State.running is not None and time.monotonic() < end:
         yield
-    assert State.running is None and "Stopped" in State.result, "Esc over the panel stops"
+    assert State.running is None and "Stopped" in State.result, State.result
 
     begin_export()
     yield from pause(1.0)

@@ -89,7 +89,9 @@ def stop() -> None:
 
 def _status(text: str | None) -> None:
     for window in bpy.context.window_manager.windows:
-        window.workspace.status_text_set(text)
+        # A timer has no window of its own, and after File > New Blender 4.3 ends with a fault where it needs one.
+        with bpy.context.temp_override(window=window):
+            window.workspace.status_text_set(text)
 
 
 def is_playing() -> bool:
