@@ -208,13 +208,14 @@ def test_starts_and_families() -> None:
     for kind, known in presets.BUILT_IN.items():
         assert bpy.ops.aa_resolve.use_preset(kind=kind) == {"FINISHED"}
         assert set(shown.chosen()) == set(known.methods), kind
+        assert not shown.method_accum, "the resolver refuses a moving shot to it"
         counts[kind] = len(shown.chosen())
         settings = settings_said(shown.options("/out"))
         assert len(settings.frames) == (known.frames or 250), settings.frames
         assert settings.frames[0] == (7 if known.frames else 1)
         assert settings.resolution == ((480, 270) if known.small else None)
     assert settings.pattern == "d3d4" and settings.truth_frames == settings.frames
-    assert counts["QUICK"] == 5 and counts["EVERYTHING"] == len(registry.load_methods()) - 1, counts
+    assert counts["QUICK"] == 5 and counts["EVERYTHING"] == len(registry.load_methods()) - 2, counts
     bpy.ops.aa_resolve.choose_family(family="temporal", chosen=False)
     assert not set(families()["temporal"]) & set(shown.chosen())
     bpy.ops.aa_resolve.choose_family(family="spatial", chosen=True)

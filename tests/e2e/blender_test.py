@@ -195,6 +195,12 @@ assert best and best[0].gain is not None, best
 sheet = [image for image in bpy.data.images if image.name.startswith("sheet")]
 assert sheet and sheet[0].size[0] > 96, list(bpy.data.images)
 assert bpy.ops.aa_resolve.open_report.poll()
+for kind in ("TAA", "EVERYTHING"):  # no chosen method refuses a shot that moves
+    bpy.ops.aa_resolve.use_preset(kind=kind)
+    settings.out, settings.truth_samples = {str(shot)!r} + kind, 2
+    settings.use_scene_range, settings.first, settings.last = False, 1, 2
+    settings.use_resolution, settings.resolution = True, (96, 54)
+    assert bpy.ops.aa_resolve.compare() == {{"FINISHED"}}, running.State.result
 aa_resolve.unregister()
 """
         )

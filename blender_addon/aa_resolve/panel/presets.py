@@ -38,9 +38,9 @@ def _of_family(*wanted: str, without: tuple[str, ...] = ()) -> tuple[str, ...]:
 # Why these: a quick look answers in a minute or two what each way of anti-aliasing does to this scene, with one method
 # of each kind that games ship (a filter of edges, a better one, accumulation, accumulation that rejects) beside none;
 # truth of three frames is enough to rank them. A study of TAA needs truth of every frame, since flicker and ghosts are
-# judged from frame to frame, and two periods of the jitter: one to fill the history, one to judge. Accumulation
-# without rejection is its yardstick at rest. Everything takes 4 sub-samples, as games render them: they serve every
-# method but SMAA S2x, which is made for 2.
+# judged from frame to frame, and two periods of the jitter: one to fill the history, one to judge. Everything takes
+# 4 sub-samples, as games render them: they serve every method but SMAA S2x, which is made for 2. The accumulation buffer
+# is in neither: it refuses a shot that moves.
 BUILT_IN = {
     "QUICK": Preset(
         "Quick Look",
@@ -54,7 +54,7 @@ BUILT_IN = {
         "TAA Study",
         "Every method that accumulates frames, 32 frames from the present one with truth of each: flicker, ghosts and "
         "convergence can be judged",
-        ("noaa", "accum", *_of_family("temporal", without=("smaa4x",))),
+        ("noaa", *_of_family("temporal", without=("smaa4x",))),
         32,
         False,
         {"truth": "ALL", "truth_samples": 256, "period": 16, "pattern": "AUTO"},
@@ -63,7 +63,7 @@ BUILT_IN = {
         "Everything",
         "Every method that one shot can serve, with 4 sub-samples, over the scene's range with truth of each frame: "
         "hours for a long range; estimate it first",
-        tuple(name for name in registry.load_methods() if name != "smaaS2x"),
+        tuple(name for name in registry.load_methods() if name not in ("accum", "smaaS2x")),
         0,
         False,
         {"truth": "ALL", "truth_samples": 256, "period": 16, "pattern": "d3d4"},
