@@ -762,7 +762,7 @@ def light_linking() -> str:
     return has(t.add_object(scene, "Box"), "light_linking")
 
 
-@fact("light", "models of the sky texture", LIGHTS + ": the world is seen, and shines not")
+@fact("light", "models of the sky texture", "scene/world_light.py")
 def sky_models() -> str:
     plain_scene()
     world = bpy.data.worlds.new("World")

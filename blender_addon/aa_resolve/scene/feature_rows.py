@@ -171,6 +171,21 @@ ROWS: tuple[Feature, ...] = (
         "lighting:set_up",
     ),
     Feature(
+        "file",
+        "light from the world",
+        HANDLED,
+        "noise-free light takes its mean as ambient light, and the sun of a sky texture, as it "
+        "stands at the first frame, as a light without size",
+        "lighting:set_up",
+    ),
+    Feature(
+        "file",
+        "light and shadow linking, a light's temperature, exposure and Normalize",
+        HANDLED,
+        "kept; an animated size with Normalize off is refused in noise-free light",
+        "lighting:set_up",
+    ),
+    Feature(
         "camera",
         "PERSP ORTHO",
         HANDLED,
@@ -228,6 +243,13 @@ ROWS: tuple[Feature, ...] = (
         NOTED,
         "an ordinary surface: Cycles doubles its passes otherwise",
         _OFF,
+    ),
+    Feature(
+        "file",
+        "working space that is not Rec.709 (Blender 5)",
+        NOTED,
+        "colours are converted: a shot is linear Rec.709",
+        _REFUSE,
     ),
     Feature("file", "volume in a material or the world", NOTED, "has no surface", _OFF),
     Feature(
