@@ -56,9 +56,8 @@ def options(parser) -> None:
 
 def side_place(turn: float, bays: int, distance: float) -> c.Matrix:
     """Where a side's left end lies: x runs along it, -y looks into the court."""
-    return (
-        c.Matrix.Rotation(math.radians(turn), 4, "Z")
-        @ c.Matrix.Translation((-bays * BAY / 2, distance, 0.0))
+    return c.Matrix.Rotation(math.radians(turn), 4, "Z") @ c.Matrix.Translation(
+        (-bays * BAY / 2, distance, 0.0)
     )
 
 
@@ -91,7 +90,9 @@ def smooth_round(target) -> None:
     mesh = target.data
     assert len(mesh.polygons) < m.SMOOTH_LIMIT, target.name
     upright = [abs(polygon.normal.z) > 0.999 for polygon in mesh.polygons]
-    square = [max(abs(polygon.normal.x), abs(polygon.normal.y)) > 0.9999 for polygon in mesh.polygons]
+    square = [
+        max(abs(polygon.normal.x), abs(polygon.normal.y)) > 0.9999 for polygon in mesh.polygons
+    ]
     mesh.polygons.foreach_set("use_smooth", [not (u or s) for u, s in zip(upright, square)])
     mesh.update()
 
@@ -113,7 +114,9 @@ def add_arcades(wall, trim) -> None:
         high = place @ c.Matrix.Translation((0.0, 0.09, 0.0))
         m.arcade(walls, length, (UPPER_SPRING, EAVES), WALL - 0.18, upper, high, 14)
         for centre, radius, _, spring in lower:
-            m.archivolt(mouldings, centre, spring, radius, ((0.07, 0.03), (0.1, 0.06), (0.05, 0.1)), place)
+            m.archivolt(
+                mouldings, centre, spring, radius, ((0.07, 0.03), (0.1, 0.06), (0.05, 0.1)), place
+            )
             mouldings.add(
                 [
                     (centre + x, y, spring + radius + z)
@@ -128,7 +131,9 @@ def add_arcades(wall, trim) -> None:
         for index in range(1, bays):  # a round shield between the arches
             shield = place @ c.Matrix.Translation((index * BAY, 0.0, SPRING + 1.15))
             shield = shield @ c.Matrix.Rotation(math.pi / 2, 4, "X")
-            rings = [[(0.3, 0.0), (0.3, 0.07), (0.24, 0.07), (0.22, 0.03), (0.09, 0.03), (0.0, 0.06)]]
+            rings = [
+                [(0.3, 0.0), (0.3, 0.07), (0.24, 0.07), (0.22, 0.03), (0.09, 0.03), (0.0, 0.06)]
+            ]
             m.lathe(mouldings, rings, 20, shield)
         floor = c.Matrix.Translation((0.0, 0.0, STOREY - 0.34))
         m.run_of(mouldings, m.CORNICE, length, place @ floor)
@@ -173,7 +178,9 @@ def add_galleries(plaster, ceiling, trim, wood, dark) -> None:
         walls, details, doors, vaults, beams = (m.Parts() for _ in range(5))
         offset = BAY
         lower = [(offset + (index + 0.5) * BAY, 0.62, 0.0, 2.2) for index in range(bays)]
-        upper = [(offset + (index + 0.5) * BAY, 0.5, STOREY + 0.9, STOREY + 2.1) for index in range(bays)]
+        upper = [
+            (offset + (index + 0.5) * BAY, 0.5, STOREY + 0.9, STOREY + 2.1) for index in range(bays)
+        ]
         reach = 1.6  # walls go past the corner into the neighbour's
         for z_range, openings in (((0.0, STOREY), lower), ((STOREY, EAVES + 0.3), upper)):
             shifted = [(x + reach, h, sill, spring) for x, h, sill, spring in openings]
@@ -184,19 +191,30 @@ def add_galleries(plaster, ceiling, trim, wood, dark) -> None:
         for centre, half, sill, spring in lower + upper:
             m.archivolt(details, centre, spring, half, ((0.08, 0.05), (0.06, 0.09)), place, 12)
             for edge in (-half - 0.14, half):
-                details.box((centre + edge, -0.07, sill), (centre + edge + 0.14, 0.0, spring), place)
+                details.box(
+                    (centre + edge, -0.07, sill), (centre + edge + 0.14, 0.0, spring), place
+                )
             doors.box((centre - half, 0.3, sill), (centre + half, 0.34, spring + half), place)
             for k in range(1, 4):  # planks of the doors, bars of the windows
                 x = centre - half + 2 * half * k / 4
                 doors.box((x - 0.02, 0.26, sill), (x + 0.02, 0.3, spring + half * 0.7), place)
-        m.run_of(details, m.STRING_COURSE, wide * BAY, place @ c.Matrix.Translation((0, 0, SPRING - 0.14)))
+        m.run_of(
+            details,
+            m.STRING_COURSE,
+            wide * BAY,
+            place @ c.Matrix.Translation((0, 0, SPRING - 0.14)),
+        )
         middle = side_place(turn, bays, distance + WALL + GALLERY / 2)
         for index in range(bays):
             spot = middle @ c.Matrix.Translation(((index + 0.5) * BAY, 0.0, SPRING))
             m.groin_vault(vaults, (BAY, GALLERY), BAY / 2 - 0.1, spot, 12)
             for k in range(4):
                 x = (index + k / 4) * BAY
-                beams.box((x - 0.07, -GALLERY / 2, EAVES - 0.1), (x + 0.07, GALLERY / 2, EAVES + 0.12), middle)
+                beams.box(
+                    (x - 0.07, -GALLERY / 2, EAVES - 0.1),
+                    (x + 0.07, GALLERY / 2, EAVES + 0.12),
+                    middle,
+                )
         walls.object(f"Gallery Wall {name}", plaster)
         details.object(f"Gallery Frames {name}", trim)
         doors.object(f"Doors {name}", wood)
@@ -238,15 +256,25 @@ def add_drapes(reds, greens, blues) -> None:
                 spot = place @ c.Matrix.Translation((x, WALL + 0.12, SPRING + 0.25))
                 m.cloth(parts, 2.3, SPRING + 0.15, 7, 0.11, spot, gather=0.45)
                 parts.object(f"Curtain {side} {index + 1}", colours[index // 2 % 3], smooth=True)
-                rods.box((x - 1.25, WALL + 0.1, SPRING + 0.24), (x + 1.25, WALL + 0.14, SPRING + 0.28), place)
+                rods.box(
+                    (x - 1.25, WALL + 0.1, SPRING + 0.24),
+                    (x + 1.25, WALL + 0.14, SPRING + 0.28),
+                    place,
+                )
             else:
                 parts = m.Parts()
                 spot = place @ c.Matrix.Translation((x, -0.36, STOREY + 0.82))
                 m.cloth(parts, 1.5, 2.1, 4, 0.05, spot)
-                parts.object(f"Banner {side} {index + 1}", colours[(index // 2 + 1) % 3], smooth=True)
+                parts.object(
+                    f"Banner {side} {index + 1}", colours[(index // 2 + 1) % 3], smooth=True
+                )
                 rods.box((x - 0.85, -0.38, STOREY + 0.81), (x + 0.85, -0.34, STOREY + 0.85), place)
                 for end in (-0.7, 0.7):
-                    rods.box((x + end - 0.02, -0.36, STOREY + 0.8), (x + end + 0.02, 0.3, STOREY + 0.82), place)
+                    rods.box(
+                        (x + end - 0.02, -0.36, STOREY + 0.8),
+                        (x + end + 0.02, 0.3, STOREY + 0.82),
+                        place,
+                    )
     rods.object("Drape Rods", c.material("Rod Iron", (0.06, 0.05, 0.045)))
 
 
@@ -287,7 +315,9 @@ def add_pots(clay, leaf) -> None:
                 blade = []
                 for step in range(5):
                     t = step / 4
-                    out, up = length * t * math.sin(lean * (0.4 + t)), length * t * math.cos(lean * (0.4 + t))
+                    out, up = length * t * math.sin(lean * (0.4 + t)), length * t * math.cos(
+                        lean * (0.4 + t)
+                    )
                     wide = 0.045 * math.sin(math.pi * (0.12 + 0.86 * t))
                     for w in (-wide, wide):
                         blade.append(
@@ -297,7 +327,9 @@ def add_pots(clay, leaf) -> None:
                                 0.58 + up,
                             )
                         )
-                leaves.add(blade, [(2 * s, 2 * s + 1, 2 * s + 3, 2 * s + 2) for s in range(4)], place)
+                leaves.add(
+                    blade, [(2 * s, 2 * s + 1, 2 * s + 3, 2 * s + 2) for s in range(4)], place
+                )
     pots.object("Pots", clay)
     leaves.object("Leaves", leaf)
 
@@ -323,15 +355,15 @@ def add_floor(slabs, border) -> None:
 def sphere_path(frame: int) -> c.Vector:
     """Centre of the flying sphere: straight along the hall, then up over the camera.
 
-    In the camera's frame the way is (ahead, aside, above); two parabolas that meet at the covering frame with one
-    speed. The distance never falls below 1.9 m, so that the camera stays outside."""
+    In the camera's frame the way is (ahead, aside, above), two parabolas that meet at the covering frame. The centre
+    never comes nearer than 1.9 m, so that the camera stays outside."""
     if frame <= COVER_FRAME:
         t = (COVER_FRAME - frame) / (COVER_FRAME - 1)
         ahead, above = 2.0 + 17.5 * t, -1.9 * t * (1 - t) + 0.15
         aside = 0.9 * t
     else:
         t = (frame - COVER_FRAME) / (FRAMES - COVER_FRAME)
-        ahead, aside, above = 2.0 - 3.0 * t, 0.0, 0.15 + 7.5 * t - 1.5 * t * t
+        ahead, aside, above = 2.0 - 2.0 * t, 0.0, 0.15 + 5.5 * t - 0.5 * t * t
     eye = c.Vector(CAMERA)
     forward = (c.Vector(TARGET) - eye).normalized()
     left = c.Vector((0.0, 0.0, 1.0)).cross(forward).normalized()
@@ -355,19 +387,28 @@ def build(arguments) -> None:
     scene = c.new_scene(arguments.resolution, FRAMES)
     c.add_sky(scene, horizon=(0.62, 0.74, 0.88), zenith=(0.16, 0.34, 0.70))
     wall = textures.bricks(
-        "Court Ashlar", (0.66, 0.54, 0.38), (0.58, 0.46, 0.33), (0.36, 0.28, 0.2), (0.62, 0.3), 0.008
+        "Court Ashlar",
+        (0.66, 0.54, 0.38),
+        (0.58, 0.46, 0.33),
+        (0.36, 0.28, 0.2),
+        (0.62, 0.3),
+        0.008,
     )
     plaster = textures.mottled(
         "Gallery Plaster", (0.60, 0.43, 0.28), (0.48, 0.32, 0.2), 0.8, ambient=0.62
     )
     trim = textures.mottled("Trim Stone", (0.72, 0.65, 0.54), (0.58, 0.5, 0.4), 0.35)
-    inner = textures.mottled("Inner Stone", (0.62, 0.54, 0.43), (0.5, 0.43, 0.34), 0.35, ambient=0.6)
+    inner = textures.mottled(
+        "Inner Stone", (0.62, 0.54, 0.43), (0.5, 0.43, 0.34), 0.35, ambient=0.6
+    )
     column = textures.mottled("Column Stone", (0.74, 0.67, 0.56), (0.6, 0.52, 0.42), 0.25)
     marble = textures.mottled("Slim Column Stone", (0.62, 0.42, 0.34), (0.5, 0.33, 0.27), 0.2)
     vault = c.material("Vault Plaster", (0.56, 0.47, 0.36), ambient_scale=0.55)
     wood = c.material("Door Wood", (0.13, 0.075, 0.04), ambient_scale=0.6)
     beam = c.material("Beam Wood", (0.2, 0.12, 0.07), ambient_scale=0.7)
-    slabs = textures.tiles("Court Tiles", (0.62, 0.56, 0.47), (0.36, 0.27, 0.22), (0.2, 0.17, 0.15), 0.8)
+    slabs = textures.tiles(
+        "Court Tiles", (0.62, 0.56, 0.47), (0.36, 0.27, 0.22), (0.2, 0.17, 0.15), 0.8
+    )
     paving = textures.bricks(
         "Gallery Paving", (0.46, 0.4, 0.33), (0.4, 0.34, 0.28), (0.24, 0.2, 0.17), (0.9, 0.9), 0.01,
         shift=0.0, ambient=0.7,

@@ -526,7 +526,13 @@ def run(
     arguments = parse_arguments(description, extra)
     wishes = sorted((key, value) for key, value in vars(arguments).items() if key != "out")
     digest = hashlib.sha256(f"{wishes} {bpy.app.version_string}".encode())
-    for path in (os.path.abspath(__file__), os.path.abspath(script)):
+    folder = os.path.dirname(os.path.abspath(__file__))
+    shared = {
+        os.path.abspath(module.__file__)
+        for module in list(sys.modules.values())
+        if os.path.dirname(os.path.abspath(getattr(module, "__file__", None) or "")) == folder
+    }
+    for path in sorted(shared | {os.path.abspath(script)}):
         with open(path, "rb") as file:
             digest.update(file.read())
     mark = f"sources {digest.hexdigest()[:40]}"

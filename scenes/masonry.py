@@ -185,7 +185,8 @@ def arcade(
 ) -> None:
     """Upright wall along x with arched openings, its front at y = 0 and its back at ``thick``.
 
-    ``openings``: (centre x, half width, sill z, springing z) from left to right. Has no faces inside the stone."""
+    ``openings``: (centre x, half width, sill z, springing z) from left to right. Has no faces inside the stone.
+    """
     z_low, z_high = z_range
 
     def both(x0: float, z00: float, z01: float, x1: float, z10: float, z11: float) -> None:
@@ -195,7 +196,9 @@ def arcade(
 
     def depth(a: c.Point2, b: c.Point2) -> None:
         """Reveal along the edge a-b of an opening, the opening lying to the left of it."""
-        parts.quad((a[0], 0, a[1]), (a[0], thick, a[1]), (b[0], thick, b[1]), (b[0], 0, b[1]), place)
+        parts.quad(
+            (a[0], 0, a[1]), (a[0], thick, a[1]), (b[0], thick, b[1]), (b[0], 0, b[1]), place
+        )
 
     left = 0.0
     for centre, half, sill, spring in openings:
@@ -212,7 +215,9 @@ def arcade(
             both(x0, z0, z_high, x1, z1, z_high)
         left = centre + half
     both(left, z_low, z_high, length, z_low, z_high)
-    parts.quad((0, 0, z_high), (length, 0, z_high), (length, thick, z_high), (0, thick, z_high), place)
+    parts.quad(
+        (0, 0, z_high), (length, 0, z_high), (length, thick, z_high), (0, thick, z_high), place
+    )
     parts.quad((0, thick, z_low), (length, thick, z_low), (length, 0, z_low), (0, 0, z_low), place)
     for x, order in ((0.0, (0, 1, 2, 3)), (length, (3, 2, 1, 0))):
         corners = ((x, 0, z_low), (x, 0, z_high), (x, thick, z_high), (x, thick, z_low))
@@ -242,7 +247,9 @@ def archivolt(
             (ax, az), (bx, bz) = low[k], low[k + 1]
             (dx, dz), (ex, ez) = high[k + 1], high[k]
             parts.quad((ax, -out, az), (ex, -out, ez), (dx, -out, dz), (bx, -out, bz), place)
-            parts.quad((ax, -previous, az), (ax, -out, az), (bx, -out, bz), (bx, -previous, bz), place)
+            parts.quad(
+                (ax, -previous, az), (ax, -out, az), (bx, -out, bz), (bx, -previous, bz), place
+            )
         previous = out
     for k in range(steps):
         (ax, az), (bx, bz) = rims[-1][k], rims[-1][k + 1]

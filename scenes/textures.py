@@ -101,9 +101,7 @@ def bricks(
     ):
         node.inputs[key].default_value = value
     tree.links.new(_uv(tree), node.inputs["Vector"])
-    shade = _mix(
-        tree, "MIX", _noise(tree, 0.9, 2.0, None), (0.78, 0.78, 0.78), (1.08, 1.08, 1.08)
-    )
+    shade = _mix(tree, "MIX", _noise(tree, 0.9, 2.0, None), (0.78, 0.78, 0.78), (1.08, 1.08, 1.08))
     paint(surface, _mix(tree, "MULTIPLY", 1.0, node.outputs["Color"], shade))
     return surface
 
