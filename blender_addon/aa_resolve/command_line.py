@@ -95,9 +95,16 @@ def settings_from(arguments: argparse.Namespace, scene: bpy.types.Scene) -> Sett
         "jitter": sequence,
         "pattern": _pattern(choices, arguments.pattern, passes | centre_passes, stored),
         "ambient": tuple(arguments.ambient) if arguments.ambient else None,
-        "source": arguments.source or file_identity(bpy.data.filepath),
+        "source": _source(arguments, stored),
     }
     return settled(Settings(**{**said, **made}), stored)
+
+
+def _source(arguments: argparse.Namespace, stored: Stored | None) -> str:
+    """The scene's identity; that of the shot where the user vouches for it."""
+    if arguments.same_scene and stored:
+        return stored.content["source"]
+    return arguments.source or file_identity(bpy.data.filepath)
 
 
 def frames_of_scene(scene: bpy.types.Scene) -> list[int]:

@@ -83,12 +83,16 @@ class FlagParser(argparse.ArgumentParser):
         """As ever; of an unknown flag the nearest one is named, and a value may begin with a minus and a digit."""
         said: list[str] = []
         for word in words:
-            flag = word.partition("=")[0]
+            flag, equals, value = word.partition("=")
             if word.startswith("--") and flag not in self._option_string_actions:
                 near = difflib.get_close_matches(flag, self._option_string_actions, 1)
                 hint = f"; did you mean {near[0]}?" if near else ""
                 self.error(f"unknown option {flag}{hint}")
-            if re.match(r"-[0-9]", word) and said and said[-1] in self._option_string_actions:
+            before = said[-1] if said and said[-1] in self._option_string_actions else ""
+            if not word and before or equals and not value and flag in self._option_string_actions:
+                # Of a script's variable that was never set: the default must not take its place unasked.
+                self.error(f"{before or flag}: expected a value, found an empty text")
+            if before and re.match(r"-[0-9]", word):
                 word = f"{said.pop()}={word}"
             said.append(word)
         parsed, unknown = self.parse_known_args(said, namespace)
@@ -179,6 +183,15 @@ def words_of(table: type, panel, **given: list[str]) -> list[str]:
         if words is not None:
             said += [known.flag, *words]
     return said
+
+
+def as_labels(text: str, table: type) -> str:
+    """A sentence of the command line for a panel: flags by the labels of their widgets, where they have one."""
+    for item, known in options_of(table):
+        if len(known.panel) == 1:
+            label = f"'{known.panel[0].label}'"
+            text = re.sub(rf"(?<![\w-]){known.flag}(?![\w-])", lambda _, label=label: label, text)
+    return text
 
 
 def _own_words(name: str) -> Callable[[Any], list[str] | None]:

@@ -15,6 +15,11 @@ from typing import Iterable
 from .errors import UsageError
 
 
+# Behind a method that reads sub-samples, the exporter's own: how many, in which pattern; the resolver reads them from
+# the shot.
+_SUB_SAMPLES = {"S": "d3d", "samples": "d3d", "N": "grid"}
+
+
 @dataclass(frozen=True)
 class MethodChoice:
     """One method with the parameters written behind it, as in ``rsaa:S=8,measure=sadp``."""
@@ -108,14 +113,45 @@ def parse_choices(texts: list[str]) -> list[MethodChoice]:
             raise UsageError(f"--for: expected KEY=VALUE after '{choices[-1][0]}:', found '{part}'")
         choices[-1][1][key] = value
     known = load_methods()
-    for name, _ in choices:
+    for name, parameters in choices:
         if name not in known:
             near = difflib.get_close_matches(name, known, 1)
             hint = (
                 f"; did you mean '{near[0]}'?" if near else f"; known: {', '.join(sorted(known))}"
             )
             raise UsageError(f"--for: unknown method '{name}'{hint}")
+        _check_parameters(name, parameters)
     return [MethodChoice(name, parameters) for name, parameters in choices]
+
+
+def _check_parameters(method: str, said: dict[str, str]) -> None:
+    """Raises UsageError for what the resolver would refuse, before anything is rendered for it."""
+    table = {item["name"]: item for item in load_methods()[method]["parameters"]}
+    ours = _SUB_SAMPLES if reads_subsamples(load_methods()[method]["passes"]) else {}
+    for name, value in said.items():
+        if name in ours and value.isdecimal():
+            continue
+        if name not in table:
+            known = f"known: {', '.join(table)}" if table else "it has none"
+            raise UsageError(f"--for: {method} has no parameter '{name}'; {known}")
+        item = table[name]
+        if not is_known_value(item, value):
+            expected = (
+                ", ".join(item["choices"])
+                if "choices" in item
+                else f"{item['min']:g} to {item['max']:g}"
+            )
+            raise UsageError(f"--for: {method}:{name}: expected {expected}, found '{value}'")
+
+
+def is_known_value(item: dict, text: str) -> bool:
+    """True when the parameter of this table can take the value."""
+    if "choices" in item:
+        return text in item["choices"]
+    try:
+        return item["min"] <= float(text) <= item["max"]
+    except ValueError:
+        return False
 
 
 def required_passes(choices: list[MethodChoice], sampling: str | None = None) -> set[str]:
@@ -138,11 +174,9 @@ def patterns_of(choice: MethodChoice) -> list[str]:
     method = load_methods()[choice.id]
     if not reads_subsamples(method["passes"]):
         return []
-    for key in ("S", "samples"):
+    for key, pattern in _SUB_SAMPLES.items():
         if key in choice.parameters:
-            return [f"d3d{choice.parameters[key]}"]
-    if "N" in choice.parameters:
-        return [f"grid{choice.parameters['N']}"]
+            return [f"{pattern}{choice.parameters[key]}"]
     return method.get("patterns", [])
 
 

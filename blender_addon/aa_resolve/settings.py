@@ -73,7 +73,8 @@ class Settings:
     )
     methods: list[str] = option(
         "--for",
-        "methods the shot must serve, e.g. noaa,taaSimplest,rsaa:S=8; decides the passes (default: noaa)",
+        "methods the shot must serve, as `aaresolve run -m` names them, e.g. noaa,karis:box=variance; decides the passes. "
+        "S=8 behind one that reads sub-samples asks for 8 of them: rsaa:S=8 (default: noaa)",
         metavar="METHODS",
         unsaid=[],
         repeated=True,
@@ -304,6 +305,21 @@ class Settings:
         default="",
         metavar="HASH",
         changed="the .blend file",
+        group="What to export",
+    )
+    same_scene: bool = option(
+        "--same-scene",
+        "add to the shot although the .blend has been saved since it was begun; for changes that no picture shows "
+        "(settings of the panel, selection, view), which is yours to know",
+        default=False,
+        decides_content=False,
+        panel=(
+            Widget(
+                "Same Scene",
+                "Add to the shot although the file has changed since it was begun: for when what changed is seen in no "
+                "picture, such as this panel's settings, the selection or the view. Nothing checks that",
+            ),
+        ),
         group="What to export",
     )
     overwrite: bool = option(

@@ -141,10 +141,10 @@ class Store:
 
     def other_settings(self, changed: str) -> str:
         """Why an export cannot join the shot."""
-        return (
-            f"--out: '{self.folder}' holds an export with other settings: {changed}; "
-            "choose a new folder, or replace it with --overwrite"
-        )
+        way = "choose a new folder, or replace it with --overwrite"
+        if changed == difference({"source": ""}, {"source": "another"}):
+            way += ", or add --same-scene where no picture shows what changed"
+        return f"--out: '{self.folder}' holds an export with other settings: {changed}; {way}"
 
     def open(
         self, content: dict, methods: list[str], name: str, pattern: str | None, overwrite: bool

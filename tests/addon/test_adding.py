@@ -406,6 +406,9 @@ def test_what_makes_other_pictures_is_refused() -> None:
             raise SystemExit(f"{options} must be refused")
         except UsageError as error:
             assert expected in str(error) and "--overwrite" in str(error), error
+            assert ("--same-scene" in str(error)) == (options[0] == "--source"), error
+    wish = ("--frames", "2-3", "--passes", "object", "--truth-frames", "none")
+    assert lacking(out, *wish, "--source", "another", "--same-scene").changed is None
     try:
         lacking(out, "--frames", "1-3")
         raise SystemExit("a frame before the jitter's first must be refused")

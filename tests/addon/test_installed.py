@@ -61,7 +61,7 @@ try:
     bpy.ops.aa_resolve.export()
     raise SystemExit("a changed setting must be noticed")
 except RuntimeError as error:
-    assert "--period was 16 and now is 8" in str(error), error
+    assert "'Period' was 16 and now is 8" in str(error), error
 for name in settings.chosen():
     setattr(settings, "method_" + name, False)
 try:
@@ -82,14 +82,91 @@ assert not left, left
 print("PANEL OK")
 """
 
+EXTENSION = """
+import bpy, json, os, sys
+folder, module = {folder!r}, "bl_ext.user_default.aa_resolve"
+assert bpy.ops.extensions.package_install_files(
+    filepath=os.path.join(folder, "aa_resolve.zip"), repo="user_default", enable_on_install=True
+) == {{"FINISHED"}}
+assert "aa_resolve" not in sys.modules, "known by the extension's name alone"
+here = sys.modules[module].__file__
+assert here.startswith(folder) and "/extensions/user_default/" in here.replace(os.sep, "/"), here
+kept = bpy.context.preferences.addons[module].preferences
+kept.resolver = os.path.join(folder, "nothing")
+assert sys.modules[module + ".panel.preferences"].preferred() == kept.resolver
+scene = bpy.context.scene
+settings = scene.aa_resolve
+settings.out = os.path.join(folder, "shot_of_extension")
+settings.first, settings.last, settings.truth = 2, 3, "NONE"
+assert bpy.ops.aa_resolve.export() == {{"FINISHED"}}
+shot = json.load(open(os.path.join(settings.out, "shot.json")))
+assert [entry["frame"] for entry in shot["frames"]] == [2, 3]
+try:
+    bpy.ops.aa_resolve.compare()
+    raise SystemExit("the program that the preferences name is not there")
+except RuntimeError as error:
+    assert kept.resolver in str(error), error
+settings.period = 5
+bpy.ops.aa_resolve.add_preset(name="Kept")
+settings.period = 16
+preset = [os.path.join(path, "Kept.py") for path in bpy.utils.preset_paths("aa_resolve")]
+bpy.ops.script.execute_preset(filepath=preset[0], menu_idname="AA_RESOLVE_MT_presets")
+assert settings.period == 5, "presets come back"
+bpy.ops.wm.save_userpref()
+print("EXTENSION OK")
+"""
+EXTENSION_AGAIN = """
+import bpy, os
+kept = bpy.context.preferences.addons["bl_ext.user_default.aa_resolve"].preferences
+assert kept.resolver == os.path.join({folder!r}, "nothing"), kept.resolver
+bpy.ops.preferences.addon_disable(module="bl_ext.user_default.aa_resolve")
+assert not hasattr(bpy.types.Scene, "aa_resolve")
+print("EXTENSION OK")
+"""
 
-def test_installed_from_zip() -> None:
+
+def small_scene() -> str:
+    """A cube that moves, saved."""
     scene = t.new_scene(32, 18)
     t.add_camera(scene)
     t.add_sun(scene)
     scene.cycles.samples = 77
     t.key(t.add_object(scene, "Cube"), "location", {1: (-1, 0, 0.5), 11: (1, 0.4, 0.8)})
-    blend = t.save(scene, os.path.join(FOLDER, "scene.blend"))
+    return t.save(scene, os.path.join(FOLDER, "scene.blend"))
+
+
+def run_script(blend: str, text: str, *flags: str, **environment: str) -> None:
+    """In a Blender of its own; its last words are that all is well."""
+    script = os.path.join(FOLDER, "panel.py")
+    with open(script, "w", encoding="utf-8") as file:
+        file.write(text.format(folder=FOLDER))
+    done = subprocess.run(
+        [bpy.app.binary_path, "-b", *flags, blend, "--python-exit-code", "9", "-P", script],
+        capture_output=True, text=True, timeout=150, env={**os.environ, **environment},
+    )  # fmt: skip
+    assert done.returncode == 0 and " OK" in done.stdout, done.stdout[-3000:] + done.stderr[-3000:]
+
+
+def test_installed_as_an_extension() -> None:
+    """From 4.2 on the same zip is an extension: a module of another name, with preferences, presets and an export."""
+    if not hasattr(bpy.context.preferences, "extensions"):
+        return  # before 4.2
+    blend = small_scene()
+    packer = os.path.join(t.ROOT, "blender_addon", "make_zip.py")
+    archive = os.path.join(FOLDER, "aa_resolve.zip")
+    subprocess.run([sys.executable, packer, archive], check=True, capture_output=True)
+    places = {
+        f"BLENDER_USER_{name}": os.path.join(FOLDER, "user", name.lower())
+        for name in ("CONFIG", "SCRIPTS", "EXTENSIONS", "DATAFILES")
+    }
+    for place in places.values():
+        os.makedirs(place)
+    run_script(blend, EXTENSION, "--factory-startup", **places)
+    run_script(blend, EXTENSION_AGAIN, **places)
+
+
+def test_installed_from_zip() -> None:
+    blend = small_scene()
     packer = os.path.join(t.ROOT, "blender_addon", "make_zip.py")
     archive = os.path.join(FOLDER, "aa_resolve.zip")
     subprocess.run([sys.executable, packer, archive], check=True, capture_output=True)
@@ -104,19 +181,10 @@ def test_installed_from_zip() -> None:
     subprocess.run([sys.executable, packer, archive], check=True, capture_output=True)
     with open(archive, "rb") as file:
         assert hashlib.sha256(file.read()).digest() == first, "the zip is the same each time"
-    script = os.path.join(FOLDER, "panel.py")
-    with open(script, "w", encoding="utf-8") as file:
-        file.write(SCRIPT.format(folder=FOLDER))
-    environment = {**os.environ, "BLENDER_USER_SCRIPTS": os.path.join(FOLDER, "scripts")}
     os.makedirs(os.path.join(FOLDER, "scripts", "addons"))
-    done = subprocess.run(
-        [bpy.app.binary_path, "-b", "--factory-startup", blend, "--python-exit-code", "9", "-P", script],
-        capture_output=True, text=True, timeout=150, env=environment,
-    )  # fmt: skip
-    assert done.returncode == 0 and "PANEL OK" in done.stdout, (
-        done.stdout[-3000:] + done.stderr[-3000:]
-    )
+    scripts = os.path.join(FOLDER, "scripts")
+    run_script(blend, SCRIPT, "--factory-startup", BLENDER_USER_SCRIPTS=scripts)
 
 
 if __name__ == "__main__":
-    t.main(test_installed_from_zip)
+    t.main(test_installed_from_zip, test_installed_as_an_extension)

@@ -278,7 +278,8 @@ def test_the_panel_says_what_a_shot_lacks() -> None:
     assert "depth" in told.text and "1 frame" in told.text and "1 truth" in told.text, told
     shown.period = 8
     told = watch.look_now(scene).shot
-    assert told.refused and "--period was 16 and now is 8" in told.text, told
+    assert told.refused and "'Period' was 16 and now is 8" in told.text, told
+    assert "--" not in told.text and not told.other_scene, "a panel speaks by its labels"
     shown.overwrite = True
     told = watch.look_now(scene).shot
     assert told.text == "The old shot will be replaced" and not told.refused
@@ -286,6 +287,46 @@ def test_the_panel_says_what_a_shot_lacks() -> None:
     shown.method_smaaS2x, shown.method_rsaa, shown.pattern = True, True, "d3d8"
     told = watch.look_now(scene).shot
     assert told.refused and "smaaS2x" in told.text, told
+
+
+def test_a_saved_file_is_added_to() -> None:
+    """The panel's settings lie in the file, so that choosing a method changes it: the user may vouch for the scene."""
+    from aa_resolve.panel import watch
+
+    scene = moving_scene("vouched.blend")
+    preferences()
+    shown = scene.aa_resolve
+    shown.out = os.path.join(FOLDER, "vouched")
+    shown.first, shown.last, shown.truth, shown.truth_samples = 1, 2, "NONE", 2
+    bpy.ops.wm.save_mainfile()
+    assert bpy.ops.aa_resolve.export() == {"FINISHED"}
+    first = os.path.join(shown.out, "frames", "000001.exr")
+    before = t.read_part(first, "color")
+    shown.method_karis = True
+    bpy.ops.wm.save_mainfile()
+    told = watch.look_now(scene).shot
+    assert told.refused and told.other_scene and "'Same Scene'" in told.text, told
+    try:
+        bpy.ops.aa_resolve.export()
+        raise SystemExit("unasked, another file adds nothing")
+    except RuntimeError as error:
+        assert "the .blend file has changed" in str(error) and "Error: '" in str(error), error
+    shown.same_scene = True
+    told = watch.look_now(scene).shot
+    assert not told.refused and "to render: depth for 2 frames" in told.text, told
+    kept = watch.shot.has_unsaved_changes
+    watch.shot.has_unsaved_changes = lambda: True  # as in a window before the file is saved
+    try:
+        assert not watch.shot.look(scene, shown.out).refused
+    finally:
+        watch.shot.has_unsaved_changes = kept
+    assert bpy.ops.aa_resolve.export() == {"FINISHED"}
+    after = t.read_part(first, "color")
+    assert all((before[name] == after[name]).all() for name in before), "what was there is kept"
+    assert t.read_part(first, "depth")
+    shown.period = 8
+    told = watch.look_now(scene).shot
+    assert told.refused and "'Period' was 16" in told.text, "it vouches for the scene alone"
 
 
 def test_disk_caches_are_seen() -> None:
@@ -313,5 +354,6 @@ if __name__ == "__main__":
         test_preview_shows_both_lights,
         test_cancel_stops_and_says_so,
         test_the_panel_says_what_a_shot_lacks,
+        test_a_saved_file_is_added_to,
         test_disk_caches_are_seen,
     )

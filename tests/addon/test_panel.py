@@ -178,7 +178,7 @@ def test_parameters_are_edited_and_said() -> None:
     assert shown.changed_parameters("karis") == {"alpha": "0.5"}, "what the table does not know"
     tiny = {"name": "x", "min": 0.0, "max": 1e9}
     assert [p.number_text(value) for value in (1e-5, 2.5e7, 0.1)] == ["0.00001", "25000000", "0.1"]
-    assert p.is_known_value(tiny, "12") and not p.is_known_value(tiny, "-1")
+    assert registry.is_known_value(tiny, "12") and not registry.is_known_value(tiny, "-1")
     path = os.path.join(t.temporary_folder(), "kept.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path)
     bpy.ops.wm.open_mainfile(filepath=path)

@@ -97,6 +97,12 @@ def test_wrong_usage_is_2_and_one_line() -> None:
         (("--out", "x", "--samples", "many"), "--samples: expected a whole number, found 'many'"),
         (("--out", "x", "--frames", "1-2", "3"), "unexpected '3'"),
         (("--out", "x", "--frames", "-3--5"), "ends before"),
+        (("--out", "x", "--frames", ""), "--frames: expected a value, found an empty text"),
+        (("--out", "x", "--frames="), "--frames: expected a value, found an empty text"),
+        (("--out", ""), "--out: expected a value"),
+        (("--out", "x", "--for", "karis:alfa=1"), "karis has no parameter 'alfa'; known: alpha"),
+        (("--out", "x", "--for", "karis:alpha=7"), "karis:alpha: expected 0 to 1, found '7'"),
+        (("--out", "x", "--for", "karis:box=best"), "karis:box: expected "),
     )
     script = os.path.join(FOLDER, "cases.py")
     with open(script, "w", encoding="utf-8") as file:  # one Blender for all of them

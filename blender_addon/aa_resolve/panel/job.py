@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import os
 import queue
+import re
 import shutil
 import subprocess
 import tempfile
@@ -19,7 +20,9 @@ from dataclasses import dataclass, field
 import bpy
 
 from ..command_line import file_identity
+from ..options import as_labels
 from ..scene.simulations import link_caches
+from ..settings import Settings
 
 _ROOM = os.path.dirname(os.path.abspath(__file__))
 HEADLESS = os.path.join(os.path.dirname(_ROOM), "headless.py")
@@ -107,9 +110,10 @@ class Job:
         if self._process.returncode != 0:
             told = [line.strip() for line in self._errors if line.strip()]
             said = [line for line in told if line.startswith("error")] or told[-1:]
-            self.error = (
+            last = (
                 said[-1] if said else f"{self.message}: ended with code {self._process.returncode}"
             )
+            self.error = as_labels(re.sub(r"^error: ", "", last), Settings)
             return self._end()
         self.steps.pop(0)
         if not self.steps:

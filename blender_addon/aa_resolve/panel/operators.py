@@ -125,6 +125,8 @@ class AA_RESOLVE_OT_compare(JobOperator, bpy.types.Operator):
         if found is None:
             self.report({"ERROR"}, program.problem(preferred))
             return None
+        if program.problem(preferred):  # of another version
+            self.report({"WARNING"}, program.problem(preferred))
         shot = self.shot_folder(context)
         step = self.export_step(context, "Export", [], shot) if shot else None
         if step is None:

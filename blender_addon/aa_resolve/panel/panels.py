@@ -80,6 +80,8 @@ class AA_RESOLVE_PT_main(_Panel, bpy.types.Panel):
             _draw_running(layout, context)
             return
         draw_text(layout, context, facts.shot.text, icon="ERROR" if facts.shot.refused else "INFO")
+        if facts.shot.other_scene or settings.same_scene:
+            layout.column(heading="The Shot Is of").prop(settings, "same_scene", text="Same Scene")
         column = layout.column(align=True)
         large = column.row()
         large.scale_y = 1.3

@@ -45,16 +45,6 @@ def default_text(item: dict) -> str:
     return item["default"] if isinstance(item["default"], str) else number_text(item["default"])
 
 
-def is_known_value(item: dict, text: str) -> bool:
-    """True when the parameter of this table can take the value."""
-    if "choices" in item:
-        return text in item["choices"]
-    try:
-        return item["min"] <= float(text) <= item["max"]
-    except ValueError:
-        return False
-
-
 def read(method: str, text: str) -> dict[str, str]:
     """The changed parameters of a text, in the table's order; what the table does not know is left out."""
     table = table_of(method)
@@ -62,7 +52,9 @@ def read(method: str, text: str) -> dict[str, str]:
     return {
         name: said[name]
         for name, item in table.items()
-        if name in said and is_known_value(item, said[name]) and said[name] != default_text(item)
+        if name in said
+        and registry.is_known_value(item, said[name])
+        and said[name] != default_text(item)
     }
 
 

@@ -12,6 +12,8 @@ import bpy
 from ..adding import missing
 from ..command_line import build_parser, file_identity, settings_from
 from ..errors import SceneError, UsageError
+from ..options import as_labels
+from ..settings import Settings
 from ..store import Store
 from .job import has_unsaved_changes
 
@@ -24,6 +26,7 @@ class Told:
 
     text: str = ""
     refused: bool = False
+    other_scene: bool = False  # the file is not the one that the shot was made of
 
 
 def stamp_of(folder: str) -> tuple:
@@ -68,11 +71,15 @@ def look(scene: bpy.types.Scene, folder: str) -> Told:
             return Told("The old shot will be replaced")
         found = missing(wanted, store)
         if found.changed:
-            return Told(store.other_settings(found.changed), True)
+            text = as_labels(store.other_settings(found.changed), Settings)
+            return Told(text, True, identity != stored.content["source"])
     except (UsageError, SceneError) as error:
-        return Told(str(error), True)
+        return Told(as_labels(str(error), Settings), True)
     text = f"The shot has {found.sentence().removeprefix('kept: ')}"
-    if found.work and has_unsaved_changes():
-        text += ". Save the file first: only its saved state can be added to"
-        return Told(text, True)
+    if found.work and has_unsaved_changes() and not settings.same_scene:
+        text += (
+            ". The file has unsaved changes: 'Same Scene' adds to the shot where no picture shows them; otherwise save, "
+            "and begin another shot"
+        )
+        return Told(text, True, True)
     return Told(text)
