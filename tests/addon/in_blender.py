@@ -20,10 +20,11 @@ from typing import Callable
 HERE = Path(__file__).resolve().parent
 NAMES = sorted(script.stem.removeprefix("test_") for script in HERE.glob("test_*.py"))
 LIMIT_S = 900
+CANNOT_BE_HAD = 77  # exit code of what this machine does not have; it is named, and is no failure
 PASSED = re.compile(r"^(\d+) of (\d+) passed$", re.MULTILINE)
 # What says why a test failed, among a line per rendered tile and the complaints of Blender's own add-ons.
 TELLING = re.compile(
-    r"^(FAIL |error: |aaresolve: |WRONG |\w*Error\b|\w+\.\w*Error\b|Segmentation|Fatal)",
+    r"^(FAIL |SKIPPED|error: |aaresolve: |WRONG |\w*Error\b|\w+\.\w*Error\b|Segmentation|Fatal)",
     re.MULTILINE,
 )
 # What Blender 5.2 of Debian says against itself, of missing recommended packages and scenes without a world.
@@ -42,10 +43,16 @@ class Outcome:
     telling: list[str]
 
     @property
+    def skipped(self) -> bool:
+        return self.code == CANNOT_BE_HAD
+
+    @property
     def good(self) -> bool:
-        return self.code == 0 and self.of > 0 and self.passed == self.of
+        return self.skipped or self.code == 0 and self.of > 0 and self.passed == self.of
 
     def __str__(self) -> str:
+        if self.skipped:
+            return "skipped"
         counted = f"{self.passed}/{self.of}"
         if self.of == 0 or (self.code and self.passed == self.of):
             counted = f"ended with {self.code}"
@@ -144,7 +151,7 @@ def run_script(name: str, logs: Path) -> Outcome:
 def show(outcome: Outcome, where: str, log: Path) -> None:
     """One line, and why where it failed."""
     print(f"{where} {outcome.name:24} {outcome}", flush=True)
-    if not outcome.good:
+    if outcome.skipped or not outcome.good:
         for line in outcome.telling[-12:]:
             print(f"    {line[:200]}")
         print(f"    {log}", flush=True)

@@ -31,6 +31,7 @@ WRAPPER = Path(__file__).resolve().with_name("wrapper.sh")
 OPTIONS = (
     "--variant=apt",
     "--include=blender,python3-numpy,python3-openimageio",
+    "--include=libgl1,libegl1,libgl1-mesa-dri",  # windows, drawn in software
     # 1.1 GB instead of 4 to unpack; a system that a power cut breaks is made anew.
     "--dpkgopt=path-exclude=/usr/share/doc/*",
     "--dpkgopt=path-exclude=/usr/share/man/*",

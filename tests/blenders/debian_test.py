@@ -215,5 +215,23 @@ class Debian(unittest.TestCase):
         _out, said = self.call("got", "trixie", expect=2)
         self.assertIn("debian.py get trixie", said)
 
+    def test_a_window_that_cannot_be_had_is_skipped(self) -> None:
+        """Without a display in memory, and with a Blender that ends before it has a window."""
+        command = [sys.executable, str(DEBIAN.with_name("window.py")), str(self.folder / "window")]
+        (self.folder / "bin/Xvfb").write_text(
+            '#!/bin/sh\n[ "$1" = -displayfd ] && eval "echo 9 >&$2"\nexec sleep 60\n'
+        )
+        blender = self.folder / "bin/blender"
+        blender.write_text("#!/bin/sh\nexit 134\n")
+        for path in (self.folder / "bin/Xvfb", blender):
+            path.chmod(0o755)
+        environment = {**self.environment, "BLENDER": str(blender)}
+        for path, why in ((self.environment["PATH"], "libgl1-mesa-dri"), ("/nowhere", "xvfb")):
+            done = subprocess.run(
+                command, capture_output=True, text=True, env={**environment, "PATH": path}
+            )
+            self.assertEqual(done.returncode, 77, done.stderr)
+            self.assertRegex(done.stderr, f"^SKIPPED: no window .*{why}")
+
 
 unittest.main()

@@ -3,7 +3,9 @@
     python3 tests/blenders/run.py PROGRAM [-j 2] [--suites trixie sid host] [--only light scenes e2e.import]
 
 In each suite (`host`: the Blender of BLENDER or PATH): the add-on's tests; the scenes of `make demo` in small, exported and
-checked; the whole-program tests that start a Blender; and one scene compared with what the host's Blender exports of it.
+checked; the whole-program tests that start a Blender; one scene compared with what the host's Blender exports of it; and
+the panel in a window of a display in memory, with pictures of it in build/blenders/SUITE/screenshots. Where there is no
+such display, that is said and skipped.
 Blender runs in the other Debian with what it starts itself, the rest on this machine. A suite that cannot be had is
 named, with the reason, and skipped.
 """
@@ -30,11 +32,13 @@ import in_blender  # noqa: E402
 
 SCENES = ("hard_edges", "moving_sphere")
 WHOLE_PROGRAM = ("blender", "import", "masks")
+WINDOWS = ("window", "screenshots")
 SCRIPTS = (
     *in_blender.NAMES,
     *(f"scenes.{name}" for name in SCENES),
     *(f"e2e.{name}" for name in WHOLE_PROGRAM),
     "agree",
+    *WINDOWS,
 )
 PASSES = "albedo,depth,normal,object,motion,subsamples,edges,segments"
 STREET_PASSES = "depth,normal,object,albedo,motion,edges"
@@ -88,6 +92,8 @@ class Blender:
             elif kind == "e2e":
                 test = ROOT / f"tests/e2e/{name}_test.py"
                 commands, count = [[sys.executable, test, self.program, ROOT]], counted_by_unittest
+            elif script in WINDOWS:
+                commands, count = [self.window(script, folder)], whole
             elif script == "agree":
                 commands, count = self.agree(folder), counted_by_agree
             else:
@@ -120,6 +126,14 @@ class Blender:
             [blender, "-b", "--factory-startup", *FAIL, "-P", street, "--", blend],
             [blender, "-b", blend, *FAIL, "-P", HEADLESS, "--", "--out", shot, *options],
         ]
+
+    def window(self, script: str, folder: Path) -> list[object]:
+        """Pictures are kept, to be looked at."""
+        command = [sys.executable, ROOT / f"tests/blenders/{script}.py"]
+        if script == "window":
+            return [*command, folder]
+        program = self.environment.get("AA_PROGRAM_IN_BLENDER", self.program)
+        return [*command, self.logs.resolve() / script, program]
 
     def scene(self, name: str, folder: Path) -> list[list[object]]:
         """Build, export with every pass, check."""
@@ -179,6 +193,8 @@ def main() -> int:
     with ThreadPoolExecutor(max(a.jobs, 1)) as pool:
         for (blender, script), outcome in zip(jobs, pool.map(lambda job: job[0].run(job[1]), jobs)):
             in_blender.show(outcome, blender.version, blender.log(script))
+            if outcome.skipped:
+                skipped.append(f"{' '.join(outcome.telling[-1:])} ({script}, {blender.name})")
             table[script].append(outcome)
 
     outcomes = [outcome for row in table.values() for outcome in row]

@@ -192,6 +192,7 @@ def steps():
 
 def main() -> None:
     os.makedirs(FOLDER, exist_ok=True)
+    display.begun(FOLDER)
     bpy.context.preferences.view.show_splash = False
     only_our_panels()
     bpy.ops.preferences.addon_enable(module="aa_resolve")

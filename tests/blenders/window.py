@@ -144,6 +144,7 @@ def steps():
 
 
 def main() -> None:
+    display.begun(FOLDER)
     bpy.context.preferences.view.show_splash = False
     from aa_resolve.panel import panels
 
