@@ -13,7 +13,7 @@ from .adding import Missing, Work, counted, duration
 from .export import Exporter
 from .store import Store
 
-_FEW_SAMPLES, _MORE_SAMPLES = 1, 9  # of truth: what does not grow with them, and what does
+_MORE = 4  # times the samples of truth, until they and not the picture itself take the time
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class Estimate:
         frame = sum(c.seconds for item, _, c in self.groups if item.kind != "truth")
         truth = sum(c.seconds for item, _, c in self.groups if item.kind == "truth")
         return {
-            "seconds": round(self.seconds, 1),
+            "seconds": round(self.seconds, 3),
             "frame_seconds": round(frame, 3),
             "truth_seconds": round(truth, 3),
             "bytes": self.bytes,
@@ -88,8 +88,17 @@ def _measured(
 
 
 def _of_truth(exporter: Exporter, store: Store, item: Work, path: str) -> Cost:
-    samples = exporter.settings.truth_samples
-    few = _measured(exporter, store, item, path, _FEW_SAMPLES)
-    more = _measured(exporter, store, item, path, _MORE_SAMPLES)
-    each = max(0.0, more.seconds - few.seconds) / (_MORE_SAMPLES - _FEW_SAMPLES)
-    return Cost(few.seconds + each * (samples - _FEW_SAMPLES), more.bytes)
+    """By its time with one sample, and with as many as take longer than all the rest does: less would be noise."""
+    wanted = exporter.settings.truth_samples
+    # The first one also pays for what the following ones find ready.
+    one = min(
+        (_measured(exporter, store, item, path, 1) for _ in range(2)), key=lambda c: c.seconds
+    )
+    samples = 1
+    while samples < wanted:
+        samples = min(_MORE * samples, wanted)
+        more = _measured(exporter, store, item, path, samples)
+        if more.seconds >= 2.0 * one.seconds:
+            each = (more.seconds - one.seconds) / (samples - 1)
+            return Cost(one.seconds + each * (wanted - 1), more.bytes)
+    return one if wanted == 1 else more
