@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """flowers: blossoms and leaves as alpha cut-outs, winding around a column; nothing moves unless ``--sway``.
 
-After the Sponza flowers test of the Oliveros thesis. Every blossom is a flat square; its outline lives in the alpha
+After the Sponza flowers test of [Oliveros 2018, 5.2.6]; ``--close`` is its close view. Every blossom is a flat square; its outline lives in the alpha
 of an image, so geometry alone knows nothing of the edge.
 
-usage: blender -b --python-exit-code 9 -P scenes/flowers.py -- --out build/scenes/flowers.blend [--sway]
+usage: blender -b --python-exit-code 9 -P scenes/flowers.py -- --out build/scenes/flowers.blend [--close] [--sway]
 """
 
 from __future__ import annotations
@@ -24,6 +24,9 @@ FRAMES = 100
 def options(parser) -> None:
     """Variants of the scene."""
     parser.add_argument("--sway", action="store_true", help="the garland swings to and fro")
+    parser.add_argument(
+        "--close", action="store_true", help="the camera near: leaves and blossoms fill the picture"
+    )
 
 
 def shape_image(name: str, inside) -> c.bpy.types.Image:
@@ -40,26 +43,6 @@ def shape_image(name: str, inside) -> c.bpy.types.Image:
     image.update()
     image.pack()
     return image
-
-
-def add_squares(name: str, placements, surface) -> c.bpy.types.Object:
-    """One object of squares, each from (centre, right, up); the whole image covers each."""
-    vertices: list = []
-    faces: list = []
-    for centre, right, up in placements:
-        first = len(vertices)
-        vertices += [
-            centre - right - up,
-            centre + right - up,
-            centre + right + up,
-            centre - right + up,
-        ]
-        faces.append((first, first + 1, first + 2, first + 3))
-    result = c.add_mesh(name, vertices, faces, surface)
-    layer = result.data.uv_layers.new(name="UVMap")
-    for index, corner in enumerate(((0, 0), (1, 0), (1, 1), (0, 1)) * len(faces)):
-        layer.data[index].uv = corner
-    return result
 
 
 def garland(generator: random.Random, count: int, size: tuple[float, float], spread: float):
@@ -121,7 +104,7 @@ def build(arguments) -> None:
     ):
         surface = c.material(f"{name} Cut-out", colour)
         c.cut_out(surface, image)
-        garlands.append(add_squares(name, garland(generator, count, size, spread), surface))
+        garlands.append(c.add_squares(name, garland(generator, count, size, spread), surface))
     if arguments.sway:
         for item in garlands:
             c.key_linear(
@@ -133,7 +116,10 @@ def build(arguments) -> None:
                 ],
             )
     c.add_sun(scene, azimuth_degrees=-60.0, height_degrees=42.0)
-    c.add_camera(scene, location=(1.2, -9.5, 2.7), target=(0.0, 0.0, 2.7), lens_mm=54.0)
+    if arguments.close:
+        c.add_camera(scene, location=(0.9, -6.0, 2.5), target=(0.0, 0.0, 2.1), lens_mm=76.0)
+    else:
+        c.add_camera(scene, location=(1.2, -9.5, 2.7), target=(0.0, 0.0, 2.7), lens_mm=54.0)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """hairball: thousands of fibres thinner than a pixel, in front of a plain sky.
 
-After the hairball tests of the Oliveros thesis: lit or as a black silhouette (``--unlit``), at rest or rotating by
+After the hairball tests of [Oliveros 2018, 5.2.9]: lit or as a black silhouette (``--unlit``), at rest or rotating by
 1.2 degrees per frame (``--rotating``: about two pixels at the rim, 480 x 270). 3000 fibres make 200,000 triangles.
 
 usage: blender -b --python-exit-code 9 -P scenes/hairball.py -- --out build/scenes/hairball.blend [--unlit] [--rotating]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """hard_edges: a facade full of thin straight things, seen by a far camera; nothing moves.
 
-After the "hard edges" test of the Oliveros thesis: a brown pipe, a blue window with closed blinds whose slits
+After the "hard edges" test of [Oliveros 2018, 5.2.7], its four models together: a brown pipe, a blue window with closed blinds whose slits
 are about one pixel wide at 480 x 270, a blue arched window with a door in it whose gaps are about as thin, and
 a white wall with black letters. The camera looks slightly from the side and is rolled by two degrees, so that
 hardly an edge is parallel to the pixel grid.
@@ -16,81 +16,9 @@ import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import common as c  # noqa: E402  (the folder of this file is no package)
+import facade as f  # noqa: E402
 
 METRES_PER_PIXEL = 0.034  # at the facade, 480 pixels wide
-
-
-def add_blinds_window(blue, dark, white) -> None:
-    """Frame of 2.9 m x 3.1 m with 24 slats; the slits between them are one pixel high and dark."""
-    x0, x1, z0, z1 = -7.2, -4.3, 1.9, 5.0
-    rim = 0.16
-    c.add_box("Blinds Recess", (x0, -0.02, z0), (x1, 0.02, z1), dark)
-    c.add_boxes(
-        "Blinds Frame",
-        [
-            ((x0 - rim, -0.28, z0 - rim), (x0, 0.0, z1 + rim)),
-            ((x1, -0.28, z0 - rim), (x1 + rim, 0.0, z1 + rim)),
-            ((x0, -0.28, z1), (x1, 0.0, z1 + rim)),
-            ((x0, -0.28, z0 - rim), (x1, 0.0, z0)),
-        ],
-        blue,
-    )
-    c.add_box("Blinds Sill", (x0 - 0.35, -0.42, z0 - rim - 0.14), (x1 + 0.35, 0.0, z0 - rim), white)
-    count, slit = 24, METRES_PER_PIXEL
-    pitch = (z1 - z0) / count
-    slats = [
-        (
-            (x0, -0.12, z0 + index * pitch + slit / 2),
-            (x1, -0.09, z0 + (index + 1) * pitch - slit / 2),
-        )
-        for index in range(count)
-    ]
-    c.add_boxes("Blinds Slats", slats, c.material("Slat Blue", (0.16, 0.36, 0.72)))
-
-
-def add_arched_window(blue, dark) -> None:
-    """Arched frame with a two-leaf door and a fan light: gaps and glazing bars of about one pixel."""
-    centre, half, sill, spring = 4.9, 1.5, 0.25, 3.3
-    c.add_arch_wall(
-        "Arch Frame",
-        (centre - half - 0.24, centre + half + 0.24),
-        (sill - 0.2, spring + half + 0.26),
-        (-0.22, 0.0),
-        [(centre, half, sill, spring)],
-        blue,
-        steps=32,
-    )
-    c.add_box(
-        "Arch Recess", (centre - half, -0.02, sill), (centre + half, 0.02, spring + half), dark
-    )
-    gap = METRES_PER_PIXEL
-    leaf = c.material("Door Blue", (0.10, 0.27, 0.60))
-    panels = []
-    for side in (-1, 1):
-        near, far = centre + side * gap / 2, centre + side * (half - gap)
-        low_x, high_x = min(near, far), max(near, far)
-        rows = 4
-        height = (spring - sill - 0.2) / rows
-        for row in range(rows):
-            z = sill + row * height
-            panels.append(((low_x, -0.1, z + gap / 2), (high_x, -0.06, z + height - gap / 2)))
-    c.add_boxes("Arch Door", panels, leaf)
-    c.add_box(
-        "Arch Transom",
-        (centre - half, -0.14, spring - 0.2),
-        (centre + half, -0.05, spring - 0.06),
-        blue,
-    )
-    for index, degrees in enumerate((30.0, 60.0, 90.0, 120.0, 150.0)):
-        angle = c.math.radians(degrees)
-        end = (centre + half * c.math.cos(angle), -0.08, spring - 0.06 + half * c.math.sin(angle))
-        c.add_cylinder(f"Fan Bar {index + 1}", (centre, -0.08, spring - 0.06), end, 0.022, 8, blue)
-    c.add_cylinder(
-        "Door Knob Left", (centre - 0.16, -0.2, 1.6), (centre - 0.16, -0.1, 1.6), 0.06, 12, dark
-    )
-    c.add_cylinder(
-        "Door Knob Right", (centre + 0.16, -0.2, 1.6), (centre + 0.16, -0.1, 1.6), 0.06, 12, dark
-    )
 
 
 def add_letters(black, white) -> None:
@@ -118,14 +46,14 @@ def build(arguments) -> None:
     """Makes the scene in the open (empty) file."""
     scene = c.new_scene(arguments.resolution)
     c.add_sky(scene, horizon=(0.62, 0.74, 0.90), zenith=(0.16, 0.34, 0.70))
-    blue = c.material("Window Blue", (0.055, 0.16, 0.46))
-    dark = c.material("Dark Inside", (0.012, 0.014, 0.02))
-    white = c.material("White", (0.80, 0.79, 0.76))
+    blue = c.material("Window Blue", f.BLUE)
+    dark = c.material("Dark Inside", f.DARK)
+    white = c.material("White", f.WHITE)
     black = c.material("Letter Black", (0.012, 0.012, 0.012))
     plaster = c.material("Plaster", (0.62, 0.47, 0.33))
     stone = c.material("Stone", (0.46, 0.42, 0.37))
     ground = c.material("Ground", (0.30, 0.33, 0.24))
-    pipe = c.material("Pipe Brown", (0.30, 0.125, 0.045))
+    pipe = c.material("Pipe Brown", f.PIPE_BROWN)
 
     c.add_box("Facade", (-8.6, 0.0, 0.0), (8.3, 3.0, 6.1), plaster)
     c.add_box("Plinth", (-8.75, -0.18, 0.0), (3.1, 0.0, 0.75), stone)
@@ -143,8 +71,8 @@ def build(arguments) -> None:
     c.add_boxes(
         "Steps", [((3.2, -1.1, 0.0), (6.6, 0.0, 0.1)), ((3.4, -0.6, 0.1), (6.4, 0.0, 0.2))], stone
     )
-    add_blinds_window(blue, dark, white)
-    add_arched_window(blue, dark)
+    f.add_blinds_window((-7.2, 1.9), (-4.3, 5.0), METRES_PER_PIXEL, blue, dark, white)
+    f.add_arched_window(4.9, METRES_PER_PIXEL, blue, dark)
     add_letters(black, white)
     c.add_cylinder("Pipe", (-3.6, -1.5, 0.22), (3.5, -1.1, 1.75), 0.3, 10, pipe)
     c.add_cylinder(

@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 import shutil
 import subprocess
 import time
@@ -164,13 +165,26 @@ def _ready(shot: Shot, stamp: Path, wish: str, started: float, what: str, folder
     return folder
 
 
+def _scene_sources(name: str) -> list[Path]:
+    """The scene's file and what it imports of its folder, and so on."""
+    found = [ROOT / f"scenes/{name}.py"]
+    for path in found:  # grows meanwhile
+        for word in re.findall(
+            r"^(?:import|from) (\w+)", path.read_text(encoding="utf-8"), re.MULTILINE
+        ):
+            block = ROOT / f"scenes/{word}.py"
+            if block.exists() and block not in found:
+                found.append(block)
+    return sorted(found)
+
+
 def _identity(shot: Shot, shop: Workshop) -> str:
     """What decides the shot's content: its description and the sources of scene and exporter."""
     digest = hashlib.sha256(f"{replace(shot, methods='', thesis='')} {shop.quick}".encode())
     if shot.scene.startswith("synth:"):
         sources = [shop.program]
     else:
-        sources = [ROOT / f"scenes/{shot.scene}.py", ROOT / "scenes/common.py"]
+        sources = _scene_sources(shot.scene)
         sources += sorted((ROOT / "blender_addon/aa_resolve").rglob("*.py"))
         # Of the registry only what decides the passes: a better help text renders nothing anew.
         registry = json.loads((ROOT / "blender_addon/aa_resolve/methods.json").read_text())[
