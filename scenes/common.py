@@ -31,6 +31,7 @@ from materials import (  # noqa: F401  (one import for all that a scene needs)
     material,
     matt,
     no_light_source,
+    paint,
     textured,
 )
 from shapes import (  # noqa: F401

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""The models of the hard edges: window with blinds, arched window. Their slits are as wide as the scene asks."""
+"""The models that several scenes of hard edges show: window with blinds, arched window, wall with letters. Slits are as
+wide as the scene asks."""
 
 from __future__ import annotations
 
 import math
+from typing import Sequence
 
 import common as c
+import numpy as np
 
 BLUE: c.RGB = (0.055, 0.16, 0.46)
 SLAT_BLUE: c.RGB = (0.16, 0.36, 0.72)
@@ -13,6 +16,9 @@ DOOR_BLUE: c.RGB = (0.10, 0.27, 0.60)
 DARK: c.RGB = (0.012, 0.014, 0.02)
 WHITE: c.RGB = (0.80, 0.79, 0.76)
 PIPE_BROWN: c.RGB = (0.30, 0.125, 0.045)
+INK = 0.012
+
+Line = tuple[str, float, float]  # text, height of its middle over the wall's, size: metres
 
 
 def add_blinds_window(low: c.Point2, high: c.Point2, slit: float, blue, dark, white) -> None:
@@ -85,3 +91,59 @@ def add_arched_window(centre: float, gap: float, blue, dark) -> None:
     c.add_cylinder(
         "Door Knob Right", (centre + 0.16, -0.2, 1.6), (centre + 0.16, -0.1, 1.6), 0.06, 12, dark
     )
+
+
+def _letter_triangles(body: str, height: float, size: float) -> np.ndarray:
+    """Letters of Blender's built-in font as triangles (n, 3 corners, x and z)."""
+    item = c.add_text("Text", body, (0.0, 0.0, 0.0), size, None)
+    evaluated = item.evaluated_get(c.bpy.context.evaluated_depsgraph_get())
+    mesh = evaluated.to_mesh()
+    mesh.calc_loop_triangles()
+    corners = np.array([vertex.co[:2] for vertex in mesh.vertices]) + (0.0, height)
+    found = corners[np.array([triangle.vertices[:] for triangle in mesh.loop_triangles])]
+    evaluated.to_mesh_clear()
+    curve = item.data
+    c.bpy.data.objects.remove(item)
+    c.bpy.data.curves.remove(curve)
+    return found
+
+
+def _letters_image(
+    half_width: float, half_height: float, lines: Sequence[Line], texels_per_metre: int
+) -> c.bpy.types.Image:
+    """White with black letters: a texel is black if its centre lies in a letter."""
+    texels = [round(2 * half * texels_per_metre) for half in (half_width, half_height)]
+    width, height = texels
+    black = np.zeros((height, width), bool)
+    for line in lines:
+        for corners in (_letter_triangles(*line) + (half_width, half_height)) * texels_per_metre:
+            low = np.maximum(np.floor(corners.min(axis=0)).astype(int), 0)
+            high = np.minimum(np.ceil(corners.max(axis=0)).astype(int), texels)
+            x, y = np.meshgrid(*(np.arange(a, b) + 0.5 for a, b in zip(low, high)))
+            sides = [
+                (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])
+                for a, b in zip(corners, np.roll(corners, -1, axis=0))
+            ]
+            inside = np.minimum.reduce(sides) >= 0, np.maximum.reduce(sides) <= 0
+            black[low[1] : high[1], low[0] : high[0]] |= inside[0] | inside[1]
+    image = c.bpy.data.images.new("Letters", width, height, float_buffer=True, is_data=True)
+    pixels = np.ones((height, width, 4), np.float32)
+    pixels[..., :3] = np.where(black[..., None], INK, WHITE)
+    image.pixels.foreach_set(pixels.ravel())
+    image.update()
+    image.pack()
+    return image
+
+
+def add_text_wall(
+    centre: Sequence[float],
+    half_width: float,
+    half_height: float,
+    lines: Sequence[Line],
+    texels_per_metre: int,
+) -> c.bpy.types.Object:
+    """Upright white face whose texture bears black letters, with no texel between black and white."""
+    paper = c.material("Wall White", WHITE)
+    c.textured(paper, _letters_image(half_width, half_height, lines, texels_per_metre))
+    right, up = c.Vector((half_width, 0.0, 0.0)), c.Vector((0.0, 0.0, half_height))
+    return c.add_squares("Wall", [(c.Vector(centre), right, up)], paper)

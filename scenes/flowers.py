@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """flowers: blossoms and leaves as alpha cut-outs, winding around a column; nothing moves unless ``--sway``.
 
-After the Sponza flowers test of [Oliveros 2018, 5.2.6]; ``--close`` is its close view. Every blossom is a flat square; its outline lives in the alpha
-of an image, so geometry alone knows nothing of the edge.
+After the Sponza flowers test of [Oliveros 2018, 5.2.6]. Every blossom is a flat square; its outline lives in the alpha of
+an image, so geometry alone knows nothing of the edge. With ``--close`` the cut-outs fill the picture.
 
 usage: blender -b --python-exit-code 9 -P scenes/flowers.py -- --out build/scenes/flowers.blend [--close] [--sway]
 """

@@ -2,7 +2,8 @@
 """hairball: thousands of fibres thinner than a pixel, in front of a plain sky.
 
 After the hairball tests of [Oliveros 2018, 5.2.9]: lit or as a black silhouette (``--unlit``), at rest or rotating by
-1.2 degrees per frame (``--rotating``: about two pixels at the rim, 480 x 270). 3000 fibres make 200,000 triangles.
+1.2 degrees per frame (``--rotating``: about two pixels at the rim, 480 x 270). At any ``--resolution`` a fibre is 0.8 of a
+pixel wide, and there are as many as cover the ball alike: 3000 of them, 200,000 triangles, at 480 x 270.
 
 usage: blender -b --python-exit-code 9 -P scenes/hairball.py -- --out build/scenes/hairball.blend [--unlit] [--rotating]
 """
@@ -19,7 +20,9 @@ import common as c  # noqa: E402  (the folder of this file is no package)
 
 FRAMES = 100
 SEGMENTS = 10
-FIBRE_RADIUS = 0.0032  # metres; a pixel of 480 x 270 is 0.008 wide at the ball
+PICTURE_WIDTH = 3.84  # metres at the ball
+FIBRE_PIXELS = 0.8  # width
+FIBRES_PER_COLUMN = 6.25  # of pixels: 3000 at 480
 DEGREES_PER_FRAME = 1.2
 
 
@@ -29,7 +32,7 @@ def options(parser) -> None:
         "--unlit", action="store_true", help="black fibres on white: the silhouette alone"
     )
     parser.add_argument("--rotating", action="store_true", help="turn by 1.2 degrees per frame")
-    parser.add_argument("--fibres", type=int, default=3000, help="number of fibres (3000)")
+    parser.add_argument("--fibres", type=int, help="number of fibres (6.25 per pixel of width)")
 
 
 def fibre(generator: random.Random) -> list[c.Vector]:
@@ -67,9 +70,10 @@ def build(arguments) -> None:
         c.add_sky(scene, horizon=(0.60, 0.70, 0.80), zenith=(0.35, 0.48, 0.66))
         hair = c.material("Fibre", (0.52, 0.27, 0.12), ambient_scale=0.8)
     generator = random.Random(20180731)
-    ball = c.add_tubes(
-        "Hairball", [fibre(generator) for _ in range(arguments.fibres)], FIBRE_RADIUS, 3, hair
-    )
+    columns = arguments.resolution[0]
+    count = arguments.fibres or round(FIBRES_PER_COLUMN * columns)
+    radius = FIBRE_PIXELS / 2 * PICTURE_WIDTH / columns
+    ball = c.add_tubes("Hairball", [fibre(generator) for _ in range(count)], radius, 3, hair)
     if arguments.rotating:
         turn = math.radians(DEGREES_PER_FRAME * (FRAMES - 1))
         c.key_linear(ball, "rotation_euler", [(1, (0.0, 0.0, 0.0)), (FRAMES, (0.0, 0.0, turn))])

@@ -44,6 +44,7 @@ def matt(
             target.default_value = (*albedo, 1.0)
 
     tint = tree.nodes.new("ShaderNodeMixRGB")
+    tint.label = "Albedo"  # by which ``paint`` finds it
     tint.blend_type = "MULTIPLY"
     tint.inputs["Fac"].default_value = 1.0
     colour(tint.inputs["Color1"])
@@ -116,11 +117,11 @@ def cut_out(surface: bpy.types.Material, image: bpy.types.Image) -> None:
     tree.links.new(cut, output.inputs["Surface"])
 
 
-def _albedo_from(surface: bpy.types.Material, colour: bpy.types.NodeSocket) -> None:
+def paint(surface: bpy.types.Material, colour: bpy.types.NodeSocket) -> None:
     """Lets a socket give the albedo, under the sun and in the ambient light alike."""
     tree = surface.node_tree
     for node in tree.nodes:
-        if node.bl_idname == "ShaderNodeMixRGB" and node.blend_type == "MULTIPLY":
+        if node.label == "Albedo":
             tree.links.new(colour, node.inputs["Color1"])
         elif node.bl_idname == "ShaderNodeBsdfDiffuse":
             tree.links.new(colour, node.inputs["Color"])
@@ -130,7 +131,7 @@ def textured(surface: bpy.types.Material, image: bpy.types.Image) -> None:
     """Lets an image give the albedo (uv map of the mesh)."""
     texture = surface.node_tree.nodes.new("ShaderNodeTexImage")
     texture.image = image
-    _albedo_from(surface, texture.outputs["Color"])
+    paint(surface, texture.outputs["Color"])
 
 
 def make_checkered(surface: bpy.types.Material, other: RGB, scale: float) -> None:
@@ -143,4 +144,4 @@ def make_checkered(surface: bpy.types.Material, other: RGB, scale: float) -> Non
     checker.inputs["Color2"].default_value = (*other, 1.0)
     coordinates = tree.nodes.new("ShaderNodeTexCoord")
     tree.links.new(coordinates.outputs["Object"], checker.inputs["Vector"])
-    _albedo_from(surface, checker.outputs["Color"])
+    paint(surface, checker.outputs["Color"])

@@ -11,6 +11,7 @@ import bpy
 import common as c
 
 Socket = bpy.types.NodeSocket
+UNPAINTED: c.RGB = (0.5, 0.5, 0.5)  # albedo until the texture is painted on
 
 
 def _uv(tree: bpy.types.NodeTree) -> Socket:
@@ -27,28 +28,6 @@ def _mix(tree: bpy.types.NodeTree, blend: str, share, first, second) -> Socket:
         else:
             node.inputs[name].default_value = value if name == "Fac" else (*value, 1.0)
     return node.outputs["Color"]
-
-
-def paint(surface: bpy.types.Material, colour: Socket) -> None:
-    """Lets a socket give the albedo, under the sun and in the ambient light alike."""
-    tree = surface.node_tree
-    tint = next(
-        node
-        for node in tree.nodes
-        if node.bl_idname == "ShaderNodeMixRGB" and node.label == "Albedo"
-    )
-    diffuse = next(node for node in tree.nodes if node.bl_idname == "ShaderNodeBsdfDiffuse")
-    tree.links.new(colour, tint.inputs["Color1"])
-    tree.links.new(colour, diffuse.inputs["Color"])
-
-
-def _textured(name: str, ambient: float) -> bpy.types.Material:
-    """Material whose albedo is still to be painted."""
-    surface = c.material(name, (0.5, 0.5, 0.5), ambient)
-    for node in surface.node_tree.nodes:
-        if node.bl_idname == "ShaderNodeMixRGB" and node.blend_type == "MULTIPLY":
-            node.label = "Albedo"
-    return surface
 
 
 def _noise(tree: bpy.types.NodeTree, size: float, detail: float, vector: Socket | None) -> Socket:
@@ -68,9 +47,9 @@ def mottled(
     name: str, light: c.RGB, dark: c.RGB, size: float, ambient: float = 1.0
 ) -> bpy.types.Material:
     """Plaster, weathered stone, earth: two colours mixed by soft noise."""
-    surface = _textured(name, ambient)
+    surface = c.material(name, UNPAINTED, ambient)
     tree = surface.node_tree
-    paint(surface, _mix(tree, "MIX", _noise(tree, size, 3.0, None), dark, light))
+    c.paint(surface, _mix(tree, "MIX", _noise(tree, size, 3.0, None), dark, light))
     return surface
 
 
@@ -85,7 +64,7 @@ def bricks(
     ambient: float = 1.0,
 ) -> bpy.types.Material:
     """Courses of bricks, ashlar or slabs of ``size``; ``shift`` 0 lays joint under joint."""
-    surface = _textured(name, ambient)
+    surface = c.material(name, UNPAINTED, ambient)
     tree = surface.node_tree
     node = tree.nodes.new("ShaderNodeTexBrick")
     node.offset = shift
@@ -102,7 +81,7 @@ def bricks(
         node.inputs[key].default_value = value
     tree.links.new(_uv(tree), node.inputs["Vector"])
     shade = _mix(tree, "MIX", _noise(tree, 0.9, 2.0, None), (0.78, 0.78, 0.78), (1.08, 1.08, 1.08))
-    paint(surface, _mix(tree, "MULTIPLY", 1.0, node.outputs["Color"], shade))
+    c.paint(surface, _mix(tree, "MULTIPLY", 1.0, node.outputs["Color"], shade))
     return surface
 
 
@@ -110,7 +89,7 @@ def tiles(
     name: str, light: c.RGB, dark: c.RGB, joint: c.RGB, size: float, ambient: float = 1.0
 ) -> bpy.types.Material:
     """Floor of square tiles like a chess board with thin joints."""
-    surface = _textured(name, ambient)
+    surface = c.material(name, UNPAINTED, ambient)
     tree = surface.node_tree
     checker = tree.nodes.new("ShaderNodeTexChecker")
     checker.inputs["Scale"].default_value = 1.0 / size
@@ -137,7 +116,7 @@ def tiles(
     stone = _mix(tree, "MULTIPLY", 1.0, checker.outputs["Color"], grid.outputs["Color"])
     veins = _mix(tree, "MIX", _noise(tree, 0.5, 3.0, None), (0.75,) * 3, (1.1,) * 3)
     stone = _mix(tree, "MULTIPLY", 1.0, stone, veins)
-    paint(surface, _mix(tree, "MIX", grid.outputs["Fac"], stone, joint))
+    c.paint(surface, _mix(tree, "MIX", grid.outputs["Fac"], stone, joint))
     return surface
 
 
@@ -145,7 +124,7 @@ def stripes(
     name: str, cloth: c.RGB, trim: c.RGB, period: float, share: float, ambient: float = 1.0
 ) -> bpy.types.Material:
     """Woven cloth: bands of ``trim`` across, each ``share`` of a period high (uv's v)."""
-    surface = _textured(name, ambient)
+    surface = c.material(name, UNPAINTED, ambient)
     tree = surface.node_tree
     separate = tree.nodes.new("ShaderNodeSeparateXYZ")
     tree.links.new(_uv(tree), separate.inputs[0])
@@ -156,7 +135,7 @@ def stripes(
         node.inputs[1].default_value = operand
         tree.links.new(previous, node.inputs[0])
         previous = node.outputs[0]
-    paint(surface, _mix(tree, "MIX", previous, cloth, trim))
+    c.paint(surface, _mix(tree, "MIX", previous, cloth, trim))
     return surface
 
 

@@ -165,7 +165,7 @@ def _ready(shot: Shot, stamp: Path, wish: str, started: float, what: str, folder
     return folder
 
 
-def _scene_sources(name: str) -> list[Path]:
+def scene_sources(name: str) -> list[Path]:
     """The scene's file and what it imports of its folder, and so on."""
     found = [ROOT / f"scenes/{name}.py"]
     for path in found:  # grows meanwhile
@@ -184,7 +184,7 @@ def _identity(shot: Shot, shop: Workshop) -> str:
     if shot.scene.startswith("synth:"):
         sources = [shop.program]
     else:
-        sources = _scene_sources(shot.scene)
+        sources = scene_sources(shot.scene)
         sources += sorted((ROOT / "blender_addon/aa_resolve").rglob("*.py"))
         # Of the registry only what decides the passes: a better help text renders nothing anew.
         registry = json.loads((ROOT / "blender_addon/aa_resolve/methods.json").read_text())[

@@ -35,6 +35,7 @@ OBJECTS = {  # what must be there, of the scenes of one model
     "blinds": {"Blinds Slats", "Blinds Frame", "Facade"},
     "arched_window": {"Arch Frame", "Arch Door", "Facade"},
     "wall": {"Wall"},
+    "hard_edges": {"Blinds Slats", "Arch Door", "Wall", "Pipe"},
     "hairball": {"Hairball"},
     "flowers": {"Column", "Leaves", "Red Blossoms"},
 }
@@ -96,15 +97,23 @@ def test_every_scene_builds_the_same_twice() -> None:
             assert first == digest(build(name, *words)), f"{name} {words} differs when built again"
 
 
-def test_slits_are_a_pixel_at_any_size() -> None:
-    """The slats of the blinds stand further apart in a small picture."""
+def test_slits_and_fibres_keep_their_pixels() -> None:
+    """In a small picture slits and fibres are wider, and fibres fewer."""
 
-    def slit(size: str) -> float:
-        build("blinds", "--resolution", size)
+    def slit(name: str, size: str) -> float:
+        build(name, "--resolution", size)
         heights = sorted({round(v.co.z, 6) for v in bpy.data.meshes["Blinds Slats"].vertices})
         return heights[2] - heights[1]
 
-    assert abs(slit("320x180") / slit("1600x900") - 5.0) < 0.01
+    def fibres(size: str) -> tuple[float, int]:
+        build("hairball", "--resolution", size)
+        ends = bpy.data.meshes["Hairball"].vertices
+        return (ends[0].co - ends[1].co).length, len(ends)
+
+    for name in ("blinds", "hard_edges"):
+        assert abs(slit(name, "160x90") / slit(name, "800x450") - 5.0) < 0.02, name
+    (wide, few), (narrow, many) = fibres("32x18"), fibres("96x54")
+    assert abs(wide / narrow - 3.0) < 0.001 and many == 3 * few, (wide, narrow, few, many)
 
 
 def png(path: str, alpha: np.ndarray, mask: bool = False) -> None:
@@ -233,7 +242,7 @@ def test_gltf_with_holes() -> None:
 if __name__ == "__main__":
     t.main(
         test_every_scene_builds_the_same_twice,
-        test_slits_are_a_pixel_at_any_size,
+        test_slits_and_fibres_keep_their_pixels,
         test_obj_with_holes,
         test_gltf_with_holes,
     )

@@ -10,7 +10,7 @@ sys.path.insert(0, str(ROOT / "scenes/reproduce"))
 import studies  # noqa: E402
 from catalogue import MOVING, RSAA, SHOTS, SUBSAMPLES  # noqa: E402
 from figures import Difference, Run, across, signed, verdict  # noqa: E402
-from shots import Workshop, make  # noqa: E402
+from shots import Workshop, make, scene_sources  # noqa: E402
 
 
 class Reproduce(ProgramTest):
@@ -63,6 +63,16 @@ class Reproduce(ProgramTest):
         runs = {"hard_edges": self.run_of("two_planes", methods, *options, "d3d8")}
         page = "\n".join(studies.geometry_page(runs).lines)
         self.assertIn(verdict(runs["hard_edges"].gain("rsaa", "msaa")), page)
+
+    def test_sources_of_a_scene(self) -> None:
+        """A building block that changes renders anew what it builds, and nothing else."""
+        wall = {path.name for path in scene_sources("wall")}
+        self.assertEqual(
+            wall, {"wall.py", "common.py", "facade.py", "materials.py", "shapes.py"}, wall
+        )
+        village = {path.name for path in scene_sources("village")}
+        self.assertIn("masonry.py", village)
+        self.assertNotIn("facade.py", village)
 
     def test_shots(self) -> None:
         for shot in SHOTS.values():
