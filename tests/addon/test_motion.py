@@ -199,6 +199,12 @@ def test_border() -> None:
     height, width = part.shape[:2]
     assert (left, top, width, height) == (16, 18, 32, 9), (left, top, width, height)
     assert np.abs(part - full[top : top + height, left : left + width]).max() <= LIMIT_PX
+    scene = make()  # 0.7 of 20 rows are 14 in Blender's floats, 13.99 in longer ones
+    scene.render.resolution_y = 20
+    scene.render.use_border, scene.render.border_min_x, scene.render.border_max_x = True, 0.0, 1.0
+    scene.render.border_min_y, scene.render.border_max_y = 0.1, 0.7
+    part, shot = motion_of(scene)
+    assert part.shape[:2] == (12, 64) and shot["window"]["offset"] == [0, 6], shot["window"]
 
 
 def test_rigid() -> None:
@@ -532,18 +538,101 @@ def test_hidden_before_is_invalid() -> None:
     assert "motion_invalid" not in shot["frames"][2]
 
 
-def test_changing_topology_is_invalid() -> None:
-    scene, _ = stage()
-    item = t.add_object(scene, "Decimated", None, (0, -2, 0.5))
+def decimated(item: bpy.types.Object) -> bpy.types.Object:
+    """Gives an object fewer vertices in frame 5 than in frame 4."""
     item.modifiers.new("Subdivision", "SUBSURF").levels = 3
-    decimate = item.modifiers.new("Decimate", "DECIMATE")
-    decimate.ratio = 1.0
-    decimate.keyframe_insert("ratio", frame=4)
-    decimate.ratio = 0.3
-    decimate.keyframe_insert("ratio", frame=6)
-    out = os.path.join(t.temporary_folder(), "shot")
-    shot = t.export(out, "--frames", "4-5", "--for", "taaSimplest", "--truth-frames", "none")
-    assert shot["frames"][1]["motion_invalid"]["objects"] == ["Decimated"], shot["frames"][1]
+    t.key(item.modifiers.new("Decimate", "DECIMATE"), "ratio", {4: 1.0, 6: 0.3})
+    return item
+
+
+def sphere_by_time(item: bpy.types.Object) -> None:
+    """Nodes that show an instance of a sphere with as many segments as the frame has a number."""
+    tree = t.geometry_group("Sphere")
+    sphere, time = tree.nodes.new("GeometryNodeMeshUVSphere"), tree.nodes.new(
+        "GeometryNodeInputSceneTime"
+    )
+    paint = tree.nodes.new("GeometryNodeSetMaterial")
+    paint.inputs["Material"].default_value = t.diffuse("Paint", (0.5, 0.5, 0.5))
+    instance = tree.nodes.new("GeometryNodeGeometryToInstance")
+    tree.links.new(time.outputs["Frame"], sphere.inputs["Segments"])
+    tree.links.new(sphere.outputs["Mesh"], paint.inputs["Geometry"])
+    tree.links.new(paint.outputs[0], instance.inputs[0])
+    tree.links.new(instance.outputs[0], tree.nodes["End"].inputs[0])
+    item.modifiers.new("Sphere", "NODES").node_group = tree
+
+
+def test_changing_topology_is_invalid() -> None:
+    """Of every kind of object, and of instances."""
+
+    def mesh(scene):
+        decimated(t.add_object(scene, "Changing", None, (0, -2, 0.5)))
+
+    def metaball(scene):
+        balls = [bpy.data.metaballs.new(name) for name in ("Ball", "Other ball")]
+        for data, name in zip(balls, ("Changing", "Changing.001")):
+            data.resolution = data.render_resolution = 0.2
+            data.elements.new().radius = 1.0
+            item = bpy.data.objects.new(name, data)
+            scene.collection.objects.link(item)
+            item.location = (0, -1, 0.5)
+        t.key(item, "location", {1: (-1, -1, 0.5), 11: (2, -1, 0.5)})
+
+    def curve(scene):
+        data = bpy.data.curves.new("Curve", "CURVE")
+        data.dimensions, data.bevel_depth = "3D", 0.2
+        spline = data.splines.new("POLY")
+        spline.points.add(9)
+        for index, point in enumerate(spline.points):
+            point.co = (0.3 * index - 1.5, -1, 0.5 + 0.1 * (index % 2), 1)
+        scene.collection.objects.link(bpy.data.objects.new("Changing", data))
+        t.key(data, "bevel_factor_end", {1: 0.2, 11: 1.0})
+
+    def text(scene):
+        data = bpy.data.curves.new("Text", "FONT")
+        data.body = "HHHH"
+        item = bpy.data.objects.new("Changing", data)
+        scene.collection.objects.link(item)
+        item.location, item.rotation_euler = (-1, -1, 0), (1.5, 0, 0)
+        t.key(data, "extrude", {4: 0.0, 5: 0.4})
+
+    def instance(scene):
+        source = bpy.data.collections.new("Source")
+        item = bpy.data.objects.new("Changing", t.cube_mesh("Changing"))
+        source.objects.link(decimated(item))
+        empty = bpy.data.objects.new("Instance", None)
+        empty.instance_type, empty.instance_collection = "COLLECTION", source
+        empty.location = (0, -1.5, 0.5)
+        scene.collection.objects.link(empty)
+
+    def instance_of_nodes(scene):
+        sphere_by_time(t.add_object(scene, "Changing", None, (0, -1, 0.5)))
+
+    for make in (mesh, metaball, curve, text, instance, instance_of_nodes):
+        scene, _ = stage()
+        make(scene)
+        out = os.path.join(t.temporary_folder(), "shot")
+        shot = t.export(
+            out,
+            "--frames",
+            "4-5",
+            "--for",
+            "taaSimplest",
+            "--passes",
+            "object",
+            "--truth-frames",
+            "none",
+        )
+        entry = shot["frames"][1]
+        assert "motion_invalid" in entry, make.__name__
+        names = entry["motion_invalid"]["objects"]
+        assert [name.split(" #")[0] for name in names] == ["Changing"], (make.__name__, names)
+        path = os.path.join(out, entry["file"])
+        ids, motion = t.read_part(path, "object")["id"], t.read_part(path, "motion")["motion.X"]
+        changing = [int(key) for key, name in shot["objects"].items() if name in names]
+        pixels = np.isin(ids, changing)
+        assert (motion[pixels] == 1e6).all() and (
+            np.abs(motion[~pixels]) < 1e3
+        ).all(), make.__name__
 
 
 def test_cuts() -> None:

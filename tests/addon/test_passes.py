@@ -217,6 +217,79 @@ def test_static_is_found_by_evaluation() -> None:
     assert exported("--frames", "1-3", "--truth-frames", "none")[0]["static"] is False
 
 
+def test_what_changes_without_moving_is_not_static() -> None:
+    """Whatever a material can read of an object, and what makes it appear."""
+
+    def glowing():
+        scene, _, floor = floor_scene()
+        floor.data.uv_layers.new(name="UV")
+        material = bpy.data.materials.new("Glow")
+        material.use_nodes = True
+        tree = material.node_tree
+        tree.nodes.clear()
+        glow, output = tree.nodes.new("ShaderNodeEmission"), tree.nodes.new(
+            "ShaderNodeOutputMaterial"
+        )
+        tree.links.new(glow.outputs[0], output.inputs["Surface"])
+        floor.data.materials.clear()
+        floor.data.materials.append(material)
+
+        def reads(kind, output, **values):
+            node = tree.nodes.new(kind)
+            for name, value in values.items():
+                setattr(node, name, value)
+            tree.links.new(node.outputs[output], glow.inputs["Color"])
+
+        return floor, reads
+
+    def color():
+        floor, reads = glowing()
+        reads("ShaderNodeObjectInfo", "Color")
+        t.key(floor, "color", {1: (0, 0, 0, 1), 5: (1, 1, 1, 1)})
+
+    def own_property():
+        floor, reads = glowing()
+        reads("ShaderNodeAttribute", "Fac", attribute_type="OBJECT", attribute_name="glow")
+        for frame, value in ((1, 0.0), (5, 1.0)):
+            floor["glow"] = value
+            floor.keyframe_insert('["glow"]', frame=frame)
+
+    def texture_coordinates():
+        floor, reads = glowing()
+        reads("ShaderNodeUVMap", "UV")
+        warp = floor.modifiers.new("Warp", "UV_WARP")
+        warp.uv_layer = "UV"
+        t.key(warp, "offset", {1: (0, 0), 5: (1, 1)})
+
+    def visibility():
+        floor, _ = glowing()
+        t.key(floor, "visible_camera", {1: False, 3: True})
+
+    def attribute_of_nodes():
+        floor, reads = glowing()
+        reads("ShaderNodeAttribute", "Fac", attribute_name="glow")
+        tree = t.geometry_group("Store")
+        store, time = (
+            tree.nodes.new("GeometryNodeStoreNamedAttribute"),
+            tree.nodes.new("GeometryNodeInputSceneTime"),
+        )
+        store.inputs["Name"].default_value = "glow"
+        value = next(item for item in store.inputs if item.name == "Value" and item.enabled)
+        tree.links.new(time.outputs["Seconds"], value)
+        tree.links.new(tree.nodes["Start"].outputs[0], store.inputs["Geometry"])
+        tree.links.new(store.outputs[0], tree.nodes["End"].inputs[0])
+        floor.modifiers.new("Store", "NODES").node_group = tree
+
+    for change in (color, own_property, texture_coordinates, visibility, attribute_of_nodes):
+        change()
+        shot, out = exported("--frames", "1-4", "--truth-frames", "none")
+        means = [
+            float(t.read_part(os.path.join(out, entry["file"]), "color")["R"].mean())
+            for entry in shot["frames"]
+        ]
+        assert not shot["static"] and means[3] > means[0] + 0.01, (change.__name__, means)
+
+
 def test_color_and_truth_share_one_light() -> None:
     """A matt floor under the sun: colour = albedo * irradiance / pi, in every frame and in both halves."""
     scene, _, _ = floor_scene()
@@ -338,6 +411,7 @@ if __name__ == "__main__":
         test_albedo_recipe,
         test_only_what_is_required,
         test_static_is_found_by_evaluation,
+        test_what_changes_without_moving_is_not_static,
         test_color_and_truth_share_one_light,
         test_truth_is_the_box_mean,
         test_the_table_of_passes,

@@ -78,17 +78,19 @@ def _vectors_apart(exposure: Exposure) -> np.ndarray:
 def _is_wrong(exposure: Exposure, ids: np.ndarray) -> np.ndarray:
     """H x W: True where Cycles' vector is known to be wrong.
 
-    Objects that were hidden in the previous frame, instances that were not there, and meshes whose number of
-    vertices changed.
+    Objects that were hidden in the previous frame, instances that were not there, and meshes whose vertices changed in
+    number or are joined in another way.
     """
     now, before, known = exposure.now, exposure.before, exposure.plan.ids
+    changed = [
+        key for key, now_is in now.topology.items() if before.topology.get(key, now_is) != now_is
+    ]
+    instances = [key for key in changed if known.of_instances([key])]
     names = {name for name in before.hidden if name not in now.hidden}
-    names |= {
-        name for name, count in now.vertices.items() if before.vertices.get(name, count) != count
-    }
+    names |= {key[0] for key in changed if key not in instances}
     indices = [index for index, name in known.table.items() if name in names]
     index = np.rint(exposure.main.get("IndexOB")[:, :, 0]).astype(np.int64)
-    new = known.of_instances(now.instances - before.instances)
+    new = known.of_instances([*(now.instances - before.instances), *instances])
     lost = (np.abs(exposure.vectors) > NO_PREVIOUS_POSITION_PX / 2.0).any(-1)
     return np.isin(index, indices) | np.isin(ids, new) | lost
 

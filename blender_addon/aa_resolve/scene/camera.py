@@ -43,8 +43,8 @@ def frame_of(scene: bpy.types.Scene) -> Frame:
     height = int(render.resolution_y * render.resolution_percentage / 100)
     left, right, bottom, top = 0, width, 0, height
     if render.use_border:
-        left, right = int(render.border_min_x * width), int(render.border_max_x * width)
-        bottom, top = int(render.border_min_y * height), int(render.border_max_y * height)
+        left, right = _pixels(render.border_min_x, width), _pixels(render.border_max_x, width)
+        bottom, top = _pixels(render.border_min_y, height), _pixels(render.border_max_y, height)
     if right - left < 1 or top - bottom < 1:
         raise SceneError("the render border is smaller than one pixel: enlarge it or switch it off")
     return Frame(
@@ -57,6 +57,11 @@ def frame_of(scene: bpy.types.Scene) -> Frame:
         render.pixel_aspect_x,
         render.pixel_aspect_y,
     )
+
+
+def _pixels(share: float, whole: int) -> int:
+    """A share of a side in whole pixels. In Blender's own floats 0.7 of 20 is 14; in longer ones it is less."""
+    return int(np.float32(share) * np.float32(whole))
 
 
 def jitter_to_shift(

@@ -6,14 +6,16 @@ Decided from the open scene alone, with the sentence that explains it."""
 from __future__ import annotations
 
 import hashlib
+import zlib
 from dataclasses import dataclass, field
+from typing import Union
 
 import bpy
 import numpy as np
 
 from . import camera as cam
 from .cuts import CameraCuts
-from .ownership import has_animation
+from .ownership import has_animation, is_animated_within
 from .scripts import foreign_handlers
 
 # Modifiers that can change a mesh although nothing in the file is keyed.
@@ -45,6 +47,9 @@ class Motion:
     reason: str
 
 
+Key = tuple[str, Union[int, None]]
+
+
 @dataclass
 class FrameState:
     """What one frame shows, as far as later decisions need it."""
@@ -52,7 +57,8 @@ class FrameState:
     camera: cam.CameraState
     camera_name: str
     hidden: frozenset[str] = frozenset()
-    vertices: dict[str, int] = field(default_factory=dict)
+    # By name and, of an instance, its random id: what tells one mesh from another with other vertices.
+    topology: dict[Key, tuple[int, ...]] = field(default_factory=dict)
     instances: frozenset[tuple[str, int]] = frozenset()  # source and random id
 
 
@@ -72,7 +78,7 @@ def _uses_moving_images(tree: bpy.types.NodeTree) -> bool:
 
 
 def _shading_that_changes(scene: bpy.types.Scene) -> str | None:
-    """Name of the first animated data-block that changes what no place or vertex tells: colours, volumes."""
+    """Name of the first thing that changes what neither places nor meshes tell: colours, volumes, nodes."""
     for collection in (bpy.data.materials, bpy.data.lights, bpy.data.worlds):
         for block in collection:
             tree = getattr(block, "node_tree", None) if getattr(block, "use_nodes", False) else None
@@ -86,6 +92,18 @@ def _shading_that_changes(scene: bpy.types.Scene) -> str | None:
     for group in bpy.data.node_groups:
         if _is_keyed(group) or _uses_moving_images(group):
             return f"node group '{group.name}' is animated"
+    for (
+        item
+    ) in bpy.data.objects:  # what the nodes write of instances, nobody but the renderer can read
+        for modifier in item.modifiers:
+            if modifier.type == "NODES" and modifier.node_group:
+                if _reads_time(modifier.node_group, set()) or is_animated_within(modifier):
+                    return f"the nodes of '{item.name}' are animated"
+    if any(settings.type == "EMITTER" for settings in bpy.data.particles):
+        for block in (*bpy.data.materials, *bpy.data.node_groups):
+            tree = block if isinstance(block, bpy.types.NodeTree) else block.node_tree
+            if tree and any(node.bl_idname == "ShaderNodeParticleInfo" for node in tree.nodes):
+                return f"'{block.name}' looks as old as its particles"
     return None
 
 
@@ -144,7 +162,7 @@ def _picture_digest(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> b
             continue
         digest.update(item.name_full.encode())
         digest.update(np.array(instance.matrix_world, np.float32).tobytes())
-        digest.update(bytes([item.hide_render]))
+        digest.update(_appearance(item))
         if item.type in _GEOMETRY_TYPES:
             key = (item.name_full, item.data.as_pointer() if item.data else 0)
             if key not in shapes:
@@ -153,19 +171,70 @@ def _picture_digest(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> b
     return digest.digest()
 
 
+# What an object alone decides of how it looks.
+_LOOKS = (
+    "hide_render", "color", "is_holdout", "is_shadow_catcher", "visible_camera", "visible_diffuse", "visible_glossy",
+    "visible_shadow", "visible_transmission", "visible_volume_scatter",
+)  # fmt: skip
+
+
+def _appearance(item: bpy.types.Object) -> bytes:
+    """Everything but place and shape by which an object changes its picture; materials read its own properties."""
+    looks = [tuple(item.color) if name == "color" else getattr(item, name) for name in _LOOKS]
+    own = []
+    for holder in filter(None, (item, item.data)):
+        for name in sorted(holder.keys()):
+            value = holder[name]
+            if hasattr(value, "to_list"):
+                value = value.to_list()
+            if isinstance(value, (bool, int, float, str, list)):
+                own.append((name, value))
+    return repr((looks, own)).encode()
+
+
+# How the values of an attribute are read: name, type and number of each.
+_ATTRIBUTE_VALUES = {
+    "FLOAT": ("value", np.float32, 1),
+    "INT": ("value", np.int32, 1),
+    "INT8": ("value", np.int32, 1),
+    "BOOLEAN": ("value", bool, 1),
+    "FLOAT_VECTOR": ("vector", np.float32, 3),
+    "FLOAT2": ("vector", np.float32, 2),
+    "FLOAT_COLOR": ("color", np.float32, 4),
+    "BYTE_COLOR": ("color", np.float32, 4),
+    "QUATERNION": ("value", np.float32, 4),
+    "FLOAT4X4": ("value", np.float32, 16),
+}
+
+
+def _add_attributes(digest, data: bpy.types.ID) -> None:
+    for attribute in data.attributes:
+        if attribute.data_type not in _ATTRIBUTE_VALUES:
+            continue
+        name, kind, each = _ATTRIBUTE_VALUES[attribute.data_type]
+        digest.update(attribute.name.encode())
+        digest.update(_values(attribute.data, name, kind, each).tobytes())
+
+
+def _values(items, name: str, kind: type, each: int = 1) -> np.ndarray:
+    values = np.empty(len(items) * each, kind)
+    items.foreach_get(name, values)
+    return values
+
+
 def _shape_digest(item: bpy.types.Object) -> bytes:
     digest = hashlib.sha256()
     mesh = item.to_mesh() if item.type in _MESHES else None
     if mesh is not None:
-        places = np.empty(len(mesh.vertices) * 3, np.float32)
-        mesh.vertices.foreach_get("co", places)
-        digest.update(places.tobytes())
+        digest.update(_values(mesh.vertices, "co", np.float32, 3).tobytes())
+        digest.update(_values(mesh.loops, "vertex_index", np.int32).tobytes())
+        digest.update(_values(mesh.polygons, "material_index", np.int32).tobytes())
+        for layer in mesh.uv_layers:
+            digest.update(_values(layer.data, "uv", np.float32, 2).tobytes())
+        _add_attributes(digest, mesh)
         item.to_mesh_clear()
-    if item.type in _POINTS and "position" in item.data.attributes:
-        points = item.data.attributes["position"].data
-        places = np.empty(len(points) * 3, np.float32)
-        points.foreach_get("vector", places)
-        digest.update(places.tobytes())
+    if item.type in _POINTS:
+        _add_attributes(digest, item.data)
     for system in item.particle_systems:
         places = np.empty(len(system.particles) * 3, np.float32)
         system.particles.foreach_get("location", places)
@@ -186,12 +255,7 @@ def frame_state(
         state.hidden = frozenset(
             item.name_full for item in bpy.data.objects if item.evaluated_get(depsgraph).hide_render
         )
-        state.vertices = {
-            item.name_full: _vertex_count(item.evaluated_get(depsgraph))
-            for item in scene.objects
-            if (item.type == "MESH" and (item.modifiers or item.data.shape_keys))
-            or (item.type in _POINTS and item.modifiers)
-        }
+        state.topology = _topologies(depsgraph)
         state.instances = frozenset(
             (instance.object.original.name_full, instance.random_id & 0xFFFFFFFF)
             for instance in depsgraph.object_instances
@@ -200,9 +264,32 @@ def frame_state(
     return state
 
 
-def _vertex_count(item: bpy.types.Object) -> int:
-    """Vertices of an evaluated mesh, points of hair curves or of a point cloud."""
-    return len(item.data.vertices if item.type == "MESH" else item.data.points)
+def _topologies(depsgraph: bpy.types.Depsgraph) -> dict[Key, tuple[int, ...]]:
+    """Topology of everything that is shown. Text, curves and metaballs show the mesh that is made of them."""
+    found: dict[Key, tuple[int, ...]] = {}
+    known: dict[int, tuple[int, int]] = {}
+    for instance in depsgraph.object_instances:
+        item = instance.object
+        if item is None or item.data is None or item.type not in ("MESH", *_POINTS):
+            continue
+        address = item.data.as_pointer()
+        if address not in known:
+            known[address] = _topology(item)
+        random = instance.random_id & 0xFFFFFFFF if instance.is_instance else None
+        key = item.original.name_full, random
+        found[key] = found.get(key, ()) + known[address]  # a mesh and points may be one object's
+    return found
+
+
+def _topology(item: bpy.types.Object) -> tuple[int, int]:
+    """Number of vertices or points, and a digest of how they are joined where that may change."""
+    data = item.data
+    if item.type != "MESH":
+        return len(data.points), 0
+    original = item.original
+    if original.type == "MESH" and not original.modifiers:
+        return len(data.vertices), 0
+    return len(data.vertices), zlib.crc32(_values(data.loops, "vertex_index", np.int32).tobytes())
 
 
 def find_motion(

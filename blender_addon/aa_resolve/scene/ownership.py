@@ -96,6 +96,12 @@ def is_animated(holder: bpy.types.bpy_struct, name: str) -> bool:
     return any(_sets(curve, holder, name) for curve in _curves(holder))
 
 
+def is_animated_within(holder: bpy.types.bpy_struct) -> bool:
+    """True when a curve, a strip or a driver sets anything inside a struct of a data-block."""
+    prefix = holder.path_from_id()
+    return any(curve.data_path.startswith(prefix) for curve in _curves(holder))
+
+
 def has_animation(block: bpy.types.ID) -> bool:
     """True when a curve, a strip or a driver sets anything of a data-block."""
     return bool(_curves(block))
