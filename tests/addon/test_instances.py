@@ -134,10 +134,65 @@ def test_meshes_without_material() -> None:
     assert color["R"].max() > 0.3, "and it still looks like a surface"
 
 
+def test_surfaces_that_are_nothing() -> None:
+    """A material that gives no light back is a black surface, whether ids of instances are asked for or not."""
+
+    def unlit(tree, output):
+        shader = tree.nodes.new("ShaderNodeEmission")
+        shader.inputs["Strength"].default_value = 0.0
+        tree.links.new(shader.outputs[0], output.inputs["Surface"])
+
+    def nothing(tree, output):
+        pass
+
+    def mixed_with_nothing(tree, output):
+        mix = tree.nodes.new("ShaderNodeMixShader")
+        mix.inputs[0].default_value = 1.0
+        tree.links.new(tree.nodes.new("ShaderNodeBsdfDiffuse").outputs[0], mix.inputs[1])
+        tree.links.new(mix.outputs[0], output.inputs["Surface"])
+
+    def glowing_gas(tree, output):
+        """What adds light to what is behind it; the camera sees through."""
+        both = tree.nodes.new("ShaderNodeAddShader")
+        tree.links.new(tree.nodes.new("ShaderNodeBsdfTransparent").outputs[0], both.inputs[0])
+        tree.links.new(tree.nodes.new("ShaderNodeEmission").outputs[0], both.inputs[1])
+        tree.links.new(both.outputs[0], output.inputs["Surface"])
+
+    for make in (unlit, nothing, mixed_with_nothing, glowing_gas):
+        scene = t.new_scene(48, 27)
+        t.add_camera(scene, (0, -8, 0), (0, 0, 0))
+        material = bpy.data.materials.new("Special")
+        material.use_nodes = True
+        tree = material.node_tree
+        tree.nodes.clear()
+        make(tree, tree.nodes.new("ShaderNodeOutputMaterial"))
+        place(scene, source_collection("Front", material), "In front", (0, 0, 0))
+        behind = source_collection("Behind", t.diffuse("Grey", (0.5, 0.5, 0.5)))
+        place(scene, behind, "At the back", (0, 2, 0)).scale = (3, 1, 3)
+        shot, out = exported(
+            "--frames",
+            "1",
+            "--passes",
+            "object,subsamples",
+            "--subsamples",
+            "d3d1",
+            "--jitter",
+            "none",
+        )
+        names = {"Behind Part #0 of At the back"}
+        if make is not glowing_gas:
+            names.add("Front Part #0 of In front")
+        assert set(shot["objects"].values()) == names, (make.__name__, shot["objects"])
+        path = os.path.join(out, shot["frames"][0]["file"])
+        seen = t.read_part(path, "subsamples")["s00.id"]
+        assert np.array_equal(seen, ids_of(shot, out, 0)), make.__name__
+
+
 if __name__ == "__main__":
     t.main(
         test_distinct_and_stable,
         test_without_instance_ids,
         test_through_cutouts,
         test_meshes_without_material,
+        test_surfaces_that_are_nothing,
     )

@@ -17,7 +17,8 @@ CHANNEL = "AA Instance"
 
 
 def override_material() -> bpy.types.Material:
-    """A surface that neither reflects nor emits: only its geometry is of interest."""
+    """A surface that neither reflects nor emits: only its geometry is of interest. A shader that never emits would not
+    do: beside an AOV, Cycles takes it for no surface at all."""
     name = "AA Resolve Geometry"
     material = bpy.data.materials.get(name)
     if material is None:
@@ -25,10 +26,8 @@ def override_material() -> bpy.types.Material:
         material.use_nodes = True
         tree = material.node_tree
         tree.nodes.clear()
-        emission = tree.nodes.new("ShaderNodeEmission")
-        emission.inputs["Strength"].default_value = 0.0
         output = tree.nodes.new("ShaderNodeOutputMaterial")
-        tree.links.new(emission.outputs[0], output.inputs["Surface"])
+        tree.links.new(_black(tree).socket, output.inputs["Surface"])
     return material
 
 
@@ -69,6 +68,8 @@ def add_output(material: bpy.types.Material) -> bool:
         if followed is None:
             return False
         opacity = followed
+    if output is not None and not _is_volume_alone(output):
+        _keep_surface(tree, output)
     information = tree.nodes.new("ShaderNodeObjectInfo")
     random = Output(information, list(information.outputs.keys()).index("Random"))
     product = random if opacity == 1.0 else _math(tree, "MULTIPLY", random, opacity)
@@ -77,6 +78,45 @@ def add_output(material: bpy.types.Material) -> bool:
     compat.name_aov_output(aov, CHANNEL)
     tree.links.new(product.socket, aov.inputs["Value"])
     return True
+
+
+def _is_volume_alone(output: bpy.types.Node) -> bool:
+    return output.inputs["Volume"].is_linked and not output.inputs["Surface"].is_linked
+
+
+def _keep_surface(tree: bpy.types.NodeTree, output: bpy.types.Node) -> None:
+    """Adds a black surface to one that Cycles may find to be nothing, such as an emission of strength 0. That is as
+    solid as any other until it has an AOV; with one, rays pass through it."""
+    surface = output.inputs["Surface"]
+    if not _may_be_nothing(surface):
+        return
+    black = _black(tree)
+    if surface.is_linked:
+        shown = Output.of(surface.links[0].from_socket)
+        both = Output(tree.nodes.new("ShaderNodeAddShader"), 0)
+        tree.links.new(shown.socket, both.node.inputs[0])
+        tree.links.new(black.socket, both.node.inputs[1])
+        black = both
+    tree.links.new(black.socket, output.inputs["Surface"])
+
+
+def _may_be_nothing(socket: bpy.types.NodeSocket) -> bool:
+    """True unless a shader's input surely gets a shader that Cycles does not optimize away."""
+    if not socket.is_linked:
+        return True
+    node = socket.links[0].from_node
+    if node.bl_idname in ("ShaderNodeEmission", "ShaderNodeGroup", "ShaderNodeBackground"):
+        return True
+    if node.bl_idname in ("NodeReroute", "ShaderNodeMixShader", "ShaderNodeAddShader"):
+        shaders = [item for item in node.inputs if item.type == "SHADER"]
+        return any(map(_may_be_nothing, shaders))
+    return False
+
+
+def _black(tree: bpy.types.NodeTree) -> Output:
+    node = tree.nodes.new("ShaderNodeBsdfDiffuse")
+    node.inputs["Color"].default_value = (0.0, 0.0, 0.0, 1.0)
+    return Output(node, 0)
 
 
 @dataclass(frozen=True)
@@ -122,7 +162,11 @@ def _input(socket: bpy.types.NodeSocket) -> Value:
 def _opacity(tree: bpy.types.NodeTree, socket: bpy.types.NodeSocket) -> Value | None:
     """Opacity of a shader; None where a node group hides it."""
     node = socket.node
-    if node.bl_idname in ("ShaderNodeBsdfTransparent", "ShaderNodeHoldout"):
+    if node.bl_idname in (
+        "ShaderNodeBsdfTransparent",
+        "ShaderNodeHoldout",
+        "ShaderNodeBsdfRayPortal",  # since 4.2
+    ):
         return 0.0
     if node.bl_idname == "ShaderNodeBsdfPrincipled":
         return _input(node.inputs["Alpha"])
@@ -138,13 +182,17 @@ def _opacity(tree: bpy.types.NodeTree, socket: bpy.types.NodeSocket) -> Value | 
         for index in shaders:
             shader = node.inputs[index]
             linked = shader.is_linked
-            parts.append(_opacity(tree, shader.links[0].from_socket) if linked else 0.0)
+            parts.append(
+                _opacity(tree, shader.links[0].from_socket) if linked else 1.0
+            )  # nothing is black
         if None in parts:
             return None
         if parts[0] == parts[1] == 1.0:
             return 1.0
         if node.bl_idname == "ShaderNodeAddShader":
-            return _math(tree, "MAXIMUM", *parts)
+            # What lets through in either lets through.
+            both = _math(tree, "SUBTRACT", _math(tree, "ADD", *parts), 1.0)
+            return _math(tree, "MAXIMUM", both, 0.0)
         weight = _input(node.inputs[0])
         first = _math(tree, "MULTIPLY", parts[0], _math(tree, "SUBTRACT", 1.0, weight))
         return _math(tree, "MULTIPLY_ADD", parts[1], weight, first)
