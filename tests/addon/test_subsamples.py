@@ -259,6 +259,76 @@ def test_cutouts_use_real_materials() -> None:
     ).all()
 
 
+def test_cutouts_are_found_wherever_they_come_from() -> None:
+    """Given by nodes, by the view layer, by an animated alpha, by an object that appears; and what has a volume but no
+    surface. The sub-sample at the pixel's centre shows what the frame shows."""
+
+    def clear():
+        material = bpy.data.materials.new("Clear")
+        material.use_nodes = True
+        tree = material.node_tree
+        tree.nodes.clear()
+        shader = tree.nodes.new("ShaderNodeBsdfTransparent")
+        output = tree.nodes.new("ShaderNodeOutputMaterial")
+        tree.links.new(shader.outputs[0], output.inputs["Surface"])
+        return material
+
+    def by_nodes(_scene, pane):
+        tree = t.geometry_group("Paint")
+        paint = tree.nodes.new("GeometryNodeSetMaterial")
+        paint.inputs["Material"].default_value = clear()
+        tree.links.new(tree.nodes["Start"].outputs[0], paint.inputs["Geometry"])
+        tree.links.new(paint.outputs[0], tree.nodes["End"].inputs[0])
+        pane.modifiers.new("Paint", "NODES").node_group = tree
+
+    def by_the_view_layer(scene, _pane):
+        scene.view_layers[0].material_override = clear()
+
+    def by_animation(_scene, pane):
+        material = bpy.data.materials.new("Fades")
+        material.use_nodes = True
+        alpha = material.node_tree.nodes["Principled BSDF"].inputs["Alpha"]
+        for frame, value in ((2, 0.0), (1, 1.0)):
+            alpha.default_value = value
+            alpha.keyframe_insert("default_value", frame=frame)
+        pane.data.materials.append(material)
+
+    def by_appearing(_scene, pane):
+        pane.data.materials.append(clear())
+        for frame, hidden in ((2, False), (1, True)):
+            pane.hide_render = hidden
+            pane.keyframe_insert("hide_render", frame=frame)
+
+    def by_a_volume(_scene, pane):
+        material = clear()
+        tree = material.node_tree
+        output = tree.get_output_node("CYCLES")
+        tree.links.remove(output.inputs["Surface"].links[0])
+        gas = tree.nodes.new("ShaderNodeVolumeAbsorption")
+        tree.links.new(gas.outputs[0], output.inputs["Volume"])
+        pane.data.materials.append(material)
+
+    for make in (by_nodes, by_the_view_layer, by_animation, by_appearing, by_a_volume):
+        scene = t.new_scene(48, 32)
+        t.add_camera(scene, (0, -8, 0), (0, 0, 0))
+        t.add_object(scene, "Wall", None, (0, 3, 0), (0, 0, 0), (2, 0.1, 2))
+        make(scene, t.add_object(scene, "Pane", None, (0, 0, 0), (0, 0, 0), (1, 0.1, 1)))
+        out = os.path.join(t.temporary_folder(), "shot")
+        shot = t.export(
+            out, "--frames", "1-2", "--truth-frames", "none", "--passes", "subsamples,object,depth",
+            "--subsamples", "d3d1", "--jitter", "none",
+        )  # fmt: skip
+        assert "Pane" not in shot["objects"].values() or make is by_animation, make.__name__
+        for entry in shot["frames"]:
+            path = os.path.join(out, entry["file"])
+            samples = t.read_part(path, "subsamples")
+            assert np.array_equal(samples["s00.id"], t.read_part(path, "object")["id"]), (
+                make.__name__,
+                entry["file"],
+            )
+            assert np.array_equal(samples["s00.Z"], t.read_part(path, "depth")["Z"]), make.__name__
+
+
 def test_instanced_leaves_of_a_moving_shot() -> None:
     """Instances of leaves whose outline an image holds, over several frames: every sub-sample shows one leaf, at its
     place, or the wall."""
@@ -404,5 +474,6 @@ if __name__ == "__main__":
         test_override_keeps_the_geometry,
         test_mask,
         test_cutouts_use_real_materials,
+        test_cutouts_are_found_wherever_they_come_from,
         test_instanced_leaves_of_a_moving_shot,
     )

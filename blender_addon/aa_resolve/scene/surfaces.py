@@ -6,24 +6,27 @@ from __future__ import annotations
 import bpy
 
 from .. import compat
+from .ownership import is_animated
 
 
 def has_cutouts() -> str | None:
     """Name of a material through which a camera ray can pass, or that moves the surface it is on; else None.
 
-    Both are lost under an override material."""
-    for item in bpy.data.objects:
-        if item.hide_render:
-            continue
-        for slot in item.material_slots:
-            material = slot.material
-            if (
-                material
-                and compat.shader_tree(material)
-                and _is_see_through(material.node_tree, set())
-            ):
+    Both are lost under an override material. Of whatever is used: nodes, view layers and instances give materials to
+    what has no slot for them, and what is hidden now may be seen later."""
+    for material in bpy.data.materials:
+        if material.users > int(material.use_fake_user) and compat.shader_tree(material):
+            if _is_see_through(material.node_tree, set()):
                 return material.name
     return None
+
+
+_SEE_THROUGH = (
+    "ShaderNodeBsdfTransparent",
+    "ShaderNodeHoldout",
+    "ShaderNodeBsdfRayPortal",  # since 4.2
+    "ShaderNodeScript",  # may do anything
+)
 
 
 def _is_see_through(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
@@ -31,14 +34,17 @@ def _is_see_through(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
         return False
     seen.add(tree.name)
     for node in tree.nodes:
-        if node.bl_idname in ("ShaderNodeBsdfTransparent", "ShaderNodeHoldout"):
+        if node.bl_idname in _SEE_THROUGH:
             return True
         if node.bl_idname == "ShaderNodeBsdfPrincipled":
             alpha = node.inputs["Alpha"]
-            if alpha.is_linked or alpha.default_value < 1.0:
+            if alpha.is_linked or alpha.default_value < 1.0 or is_animated(alpha, "default_value"):
                 return True
-        if node.bl_idname == "ShaderNodeOutputMaterial" and node.inputs["Displacement"].is_linked:
-            return True
+        if node.bl_idname == "ShaderNodeOutputMaterial":
+            if node.inputs["Displacement"].is_linked:
+                return True
+            if node.inputs["Volume"].is_linked and not node.inputs["Surface"].is_linked:
+                return True
         if (
             node.bl_idname == "ShaderNodeGroup"
             and node.node_tree
