@@ -385,12 +385,72 @@ def test_world_of_the_view_layer() -> None:
     assert np.allclose(shot["color"]["ambient"], (0.1, 0.2, 0.3), atol=1e-4), shot["color"]
 
 
+def test_lights_of_nested_instances() -> None:
+    """A light that is instanced by what is instanced, or by nodes, shines as it does in the scene itself."""
+
+    def nest(scene, lamp):
+        inner, outer = bpy.data.collections.new("Inner"), bpy.data.collections.new("Outer")
+        inner.objects.link(lamp)
+        for name, content, holder in (
+            ("One", inner, outer),
+            ("Other", outer, scene.collection),
+        ):
+            empty = bpy.data.objects.new(name, None)
+            empty.instance_type, empty.instance_collection = "COLLECTION", content
+            holder.objects.link(empty)
+
+    def by_nodes(scene, lamp):
+        lamps = bpy.data.collections.new("Lamps")
+        lamps.objects.link(lamp)
+        tree = t.geometry_group("Lamps")
+        info = tree.nodes.new("GeometryNodeCollectionInfo")
+        info.inputs["Collection"].default_value = lamps
+        tree.links.new(info.outputs[0], tree.nodes["End"].inputs[0])
+        mesh = bpy.data.meshes.new("Holder")
+        t.add_object(scene, "Holder", mesh).modifiers.new("Lamps", "NODES").node_group = tree
+
+    def by_faces(scene, lamp):
+        mesh = bpy.data.meshes.new("Face")
+        mesh.from_pydata([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], [], [(0, 1, 2, 3)])
+        face = t.add_object(scene, "Face", mesh, tuple(lamp.location))
+        face.instance_type, face.show_instancer_for_render = "FACES", False
+        lamp.parent, lamp.location = face, (0, 0, 0)
+        scene.collection.objects.link(lamp)
+
+    colors = []
+    for hide in (None, nest, by_nodes, by_faces):
+        scene = room()
+        t.add_sun(scene)
+        lamp = add_light(scene, "POINT", (1, -2, 3), 300.0, shadow_soft_size=0.5)
+        if hide:
+            scene.collection.objects.unlink(lamp)
+            hide(scene, lamp)
+        out = os.path.join(t.temporary_folder(), "s")
+        t.export(out, "--frames", "1", "--truth-frames", "none", "--jitter", "none")
+        part = t.read_part(os.path.join(out, "frames/000001.exr"), "color")
+        colors.append(t.stacked(part, "R G B"))
+    assert colors[0].max() > 0.3
+    for color in colors[1:]:
+        assert np.abs(color - colors[0]).max() < 1e-4, np.abs(color - colors[0]).max()
+
+
+def test_an_emitting_mesh_that_instances_lights_is_noted() -> None:
+    scene = room()
+    lamp = add_light(scene, "POINT", (0, 0, 0), 300.0)
+    glowing = bpy.data.objects["Lamp"]
+    lamp.parent, glowing.instance_type = glowing, "VERTS"
+    shot = t.export(t.temporary_folder() + "/s", "--frames", "1", "--truth-frames", "none")
+    assert any("instance lights (Lamp)" in note for note in shot["notes"]), shot["notes"]
+
+
 if __name__ == "__main__":
     t.main(
         test_no_noise_from_any_light,
         test_no_noise_from_many_lights_and_world,
         test_as_is_is_noisy,
         test_lights_add_up,
+        test_lights_of_nested_instances,
+        test_an_emitting_mesh_that_instances_lights_is_noted,
         test_every_light_keeps_its_power,
         test_animated_power_of_an_unnormalized_light,
         test_light_linking,

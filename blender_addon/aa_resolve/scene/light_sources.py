@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import bpy
 
@@ -22,15 +23,25 @@ _EMITTERS = frozenset(
 
 def lights_of(scene: bpy.types.Scene) -> list[bpy.types.Object]:
     """Light objects that render, wherever they are linked or instanced from."""
-    return [
+    shown = set(scene.objects)
+    lights = [
         item
         for item in sorted(bpy.data.objects, key=lambda item: item.name_full)
-        if item.type == "LIGHT"
-        and item.users > 0
-        and not item.hide_render
-        and not is_portal(item)
-        and _is_reachable(scene, item)
+        if item.type == "LIGHT" and item.users > 0 and not item.hide_render and not is_portal(item)
     ]
+    if not shown.issuperset(lights):
+        users = bpy.data.user_map()
+        lights = [
+            item for item in lights if item in shown or not shown.isdisjoint(_showing(item, users))
+        ]
+    return lights
+
+
+def instancers_of(lights: list[bpy.types.Object]) -> set[bpy.types.Object]:
+    """Objects that may instance one of the lights, themselves or through others."""
+    users = bpy.data.user_map() if lights else {}
+    reached = (user for item in lights for user in _showing(item, users))
+    return {user for user in reached if isinstance(user, bpy.types.Object) and _instances(user)}
 
 
 def is_portal(item: bpy.types.Object) -> bool:
@@ -38,15 +49,38 @@ def is_portal(item: bpy.types.Object) -> bool:
     return item.type == "LIGHT" and item.data.type == "AREA" and item.data.cycles.is_portal
 
 
-def _is_reachable(scene: bpy.types.Scene, item: bpy.types.Object) -> bool:
-    if item.name in scene.objects:
-        return True
-    instanced = {
-        other.instance_collection
-        for other in scene.objects
-        if other.instance_type == "COLLECTION" and other.instance_collection
-    }
-    return any(item.name in collection.all_objects for collection in instanced)
+_INSTANCING = (
+    bpy.types.Object,
+    bpy.types.Collection,
+    bpy.types.NodeTree,
+    bpy.types.ParticleSettings,
+)
+
+
+def _showing(
+    item: bpy.types.Object, users: dict[bpy.types.ID, set[bpy.types.ID]]
+) -> Iterator[bpy.types.ID]:
+    """What may show the item: by its collection, particles, nodes or faces, through any number of others. What only
+    points at it counts too: rendering a light that is not there costs time alone.
+    """
+    seen: set[bpy.types.ID] = {item}
+    waiting: list[bpy.types.ID] = [item]
+    while waiting:
+        shown = waiting.pop()
+        near = set(users.get(shown, ()))
+        if isinstance(shown, bpy.types.Object) and shown.parent and _instances(shown.parent):
+            near.add(shown.parent)
+        for user in near - seen:
+            if isinstance(user, _INSTANCING):
+                seen.add(user)
+                waiting.append(user)
+                yield user
+
+
+def _instances(item: bpy.types.Object) -> bool:
+    return item.instance_type != "NONE" or any(
+        modifier.type in ("NODES", "PARTICLE_SYSTEM") for modifier in item.modifiers
+    )
 
 
 def emissive_materials() -> list[bpy.types.Material]:

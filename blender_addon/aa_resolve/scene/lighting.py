@@ -21,7 +21,13 @@ import numpy as np
 from .. import compat
 from ..errors import SceneError
 from . import rendering, world_light
-from .light_sources import emissive_materials, is_portal, lights_of, noise_causes
+from .light_sources import (
+    emissive_materials,
+    instancers_of,
+    is_portal,
+    lights_of,
+    noise_causes,
+)
 from .ownership import is_animated, own, own_if_present
 
 # Size of an area light that shines from one point, metres. Cycles' own power, beam and spread hold for it, which are not
@@ -135,9 +141,10 @@ def set_up(
         own(material, **compat.light_sampling_off(material))
     if emissive:
         changes.append("emitting meshes light nothing else")
+    instancers = instancers_of(plan.lights)
     for item in bpy.data.objects:
-        if item.type == "LIGHT":
-            continue  # there the same switches mean whom the light shines on
+        if item.type == "LIGHT" or item in instancers:
+            continue  # there the same switches mean whom the light shines on (instancers: since Blender 5)
         # What is left of a path after its first hit could only find emitters, at random.
         own(
             item,
@@ -145,6 +152,15 @@ def set_up(
             visible_glossy=False,
             visible_transmission=False,
             visible_volume_scatter=False,
+        )
+    glowing = sorted(
+        item.name
+        for item in instancers
+        if any(slot.material in emissive for slot in item.material_slots)
+    )
+    if glowing:
+        plan.notes.append(
+            f"emitting meshes that instance lights ({', '.join(glowing)}) shine as the lights do: noise remains"
         )
     if len(plan.lights) > 1:
         changes.append(f"{len(plan.lights)} lights rendered one by one and added")
