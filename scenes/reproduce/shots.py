@@ -26,7 +26,7 @@ class Shot:
 
     name: str
     scene: str  # of the folder scenes, or synth:NAME for an analytic one with exact truth
-    methods: str  # methods it must serve, separated by blanks: they decide the passes
+    methods: str  # methods that the studies run on it, separated by blanks; they and `serves` decide the passes
     variant: tuple[str, ...] = ()  # flags of the scene
     frames: int = 16
     quick_frames: int = 16
@@ -38,10 +38,31 @@ class Shot:
     passes: str = ""  # of the jittered frames, beyond what the methods read
     truth_of: str = ""  # another shot of the same scene, variant and frames
     truth: bool = True
-    thesis: str = (
-        ""  # methods that are run once more in the thesis's protocol (catalogue.THESIS_FLAGS)
-    )
+    serves: str = ""  # methods of published tables
+    truth_frames: str = ""  # those that have truth; empty: all
+    own_truth: bool = False  # the number of samples is what is asked: never another shot's truth
+    first: int = 1  # number of the first frame
+    jitter_projection: str = "post"
     size: tuple[int, int] = (480, 270)
+    quick_size: tuple[int, int] | None = None  # of the short form
+    published_size: tuple[int, int] | None = None  # of the full form: as its source has it
+
+    def all_methods(self) -> list[str]:
+        """Whatever is run on it."""
+        return list(dict.fromkeys([*self.methods.split(), *self.serves.split()]))
+
+    def in_form(self, form: str) -> "Shot":
+        """Itself with the numbers of frames and samples and the size of one form of the study."""
+        if form == "quick":
+            return replace(
+                self,
+                frames=self.quick_frames,
+                truth_samples=self.quick_truth_samples,
+                size=self.quick_size or self.size,
+            )
+        if form == "full" and self.published_size:
+            return replace(self, size=self.published_size)
+        return self
 
 
 @dataclass
@@ -51,7 +72,7 @@ class Workshop:
     program: Path
     blender: str
     out: Path
-    quick: bool
+    form: str  # quick, whole or full
     known: set[str] = field(default_factory=set)  # method ids of the program and of the add-on
 
     def run(self, what: str, command: list[object]) -> str:
@@ -74,7 +95,7 @@ class Workshop:
         return done.stdout
 
     def folder(self, shot: Shot) -> Path:
-        return self.out / ("quick" if self.quick else "full") / shot.name
+        return self.out / self.form / shot.name
 
     def serves(self, method: str) -> bool:
         """Whether the program has the method and every method that fills its rejected pixels."""
@@ -86,65 +107,44 @@ class Workshop:
 
 def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
     """Exports what is not there yet; returns the shot's folder."""
+    shot = shot.in_form(shop.form)
     started = time.monotonic()
     folder = shop.folder(shot)
     stamp = shop.out / "stamps" / f"{folder.parent.name}.{shot.name}"
     wish = _identity(shot, shop)
-    if stamp.exists() and stamp.read_text() == wish and (folder / "shot.json").exists():
+    if is_ready(shots[shot.name], shop):
         return folder
-    frames = shot.quick_frames if shop.quick else shot.frames
+    size = "{}x{}".format(*shot.size)
     if shot.scene.startswith("synth:"):
-        command = [
-            shop.program,
-            "synth",
-            shot.scene.split(":")[1],
-            "-o",
-            folder,
-            "--frames",
-            frames,
-            "-q",
-        ]
-        command += [
-            "--resolution",
-            "{}x{}".format(*shot.size),
-            "--jitter",
-            shot.jitter,
-            "--period",
-            shot.period,
-        ]
+        command = [shop.program, "synth", shot.scene.split(":")[1], "-o", folder, "-q"]
+        command += ["--frames", shot.frames, "--resolution", size]
+        command += ["--jitter", shot.jitter, "--period", shot.period]
         command += ["--subsamples", shot.pattern] if shot.pattern else []
         shop.run(f"synth.{shot.name}", command)
         return _ready(shot, stamp, wish, started, "exact truth", folder)
-    blend = (
-        shop.out
-        / "scenes"
-        / f"{'_'.join([shot.scene, *(v.strip('-') for v in shot.variant)])}.blend"
-    )
+    blend = shop.out / "scenes" / f"{'_'.join([shot.scene, *(v.strip('-') for v in shot.variant), size])}.blend"
     headless = ROOT / "blender_addon/aa_resolve/headless.py"
     shop.run(
         f"scene.{blend.stem}",
         [shop.blender, "-b", "--factory-startup", "--python-exit-code", 9, "-P", ROOT / f"scenes/{shot.scene}.py"]
-        + ["--", "--out", blend, *shot.variant],
+        + ["--", "--out", blend, *shot.variant, "--resolution", size],
     )  # fmt: skip
-    samples = shot.quick_truth_samples if shop.quick else shot.truth_samples
-    ids = [m.split("+")[0] for m in shot.methods.split() if shop.serves(m)]
+    ids = [m.split("+")[0] for m in shot.all_methods() if shop.serves(m)]
     command = [shop.blender, "-b", blend, "--python-exit-code", 9, "-P", headless, "--"]
-    command += ["--out", folder, "--for", ",".join(ids), "--name", shot.name]
-    command += [
-        "--resolution",
-        "{}x{}".format(*shot.size),
-        "--frames",
-        f"1-{frames}",
-        "--truth-samples",
-        samples,
-    ]
+    command += ["--out", folder, "--for", ",".join(dict.fromkeys(ids)), "--name", shot.name]
+    command += ["--resolution", size, "--frames", f"{shot.first}-{shot.first + shot.frames - 1}"]
+    command += ["--truth-samples", shot.truth_samples]
     command += ["--jitter", shot.jitter, "--period", shot.period]
+    if shot.jitter_projection != "post":
+        command += ["--jitter-projection", shot.jitter_projection]
     if shot.pattern:
         command += ["--subsamples", shot.pattern]
     if shot.passes:
         command += ["--passes", shot.passes]
     if shot.truth_of or not shot.truth:
         command += ["--truth-frames", "none"]
+    elif shot.truth_frames:
+        command += ["--truth-frames", shot.truth_frames]
     try:
         said = shop.run(f"export.{shot.name}", command)
     except SystemExit as refusal:  # the exporter never mixes two exports in one folder
@@ -161,7 +161,13 @@ def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
 def _ready(shot: Shot, stamp: Path, wish: str, started: float, what: str, folder: Path) -> Path:
     stamp.parent.mkdir(exist_ok=True)
     stamp.write_text(wish)
-    print(f"  shot {shot.name}: {what} ({time.monotonic() - started:.0f} s)", flush=True)
+    seconds = time.monotonic() - started
+    spent = spent_before(shop)
+    # A resumed export took less than a whole one: what is remembered is the longest.
+    key = f"{shop.form}.{shot.name}"
+    spent[key] = max(spent.get(key, 0.0), seconds)
+    (shop.out / _SPENT).write_text(json.dumps(spent, indent=1))
+    print(f"  shot {shot.name}: {what} ({seconds:.0f} s)", flush=True)
     return folder
 
 
@@ -178,9 +184,26 @@ def scene_sources(name: str) -> list[Path]:
     return sorted(found)
 
 
+_SPENT = "seconds.json"  # of each shot's export
+
+
+def spent_before(shop: Workshop) -> dict[str, float]:
+    """Seconds that exports took on this machine, by form and name of the shot."""
+    path = shop.out / _SPENT
+    return json.loads(path.read_text()) if path.exists() else {}
+
+
+def is_ready(shot: Shot, shop: Workshop) -> bool:
+    """Whether the shot is there as it is described now."""
+    folder = shop.folder(shot)
+    stamp = shop.out / "stamps" / f"{shop.form}.{shot.name}"
+    wish = _identity(shot.in_form(shop.form), shop)
+    return stamp.exists() and stamp.read_text() == wish and (folder / "shot.json").exists()
+
+
 def _identity(shot: Shot, shop: Workshop) -> str:
     """What decides the shot's content: its description and the sources of scene and exporter."""
-    digest = hashlib.sha256(f"{replace(shot, methods='', thesis='')} {shop.quick}".encode())
+    digest = hashlib.sha256(f"{replace(shot, methods='', serves='')}".encode())
     if shot.scene.startswith("synth:"):
         sources = [shop.program]
     else:
@@ -190,7 +213,7 @@ def _identity(shot: Shot, shop: Workshop) -> str:
         registry = json.loads((ROOT / "blender_addon/aa_resolve/methods.json").read_text())[
             "methods"
         ]
-        ids = {m.split(":")[0].split("+")[0] for m in shot.methods.split()}
+        ids = {m.split(":")[0].split("+")[0] for m in shot.all_methods()}
         digest.update(repr([(m["id"], m["passes"]) for m in registry if m["id"] in ids]).encode())
     for path in sources:
         digest.update(path.read_bytes())
@@ -210,12 +233,12 @@ def _lend_truth(lender: Path, borrower: Path) -> None:
     manifest = json.loads((borrower / "shot.json").read_text())
     source = json.loads((lender / "shot.json").read_text())
     truths = {f["frame"]: f["truth"] for f in source["frames"] if "truth" in f}
+    if not truths or not (source["static"] or truths.keys() & {f["frame"] for f in manifest["frames"]}):
+        raise SystemExit(f"{lender}: no truth of the frames that {borrower} has")
     for entry in manifest["frames"]:
-        path = next(iter(truths.values()), None) if source["static"] else truths.get(entry["frame"])
-        if path is None:
-            raise SystemExit(
-                f"{lender}: no truth of frame {entry['frame']}, which {borrower} needs"
-            )
+        path = next(iter(truths.values())) if source["static"] else truths.get(entry["frame"])
+        if path is None:  # a frame that is not judged
+            continue
         target = borrower / path
         target.parent.mkdir(exist_ok=True)
         target.unlink(missing_ok=True)
