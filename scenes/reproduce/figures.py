@@ -46,6 +46,7 @@ class Run:
     """One results.json."""
 
     def __init__(self, folder: Path) -> None:
+        self.folder = folder
         self.data = json.loads((folder / "results.json").read_text())
         self.methods = {m["text"]: m for m in self.data["methods"]}
         self._pairs = {(p["first"], p["second"]): p for p in self.data["pairs"]}

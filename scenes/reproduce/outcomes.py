@@ -1,0 +1,385 @@
+# SPDX-License-Identifier: MIT
+"""What became of a published table: its runs, our figures beside the published ones, and what they say of its claims."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import cost
+from experiments import Claim, Experiment
+from figures import Difference, Run, kendall_tau, number, signed
+from runs import bench, compared, run_methods
+from shots import Shot, Workshop, make
+
+HOLDS, FAILS, UNRESOLVED = "holds", "does not hold", "not resolved"
+
+
+@dataclass
+class Verdict:
+    """What the figures say of one claim."""
+
+    claim: Claim
+    answer: str
+    figures: str  # in words
+    reasons: list[str] = field(default_factory=list)
+
+
+@dataclass
+class Outcome:
+    """One table, run."""
+
+    experiment: Experiment
+    folders: dict[str, Path]  # of its shots
+    run: Run | None = None
+    by_name: dict[str, dict[str, float]] = field(default_factory=dict)  # name -> figure -> ours
+    other: dict[str, dict[str, float]] = field(default_factory=dict)  # the same, against the truth
+    parts: dict[str, Run] = field(default_factory=dict)  # further runs: regions, headroom, shots
+    verdicts: list[Verdict] = field(default_factory=list)
+    taus: dict[str, float] = field(default_factory=dict)  # figure -> Kendall's tau of the order
+
+    def text(self, name: str) -> str:
+        return self.experiment.methods[name]
+
+    def gain(self, first: str, second: str = "No AA", part: str = "") -> Difference:
+        return (self.parts[part] if part else self.run).gain(self.text(first), self.text(second))
+
+    @property
+    def noise_share(self) -> float | None:
+        """The truth's own error over the smallest error that is ranked, in percent; None without such a ranking."""
+        if self.run is None or not self.run.noise > 0:
+            return None
+        ranked = [self.run.mse(self.text(n)) for n in self.named() if self.text(n) in self.run]
+        return 100.0 * self.run.noise / min(ranked) if min(ranked) > 0 else None
+
+    def named(self) -> list[str]:
+        """The names whose figures are published."""
+        return [n for n in self.experiment.methods if n in self.experiment.published]
+
+    def published(self, name: str, figure: str) -> float | None:
+        """One cell of the published table."""
+        columns, row = self.experiment.published["columns"], self.experiment.published[name]
+        return row[columns.index(figure)] if figure in columns else None
+
+
+def of(experiment: Experiment, catalogue: dict[str, Shot], shop: Workshop, before: dict[str, "Outcome"]) -> Outcome:
+    """Renders what is missing, runs the methods and answers the claims; `before`: the outcomes so far."""
+    folders = {own: make(catalogue, catalogue[name], shop) for own, name in experiment.shots.items()}
+    outcome = Outcome(experiment, folders)
+    _FILL[experiment.kind](outcome, catalogue, shop)
+    outcome.verdicts = [_verdict(outcome, claim, before) for claim in experiment.claims]
+    for verdict in outcome.verdicts:
+        if verdict.answer != HOLDS and "else" in verdict.claim.options:
+            verdict.reasons.append(verdict.claim.options["else"])
+    return outcome
+
+
+# --- the kinds ---
+
+
+def _table(o: Outcome, _catalogue: dict[str, Shot], shop: Workshop) -> None:
+    e, folder = o.experiment, o.folders["main"]
+    o.run = run_methods(folder, e.key, e.texts(), shop, e.protocol.flags)
+    for name in o.named():
+        o.by_name[name] = _pooled(o.run, o.text(name), e.protocol.codes)
+    for region, share in e.regions.items():
+        width, height = o.run.data["shot"]["resolution"]
+        box = [round(v * s) for v, s in zip(share, (width, height, width, height))]
+        flags = (*e.protocol.flags, "--region", ",".join(map(str, box)))
+        o.parts[region] = run_methods(folder, f"{e.key}.{region.replace(' ', '_')}", e.texts(), shop, flags)
+    _rank(o, "psnr")
+
+
+def _ghosts(o: Outcome, catalogue: dict[str, Shot], shop: Workshop) -> None:
+    e = o.experiment
+    o.run = run_methods(o.folders["main"], e.key, e.texts(), shop, e.protocol.flags)
+    for name in o.named():
+        o.by_name[name] = _pooled(o.run, o.text(name), e.protocol.codes)
+    means = [e.published[n]["mse"][2] for n in o.named()]
+    o.taus["mse"] = kendall_tau(means, [o.by_name[n]["mse"] for n in o.named()])
+
+
+def _reference_size(o: Outcome, _catalogue: dict[str, Shot], shop: Workshop) -> None:
+    e = o.experiment
+    for own, folder in o.folders.items():
+        o.parts[own] = run_methods(folder, e.key, list(e.methods.values()), shop, e.protocol.flags)
+        o.by_name[own] = {
+            f"{figure} {name}": value
+            for name, text in e.methods.items()
+            for figure, value in _pooled(o.parts[own], text, e.protocol.codes).items()
+        }
+
+
+def _fourier(o: Outcome, _catalogue: dict[str, Shot], shop: Workshop) -> None:
+    """Every method's picture of the judged frame against the reference's, and against the truth."""
+    e = o.experiment
+    pictures: dict[str, Path] = {}
+    truth: Path | None = None
+    for own, folder in o.folders.items():
+        names = [n for n in e.methods if e.protocol.shots.get(n, "main") == own]
+        texts = list(dict.fromkeys(["noaa", *(o.text(n) for n in names)]))
+        run = run_methods(folder, e.key, texts, shop, e.protocol.flags, write="exr")
+        o.parts[own] = run
+        for name in names:
+            pictures[name] = run.folder / _last_picture(run.methods[o.text(name)])
+        if own == "main":
+            o.run = run
+            truth = run.folder / run.data["truth"]["images"][max(run.data["truth"]["images"], key=int)]
+    reference = pictures[e.protocol.reference]
+    for name in [*o.named(), e.protocol.reference]:
+        for against, found in ((reference, o.by_name), (truth, o.other)):
+            if pictures[name] != against:
+                found[name] = compared(pictures[name], against, e.key, shop)
+    _rank(o, "fmagMse")
+    o.taus["fmagMse, against the truth"] = _tau(o, "fmagMse", o.other)
+
+
+def _cost(o: Outcome, _catalogue: dict[str, Shot], shop: Workshop) -> None:
+    e = o.experiment
+    for own, folder in o.folders.items():
+        names = [n for n in e.methods if e.protocol.shots.get(n, "main") == own]
+        rows = bench(folder, list(dict.fromkeys(["noaa", *(o.text(n) for n in names)])), shop)
+        width, height = json.loads((folder / "shot.json").read_text())["resolution"]
+        base = rows["noaa"]
+        for name in names:
+            o.by_name[name] = cost.figures(rows[o.text(name)], base, width * height)
+    for figure in o.experiment.published["columns"]:
+        o.taus[figure] = _tau(o, figure, o.by_name)
+
+
+def _options(o: Outcome, catalogue: dict[str, Shot], shop: Workshop) -> None:
+    e = o.experiment
+    texts = list(dict.fromkeys(["noaa", *(p[k] for p in e.options for k in ("with", "without"))]))
+    for name in e.on:
+        folder = make(catalogue, catalogue[name], shop)
+        o.parts[name] = run_methods(folder, e.key, texts, shop, e.protocol.flags)
+    for option in e.options:
+        claim = Claim(option["says"], "option", option, option)
+        found = {name: _of_option(run, option) for name, run in o.parts.items()}
+        words = "; ".join(f"{name} {d}" for name, d in found.items() if d)
+        o.verdicts.append(Verdict(claim, _over_all([d for d in found.values() if d]), words))
+
+
+_FILL = {
+    "table": _table, "ghosts": _ghosts, "reference size": _reference_size, "fourier": _fourier, "cost": _cost,
+    "options": _options,
+}  # fmt: skip
+
+
+def _of_option(run: Run, option: dict) -> Difference | None:
+    a, b = option["with"], option["without"]
+    return run.gain(a, b) if option["figure"] == "gain" else run.over_time(a, b, option["figure"])
+
+
+def _over_all(found: list[Difference]) -> str:
+    """Holds where it holds on every shot that resolves it."""
+    clear = [d.db > 0 for d in found if d.resolved]
+    if not clear:
+        return UNRESOLVED
+    return HOLDS if all(clear) else FAILS if not any(clear) else "holds on some"
+
+
+def _pooled(run: Run, text: str, codes: float) -> dict[str, float]:
+    pooled = run.methods[text]["pooled"]
+    found = {k: number(pooled[k]) for k in ("mse", "psnr", "snr", "ssimLuma")}
+    return scaled(found, codes)
+
+
+def scaled(figures: dict[str, float], codes: float) -> dict[str, float]:
+    """Squared error in the unit of the protocol, and its root."""
+    mse = figures["mse"] * codes * codes
+    return {**figures, "mse": mse, "rmse": math.sqrt(mse)}
+
+
+def _last_picture(method: dict) -> str:
+    return [f["image"] for f in method["frames"] if f.get("image")][-1]
+
+
+def _rank(o: Outcome, figure: str) -> None:
+    o.taus[figure] = _tau(o, figure, o.by_name)
+
+
+def _tau(o: Outcome, figure: str, ours: dict[str, dict[str, float]]) -> float:
+    names = [n for n in o.named() if n in ours]
+    return kendall_tau([o.published(n, figure) for n in names], [ours[n][figure] for n in names])
+
+
+# --- claims ---
+
+
+def _answer(d: Difference) -> str:
+    return UNRESOLVED if not d.resolved else HOLDS if d.db > 0 else FAILS
+
+
+def _verdict(o: Outcome, claim: Claim, before: dict[str, Outcome]) -> Verdict:
+    answer, words, reasons = _TESTS[claim.test](o, claim, before)
+    return Verdict(claim, answer, words, reasons)
+
+
+def _better(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
+    first, second = claim.of
+    if o.experiment.kind == "fourier":
+        ours = o.other if claim.options.get("reference") == "truth" else o.by_name
+        a, b = ours[first]["fmagMse"], ours[second]["fmagMse"]
+        return (HOLDS if a < b else FAILS), f"{first} {a:.4g}, {second} {b:.4g}", []
+    d = o.gain(first, second, claim.options.get("region", ""))
+    answer = _answer(d)
+    return answer, str(d), reasons(o, first, second) if answer == FAILS else []
+
+
+def _near(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
+    (first, second), within = claim.of, claim.options["within"]
+    d = o.gain(first, second)
+    if -within <= d.low and d.high <= within:
+        answer = HOLDS
+    else:
+        answer = FAILS if d.low > within or d.high < -within else UNRESOLVED
+    return answer, f"{d}; asked is ± {within:g} dB", reasons(o, first, second) if d.db < -within else []
+
+
+def _best(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
+    found = {n: o.gain(claim.of, n) for n in o.named() if n != claim.of}
+    closest = min(found, key=lambda n: found[n].db)
+    answer = _answer(found[closest])
+    return answer, f"over the next, {closest}: {found[closest]}", reasons(o, claim.of, closest) if answer == FAILS else []
+
+
+def _between(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
+    name, low, high = claim.of
+    a, worse, better = (o.by_name[n]["fmagMse"] for n in (name, low, high))
+    words = f"{low} {worse:.4g}, {name} {a:.4g}, {high} {better:.4g}"
+    return (HOLDS if better < a < worse else FAILS), words, []
+
+
+def _less_than_half(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
+    *weak, strong = claim.of
+    best = o.gain(strong)
+    gains = {n: o.gain(n) for n in weak}
+    words = ", ".join(f"{n} {signed(d.db)} dB" for n, d in {**gains, strong: best}.items())
+    return (HOLDS if all(2 * d.db < best.db for d in gains.values()) else FAILS), words, []
+
+
+def _more_flicker(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
+    a, b = (o.run.temporal(o.text(n), "flickerStatic") for n in claim.of)
+    if a is None or b is None:
+        return UNRESOLVED, "the shot has no figure of flicker", []
+    words = f"{claim.of[0]} {a:.3g}, {claim.of[1]} {b:.3g} 8-bit codes"
+    return (HOLDS if a > b else FAILS), words, []
+
+
+def _less_ghost(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
+    d = o.run.over_time(*(o.text(n) for n in claim.of), "ghost")
+    if d is None:
+        return UNRESOLVED, "the shot uncovers nothing", []
+    return _answer(d), f"{d} less ghost MSE", []
+
+
+def _exact_at_best(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
+    lowest = {n: extremes(o, n, "mse")[0] for n in claim.of}
+    words = ", ".join(f"{n} {v:.3g}" for n, v in lowest.items()) + " codes² in the best frame"
+    return (HOLDS if all(v < 0.01 for v in lowest.values()) else FAILS), words, []
+
+
+def _change(o: Outcome, figure: str) -> float:
+    """Of a figure from the first shot's truth to the last one's, percent."""
+    first, last = list(o.by_name)[0], list(o.by_name)[-1]
+    return 100 * abs(o.by_name[first][figure] / o.by_name[last][figure] - 1)
+
+
+def _changes_below(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
+    rows = [r for r in o.experiment.published if r != "columns"]
+    worst = max(rows, key=lambda r: _change(o, r))
+    return (HOLDS if _change(o, worst) < claim.of else FAILS), f"at most {_change(o, worst):.2g} % ({worst})", []
+
+
+def _changes_more(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
+    a, b = (_change(o, f"mse {n}") for n in claim.of)
+    return (HOLDS if a > b else FAILS), f"MSE of {claim.of[0]} by {a:.2g} %, of {claim.of[1]} by {b:.2g} %", []
+
+
+def _better_than_in(o: Outcome, claim: Claim, before) -> tuple[str, str, list[str]]:
+    key, name = claim.of
+    if key not in before:
+        return UNRESOLVED, f"{key} was not run", []
+    a, b = o.by_name[name]["fmagMse"], before[key].by_name[name]["fmagMse"]
+    return (HOLDS if a < b else FAILS), f"{a:.4g} here, {b:.4g} in {before[key].experiment.label}", []
+
+
+def _worse_than_still(o: Outcome, claim: Claim, before) -> tuple[str, str, list[str]]:
+    key, name = claim.of
+    if key not in before:
+        return UNRESOLVED, f"{key} was not run", []
+    drop = before[key].by_name[name]["psnr"] - o.by_name[name]["psnr"]
+    return (HOLDS if drop > claim.options["by"] else FAILS), f"{signed(-drop)} dB", []
+
+
+def _above_by(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
+    first, second = claim.of
+    low, high = claim.options["from"], claim.options["to"]
+    d = o.gain(first, second)
+    if low <= d.low and d.high <= high:
+        answer = HOLDS
+    else:
+        answer = FAILS if d.high < low or d.low > high else UNRESOLVED
+    return answer, f"{d}; asked is {low:g} to {high:g} dB", []
+
+
+def _costs(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
+    a, b = (o.by_name[n]["ms"] for n in claim.of)
+    low, high = claim.options["times"]
+    return (HOLDS if low <= a / b <= high else FAILS), f"{a / b:.2g} times ({a:.3g} and {b:.3g} ms)", []
+
+
+def _cheapest(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
+    least = min(o.named(), key=lambda n: o.by_name[n]["ms"])
+    return (HOLDS if least == claim.of else FAILS), f"the cheapest is {least}, {o.by_name[least]['ms']:.3g} ms", []
+
+
+_TESTS = {
+    "better": _better, "near": _near, "best": _best, "between": _between, "less_than_half": _less_than_half,
+    "more_flicker": _more_flicker, "less_ghost": _less_ghost, "exact_at_best": _exact_at_best,
+    "changes_below": _changes_below, "changes_more": _changes_more, "better_than_in": _better_than_in,
+    "worse_than_still": _worse_than_still, "costs": _costs, "cheapest": _cheapest, "above_by": _above_by,
+}  # fmt: skip
+
+# What `master` gains when one of its parts is switched off, or read otherwise.
+_PARTS_OF_MASTER = [
+    ("sharpening the output", "master:sharpen=none", "master"),
+    ("a colour box that is closed where no edge is found", "master:sharpen=none,minAlias=1", "master:sharpen=none"),
+    ("the first frame's lasting weight", "master:sharpen=none,warmup=ramp", "master:sharpen=none"),
+    ("un-jittering", "master:unjitter=off", "master"),
+    ("a feedback of .925 to .979 instead of .88 to .97", "master:kmin=0.88,kmax=0.97", "master"),
+    ("its test of depth over time", "master:depthTemporal=off", "master"),
+    ("depths in normalised units", "master:depthUnit=world,pastDepth=reprojected", "master"),
+]  # fmt: skip
+
+
+def reasons(o: Outcome, first: str, second: str) -> list[str]:
+    """Why a published order does not show, as far as the runs can tell."""
+    return [why_master_falls_behind(o.run)] if o.run and o.text(first) == "master" else []
+
+
+def why_master_falls_behind(run: Run) -> str:
+    """Only what the figures resolve counts as a reason."""
+    gains = [(what, run.gain(a, b)) for what, a, b in _PARTS_OF_MASTER if a in run and b in run]
+    found = sorted((g for g in gains if g[1].resolved and g[1].db > 0.1), key=lambda g: -g[1].db)
+    innocent = [what for what, d in gains if not d.resolved or d.db <= 0.1]
+    text = "What `master` loses by, each part switched off in turn: " + (
+        ", ".join(f"{what} {d}" for what, d in found) or "none of its parts"
+    )
+    return text + (f"; not by {' or '.join(innocent)}." if innocent else ".")
+
+
+def extremes(o: Outcome, name: str, figure: str) -> tuple[float, float, float, int, int]:
+    """Best, worst and mean of a figure over the frames, and which frames, counted from 0."""
+    values = []
+    for frame in o.run.methods[o.text(name)]["frames"]:
+        if frame.get("metrics"):
+            found = {k: number(v) for k, v in frame["metrics"].items()}
+            values.append(scaled(found, o.experiment.protocol.codes)[figure])
+    mean = sum(values) / len(values)
+    pick = (min, max) if figure in ("mse", "rmse") else (max, min)
+    best, worst = (p(values) for p in pick)
+    return best, worst, mean, values.index(best), values.index(worst)
