@@ -1,0 +1,297 @@
+# SPDX-License-Identifier: MIT
+"""Pages of the published tables: each table beside ours in its own form, and how far both agree."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import outcomes
+from figures import signed
+from outcomes import FAILS, HOLDS, UNRESOLVED, Outcome, Verdict
+from page import Page, code
+
+_HEADS = {
+    "mse": "MSE", "rmse": "RMSD", "psnr": "PSNR", "snr": "SNR", "ssimLuma": "SSIM", "fmagMse": "Fourier MSE", "ms": "ms",
+    "ms above": "ms above no AA", "MB": "MB", "gain": "gain, dB",
+}  # fmt: skip
+
+
+def source_page(title: str, found: list[Outcome], pictures: dict[str, str], charts: dict[str, str]) -> Page:
+    """All tables of one source."""
+    page = Page(title)
+    said = {}
+    for o in found:
+        if o.experiment.protocol.says and o.experiment.protocol.says not in said:
+            said[o.experiment.protocol.says] = True
+            page.say(o.experiment.protocol.says)
+    page.say("A cell reads *published / ours*.")
+    for o in found:
+        e = o.experiment
+        page.heading(f"{e.table}: {e.title}")
+        page.say(e.says, setup(o))
+        if e.key in pictures:
+            page.picture(pictures[e.key], f"{e.title}: {', '.join(o.named() or e.methods)}")
+        _BODY[e.kind](page, o)
+        if e.key in charts:
+            page.picture(charts[e.key], f"{e.title}: over the frames")
+        if o.taus and len(o.named()) > 1:
+            page.say(
+                "Kendall's τ of the order: "
+                + "; ".join(f"{_HEADS.get(k, k)} {signed(v)}" for k, v in o.taus.items())
+                + "."
+            )
+        page.points(claim_lines(o))
+    return page
+
+
+def setup(o: Outcome) -> str:
+    """Size, frames and how good the truth is."""
+    run = o.run or next(iter(o.parts.values()), None)
+    if run is None:
+        return ""
+    shot, truth = run.data["shot"], run.data["truth"]
+    text = "{} × {}, {} frames".format(*shot["resolution"], len(run.data["methods"][0]["frames"]))
+    if truth.get("samplesPerHalf") and o.experiment.kind != "reference size":
+        text += f"; truth of two halves of {truth['samplesPerHalf']} samples"
+    share = o.noise_share
+    if share is not None:
+        text += f", its own error {share:.2g} % of the smallest one in the table"
+        text += " (**more than the 1 % that a ranking asks for**)" if share > 1 else ""
+    return text + "."
+
+
+def claim_lines(o: Outcome) -> list[str]:
+    return [claim_line(v) for v in o.verdicts]
+
+
+def claim_line(v: Verdict) -> str:
+    return " ".join([f"{v.claim.says}: **{v.answer}**. {_sentence(v.figures)}", *v.reasons])
+
+
+def _sentence(text: str) -> str:
+    return text if not text or text.endswith(".") else text + "."
+
+
+def _cell(theirs: float | None, ours: float | None, digits: int) -> str:
+    show = lambda v: "–" if v is None else "Inf" if math.isinf(v) else f"{v:.{digits}f}"  # noqa: E731
+    return f"{show(theirs)} / {show(ours)}"
+
+
+_DIGITS = {"mse": 2, "rmse": 2, "psnr": 2, "snr": 2, "ssimLuma": 4, "fmagMse": 4, "ms": 2, "ms above": 2, "MB": 1}
+
+
+def _table(page: Page, o: Outcome) -> None:
+    e = o.experiment
+    columns = [c for c in e.published["columns"] if c != "gain"]
+    base = o.published("No AA", "psnr") if "No AA" in o.named() and "psnr" in columns else None
+    rows = []
+    for name, text in e.methods.items():
+        if text not in o.run:
+            continue
+        listed = name in e.published
+        row = [f"{name} ({code(text)})"]
+        for column in columns:
+            row.append(_cell(o.published(name, column) if listed else None, o.by_name.get(name, {}).get(column), _DIGITS[column]))
+        gain = o.gain(name)
+        theirs = None
+        if listed and "gain" in e.published["columns"]:
+            theirs = o.published(name, "gain")
+        elif listed and base is not None:
+            theirs = o.published(name, "psnr") - base
+        row.append("–" if theirs is None else signed(theirs))
+        row += [signed(gain.db), f"{signed(gain.low)} to {signed(gain.high)}"] if text != "noaa" else ["", ""]
+        rows.append(row)
+    for text in ("unchartedNorm", "unchartedNoSharpen", "master:unjitter=off"):
+        if text in o.run and text not in e.methods.values():
+            gain = o.run.gain(text)
+            ours = outcomes._pooled(o.run, text, e.protocol.codes)
+            rows.append([code(text), *(_cell(None, ours[c], _DIGITS[c]) for c in columns), "–", signed(gain.db),
+                         f"{signed(gain.low)} to {signed(gain.high)}"])  # fmt: skip
+    page.table(["method", *(_HEADS[c] for c in columns), "gain, published", "gain, ours", "95 %"], rows)
+    signs = _other_signs(o)
+    if signs:
+        page.points(signs)
+
+
+def _other_signs(o: Outcome) -> list[str]:
+    """Methods that stand on the other side of no anti-aliasing than published, and what a stop of headroom changes."""
+    if "psnr" not in o.experiment.published["columns"] or "No AA" not in o.named():
+        return []
+    lines, headroom = [], o.parts.get("headroom")
+    for name in o.named():
+        theirs = o.published(name, "psnr") - o.published("No AA", "psnr")
+        ours = o.gain(name)
+        if theirs * ours.db >= 0:
+            continue
+        line = f"{name} has the other sign: {signed(theirs)} dB published, {ours} here."
+        if headroom and o.text(name) in headroom:
+            dark = headroom.gain(o.text(name))
+            line += f" One stop darker, so that its overshoot is not clipped at the ends of the display, it is {dark}"
+            line += ": the published sign. The clipping hides what the sharpening does." if dark.db * theirs > 0 else "."
+        lines.append(line)
+    return lines
+
+
+def _ghosts(page: Page, o: Outcome) -> None:
+    e, rows = o.experiment, []
+    for figure in ("mse", "psnr", "snr", "ssimLuma"):
+        for name in o.named():
+            theirs, ours = e.published[name].get(figure), outcomes.extremes(o, name, figure)
+            show = lambda v: f"{v:.{_DIGITS[figure]}f}".replace("inf", "Inf")  # noqa: E731
+            both = [f"{show(t)} / {show(u)}" for t, u in zip(theirs[:3], ours[:3])]
+            rows.append([f"{_HEADS[figure]}, {name}", *both, f"{theirs[3]:g}, {theirs[4]:g} / {ours[3]}, {ours[4]}"])
+    page.table(["figure", "best", "worst", "mean", "frames of best, worst"], rows)
+    more = [n for n in e.methods if n not in e.published]
+    rows = []
+    for label, text in [*((n, o.text(n)) for n in more), ("", "unchartedNorm"), ("", "master:sharpen=none")]:
+        if text in o.run:
+            pooled = outcomes._pooled(o.run, text, e.protocol.codes)
+            rows.append([f"{label} ({code(text)})" if label else code(text), f"{pooled['mse']:.2f}", f"{pooled['psnr']:.2f}", f"{pooled['ssimLuma']:.4f}"])
+    page.say("Beside them, ours alone: mean MSE, pooled PSNR and mean SSIM.")
+    page.table(["method", "MSE", "PSNR", "SSIM"], rows)
+    page.say(
+        f"Master over Uncharted, MSE pooled: {o.gain('Master', 'Uncharted')}; published "
+        f"{signed(10 * math.log10(e.published['Uncharted']['mse'][2] / e.published['Master']['mse'][2]))} dB. "
+        f"Over the same filter, `unchartedNorm`: {o.run.gain('master', 'unchartedNorm')}."
+    )
+
+
+def _reference_size(page: Page, o: Outcome) -> None:
+    e, rows = o.experiment, []
+    few, many = list(o.by_name)[0], list(o.by_name)[-1]
+    for row, theirs in e.published.items():
+        if row == "columns":
+            continue
+        ours = (o.by_name[few][row], o.by_name[many][row])
+        digits = 5 if row.startswith("ssim") else 3
+        change = lambda a, b: 100 * abs(a / b - 1)  # noqa: E731
+        rows.append([row.replace(row.split()[0], _HEADS[row.split()[0]]), *(_cell(t, u, digits) for t, u in zip(theirs, ours)),
+                     f"{change(*theirs):.3f} / {change(*ours):.3f}"])  # fmt: skip
+    page.table(["figure", f"{few} samples", f"{many} samples", "relative change, %"], rows)
+
+
+def _fourier(page: Page, o: Outcome) -> None:
+    e = o.experiment
+    reference = e.protocol.reference
+    base = ("No AA" in o.named(), o.by_name.get("No AA", {}).get("fmagMse"))
+    rows = []
+    for name in [*o.named(), reference]:
+        theirs = o.published(name, "fmagMse") if name in e.published else None
+        ours, true = o.by_name.get(name, {}).get("fmagMse"), o.other[name]["fmagMse"]
+        share = lambda v, b: "–" if v is None or not b else f"{v / b:.2f}"  # noqa: E731
+        published_base = o.published("No AA", "fmagMse") if base[0] else None
+        rows.append([
+            f"{name} ({code(o.text(name))})", "–" if theirs is None else f"{theirs:.4f}",
+            "–" if ours is None else f"{1e6 * ours:.2f}", f"{share(theirs, published_base)} / {share(ours, base[1])}",
+            f"{1e6 * true:.2f}", f"{o.other[name]['psnr']:.2f}",
+        ])  # fmt: skip
+    page.table(
+        ["method", "published", f"ours against {reference}, × 10⁻⁶", "over no AA, published / ours", "ours against the truth, × 10⁻⁶", "PSNR against the truth"],
+        rows,
+    )
+
+
+def _cost(page: Page, o: Outcome) -> None:
+    e = o.experiment
+    columns = e.published["columns"]
+    rows = [
+        [f"{n} ({code(o.text(n))})", *(_cell(o.published(n, c), o.by_name[n][c], _DIGITS[c]) for c in columns)]
+        for n in o.named()
+    ]
+    page.table(["method", *(_HEADS[c] for c in columns)], rows)
+
+
+def _options(page: Page, o: Outcome) -> None:
+    page.table(
+        ["claim", "with", "without", *o.parts],
+        [
+            [v.claim.says, code(v.claim.of["with"]), code(v.claim.of["without"]),
+             *(_short(outcomes._of_option(run, v.claim.of)) for run in o.parts.values())]
+            for v in o.verdicts
+        ],
+    )  # fmt: skip
+    page.say("Decibels by which the option helps; n. r.: not resolved.")
+
+
+def _short(d) -> str:
+    return "–" if d is None else signed(d.db) + ("" if d.resolved else " (n. r.)")
+
+
+_BODY = {
+    "table": _table, "ghosts": _ghosts, "reference size": _reference_size, "fourier": _fourier, "cost": _cost,
+    "options": _options,
+}  # fmt: skip
+
+
+def agreement_page(found: list[Outcome], pages: dict[str, str]) -> Page:
+    """Over all tables: ranks, claims, and what stands behind each."""
+    page = Page("How far the sources' tables show here")
+    page.say(
+        "Every published table that we run, the order of its methods against ours (Kendall's τ: 1 = the same order, 0 = none),",
+        "and every claim of its text: it holds, does not hold, or is not resolved by our figures. The reasons follow from runs with a part switched off.",
+    )
+    count = {a: sum(v.answer == a for o in found for v in o.verdicts) for a in (HOLDS, "holds on some", FAILS, UNRESOLVED)}
+    page.say(", ".join(f"{n} {'claims' if i == 0 else ''} **{a}**".replace("  ", " ") for i, (a, n) in enumerate(count.items())) + ".")
+    rows = []
+    for o in found:
+        e = o.experiment
+        main = next(iter(o.taus.items()), None) if len(o.named()) > 1 else None
+        share = o.noise_share
+        tally = [sum(v.answer == a for v in o.verdicts) for a in (HOLDS, FAILS, UNRESOLVED)]
+        rows.append([
+            f"[{e.source}, {e.table}]({pages[e.source]}#{anchor(f'{e.table}: {e.title}')}): {e.title}",
+            f"{signed(main[1])} ({_HEADS.get(main[0], main[0])})" if main else "–",
+            "–" if share is None else f"{share:.2g} %" + ("" if share <= 1 else " (!)"),
+            *map(str, tally),
+        ])  # fmt: skip
+    page.table(["table", "τ", "truth's error", HOLDS, FAILS, UNRESOLVED], rows)
+    for o in found:
+        e = o.experiment
+        if o.verdicts:
+            page.heading(f"{e.source}, {e.table}: {e.title}")
+            page.points(claim_lines(o))
+    return page
+
+
+def anchor(heading: str) -> str:
+    """As the pages' headings are addressed."""
+    kept = "".join(c for c in heading.lower() if c.isalnum() or c in " -_")
+    return kept.replace(" ", "-")
+
+
+def write_svg(path: Path, series: dict[str, list[float]], title: str, unit: str, first: int = 0) -> None:
+    """Curves over the frames; infinite values leave a gap."""
+    width, height, left, right, top, bottom = 860, 300, 56, 150, 28, 34
+    finite = [v for values in series.values() for v in values if math.isfinite(v)]
+    low, high = min(finite), max(finite)
+    low, high = (low - 0.5, high + 0.5) if high - low < 1e-9 else (low, high)
+    count = max(len(v) for v in series.values())
+    x = lambda i: left + (width - left - right) * i / max(1, count - 1)  # noqa: E731
+    y = lambda v: height - bottom - (height - top - bottom) * (v - low) / (high - low)  # noqa: E731
+    colours = ("#1f6fb2", "#d1651a", "#2e8b57", "#9b4fb0", "#7a7a7a", "#b8860b", "#c23b4a", "#3aa6a6")
+    out = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="12">',
+        f'<rect width="{width}" height="{height}" fill="#fff"/><text x="{left}" y="18" font-size="13">{title}</text>',
+    ]
+    for k in range(5):
+        value = low + (high - low) * k / 4
+        out.append(f'<path d="M{left} {y(value):.1f}H{width - right}" stroke="#ddd"/>')
+        out.append(f'<text x="{left - 6}" y="{y(value) + 4:.1f}" text-anchor="end" fill="#555">{value:.3g}</text>')
+    for k in range(0, count, max(1, count // 10)):
+        out.append(f'<text x="{x(k):.1f}" y="{height - 16}" text-anchor="middle" fill="#555">{k + first}</text>')
+    out.append(f'<text x="{width - right}" y="{height - 3}" text-anchor="end" fill="#555">frame; {unit}</text>')
+    for n, (name, values) in enumerate(series.items()):
+        colour, pen, path_data = colours[n % len(colours)], "M", []
+        for i, value in enumerate(values):
+            if math.isfinite(value):
+                path_data.append(f"{pen}{x(i):.1f} {y(value):.1f}")
+                pen = "L"
+            else:
+                pen = "M"
+        out.append(f'<path d="{"".join(path_data)}" fill="none" stroke="{colour}" stroke-width="1.8"/>')
+        out.append(f'<text x="{width - right + 8}" y="{top + 14 + 17 * n}" fill="{colour}">{name}</text>')
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_suffix(".tmp")
+    temporary.write_text("\n".join([*out, "</svg>", ""]), encoding="utf-8")
+    temporary.replace(path)
