@@ -25,7 +25,8 @@ help:
 	@echo "make bundle     the program with its libraries, build/aaresolve-*.tar.gz, and the add-on with it, build/aa_resolve-linux-x64.zip"
 	@echo "make deb        Debian packages of the program; docs/install.md says who takes which file"
 	@echo "make bench      speed of every method, ns per pixel, and of the exporter, CPU seconds"
-	@echo "make reproduce  render the study's scenes, run every method on each, write docs/results (QUICK=1: a short form)"
+	@echo "make reproduce  render the study's scenes, run every method on each, hold them against the published"
+	@echo "                tables, write docs/results; QUICK=1: a short form, FULL=1: published sizes, ONLY=oliveros-5.8: one table, ONLY=list"
 	@echo "make test-addon     the add-on's tests in the Blender at BLENDER=/path/to/blender; ONLY=\"light motion\""
 	@echo "make test-blenders  the same, scenes and more in the Blenders of Debian 13 and sid; SUITES=\"trixie sid\", ONLY=..."
 	@echo "make test-bundle    the bundle and the zips in bare systems of Debian 12, 13 and sid"
@@ -120,9 +121,10 @@ docs: program
 bits: program
 	@python3 tests/e2e/same_bits_test.py $(BUILD)/aaresolve . --update
 
-# Resumable: what build/reproduce holds is kept.
+# Resumable: what build/reproduce holds is kept. ONLY="oliveros-5.8 ...": some tables, to build/reproduce/only;
+# ONLY=list shows the names and what is missing.
 reproduce: program
-	@python3 scenes/reproduce/reproduce.py $(BUILD)/aaresolve build/reproduce docs/results $(if $(QUICK),--quick)
+	@python3 scenes/reproduce/reproduce.py $(BUILD)/aaresolve build/reproduce docs/results $(if $(QUICK),--quick) $(if $(FULL),--full) $(if $(filter list,$(ONLY)),--list,$(if $(ONLY),--only $(ONLY)))
 
 format:
 	@.ci/format

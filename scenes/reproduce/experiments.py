@@ -129,7 +129,9 @@ def _only(path: Path, table: dict, known: set[str]) -> None:
             raise BadExperiment(f"{path}: unknown key '{key}'; known: {', '.join(sorted(known))}")
 
 
-def _experiment(path: Path, protocols: dict[str, Protocol], catalogue: dict[str, Shot]) -> Experiment:
+def _experiment(
+    path: Path, protocols: dict[str, Protocol], catalogue: dict[str, Shot]
+) -> Experiment:
     data = _read(path)
     _only(path, data, _KEYS)
     for key in ("kind", "source", "table", "title", "says", "protocol"):
@@ -166,7 +168,9 @@ def _experiment(path: Path, protocols: dict[str, Protocol], catalogue: dict[str,
 def _claim(path: Path, table: dict) -> Claim:
     tests = [k for k in table if k in TESTS]
     if len(tests) != 1:
-        raise BadExperiment(f"{path}: a claim: expected one of {', '.join(TESTS)}, found {list(table)}")
+        raise BadExperiment(
+            f"{path}: a claim: expected one of {', '.join(TESTS)}, found {list(table)}"
+        )
     rest = {k: v for k, v in table.items() if k not in ("says", tests[0])}
     return Claim(table["says"], tests[0], table[tests[0]], rest)
 

@@ -64,9 +64,13 @@ class Outcome:
         return row[columns.index(figure)] if figure in columns else None
 
 
-def of(experiment: Experiment, catalogue: dict[str, Shot], shop: Workshop, before: dict[str, "Outcome"]) -> Outcome:
+def of(
+    experiment: Experiment, catalogue: dict[str, Shot], shop: Workshop, before: dict[str, "Outcome"]
+) -> Outcome:
     """Renders what is missing, runs the methods and answers the claims; `before`: the outcomes so far."""
-    folders = {own: make(catalogue, catalogue[name], shop) for own, name in experiment.shots.items()}
+    folders = {
+        own: make(catalogue, catalogue[name], shop) for own, name in experiment.shots.items()
+    }
     outcome = Outcome(experiment, folders)
     _FILL[experiment.kind](outcome, catalogue, shop)
     outcome.verdicts = [_verdict(outcome, claim, before) for claim in experiment.claims]
@@ -88,7 +92,9 @@ def _table(o: Outcome, _catalogue: dict[str, Shot], shop: Workshop) -> None:
         width, height = o.run.data["shot"]["resolution"]
         box = [round(v * s) for v, s in zip(share, (width, height, width, height))]
         flags = (*e.protocol.flags, "--region", ",".join(map(str, box)))
-        o.parts[region] = run_methods(folder, f"{e.key}.{region.replace(' ', '_')}", e.texts(), shop, flags)
+        o.parts[region] = run_methods(
+            folder, f"{e.key}.{region.replace(' ', '_')}", e.texts(), shop, flags
+        )
     _rank(o, "psnr")
 
 
@@ -126,7 +132,9 @@ def _fourier(o: Outcome, _catalogue: dict[str, Shot], shop: Workshop) -> None:
             pictures[name] = run.folder / _last_picture(run.methods[o.text(name)])
         if own == "main":
             o.run = run
-            truth = run.folder / run.data["truth"]["images"][max(run.data["truth"]["images"], key=int)]
+            truth = (
+                run.folder / run.data["truth"]["images"][max(run.data["truth"]["images"], key=int)]
+            )
     reference = pictures[e.protocol.reference]
     for name in [*o.named(), e.protocol.reference]:
         for against, found in ((reference, o.by_name), (truth, o.other)):
@@ -236,14 +244,22 @@ def _near(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
         answer = HOLDS
     else:
         answer = FAILS if d.low > within or d.high < -within else UNRESOLVED
-    return answer, f"{d}; asked is ± {within:g} dB", reasons(o, first, second) if d.db < -within else []
+    return (
+        answer,
+        f"{d}; asked is ± {within:g} dB",
+        reasons(o, first, second) if d.db < -within else [],
+    )
 
 
 def _best(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
     found = {n: o.gain(claim.of, n) for n in o.named() if n != claim.of}
     closest = min(found, key=lambda n: found[n].db)
     answer = _answer(found[closest])
-    return answer, f"over the next, {closest}: {found[closest]}", reasons(o, claim.of, closest) if answer == FAILS else []
+    return (
+        answer,
+        f"over the next, {closest}: {found[closest]}",
+        reasons(o, claim.of, closest) if answer == FAILS else [],
+    )
 
 
 def _between(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
@@ -291,12 +307,20 @@ def _change(o: Outcome, figure: str) -> float:
 def _changes_below(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
     rows = [r for r in o.experiment.published if r != "columns"]
     worst = max(rows, key=lambda r: _change(o, r))
-    return (HOLDS if _change(o, worst) < claim.of else FAILS), f"at most {_change(o, worst):.2g} % ({worst})", []
+    return (
+        (HOLDS if _change(o, worst) < claim.of else FAILS),
+        f"at most {_change(o, worst):.2g} % ({worst})",
+        [],
+    )
 
 
 def _changes_more(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
     a, b = (_change(o, f"mse {n}") for n in claim.of)
-    return (HOLDS if a > b else FAILS), f"MSE of {claim.of[0]} by {a:.2g} %, of {claim.of[1]} by {b:.2g} %", []
+    return (
+        (HOLDS if a > b else FAILS),
+        f"MSE of {claim.of[0]} by {a:.2g} %, of {claim.of[1]} by {b:.2g} %",
+        [],
+    )
 
 
 def _better_than_in(o: Outcome, claim: Claim, before) -> tuple[str, str, list[str]]:
@@ -304,7 +328,11 @@ def _better_than_in(o: Outcome, claim: Claim, before) -> tuple[str, str, list[st
     if key not in before:
         return UNRESOLVED, f"{key} was not run", []
     a, b = o.by_name[name]["fmagMse"], before[key].by_name[name]["fmagMse"]
-    return (HOLDS if a < b else FAILS), f"{a:.4g} here, {b:.4g} in {before[key].experiment.label}", []
+    return (
+        (HOLDS if a < b else FAILS),
+        f"{a:.4g} here, {b:.4g} in {before[key].experiment.label}",
+        [],
+    )
 
 
 def _worse_than_still(o: Outcome, claim: Claim, before) -> tuple[str, str, list[str]]:
@@ -329,12 +357,20 @@ def _above_by(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
 def _costs(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
     a, b = (o.by_name[n]["ms"] for n in claim.of)
     low, high = claim.options["times"]
-    return (HOLDS if low <= a / b <= high else FAILS), f"{a / b:.2g} times ({a:.3g} and {b:.3g} ms)", []
+    return (
+        (HOLDS if low <= a / b <= high else FAILS),
+        f"{a / b:.2g} times ({a:.3g} and {b:.3g} ms)",
+        [],
+    )
 
 
 def _cheapest(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
     least = min(o.named(), key=lambda n: o.by_name[n]["ms"])
-    return (HOLDS if least == claim.of else FAILS), f"the cheapest is {least}, {o.by_name[least]['ms']:.3g} ms", []
+    return (
+        (HOLDS if least == claim.of else FAILS),
+        f"the cheapest is {least}, {o.by_name[least]['ms']:.3g} ms",
+        [],
+    )
 
 
 _TESTS = {

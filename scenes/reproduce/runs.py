@@ -34,7 +34,17 @@ def run_methods(
     texts = [m for m in texts if shop.serves(m)]
     wish = f"{_content(folder / 'shot.json', shop.program)} {texts} {flags} {write}"
     if not _cached(out, wish, out / "results.json"):
-        command: list[object] = [shop.program, "run", folder, "-o", out, "--write", write, "-q", *flags]
+        command: list[object] = [
+            shop.program,
+            "run",
+            folder,
+            "-o",
+            out,
+            "--write",
+            write,
+            "-q",
+            *flags,
+        ]
         for m in texts:
             command += ["-m", m]
         shop.run(f"{what}.{folder.name}", command)
@@ -48,7 +58,17 @@ def bench(folder: Path, texts: list[str], shop: Workshop) -> dict[str, dict]:
     texts = [m for m in texts if shop.serves(m)]
     wish = f"{_content(folder / 'shot.json', shop.program)} {texts}"
     if not _cached(out, wish, out / "bench.json"):
-        command: list[object] = [shop.program, "bench", "-j", 1, "--json", "--repeats", 3, "--frames", 3]
+        command: list[object] = [
+            shop.program,
+            "bench",
+            "-j",
+            1,
+            "--json",
+            "--repeats",
+            3,
+            "--frames",
+            3,
+        ]
         command += ["--shot", folder]
         for m in texts:
             command += ["-m", m]

@@ -121,8 +121,12 @@ def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
         command += ["--jitter", shot.jitter, "--period", shot.period]
         command += ["--subsamples", shot.pattern] if shot.pattern else []
         shop.run(f"synth.{shot.name}", command)
-        return _ready(shot, stamp, wish, started, "exact truth", folder)
-    blend = shop.out / "scenes" / f"{'_'.join([shot.scene, *(v.strip('-') for v in shot.variant), size])}.blend"
+        return _ready(shop, shot, stamp, wish, started, "exact truth", folder)
+    blend = (
+        shop.out
+        / "scenes"
+        / f"{'_'.join([shot.scene, *(v.strip('-') for v in shot.variant), size])}.blend"
+    )
     headless = ROOT / "blender_addon/aa_resolve/headless.py"
     shop.run(
         f"scene.{blend.stem}",
@@ -155,10 +159,12 @@ def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
     if shot.truth_of:
         _lend_truth(make_folder(shop, shots[shot.truth_of]), folder)
     done = [line.split(": ", 1)[-1] for line in said.splitlines() if "pictures in" in line]
-    return _ready(shot, stamp, wish, started, done[-1] if done else "ready", folder)
+    return _ready(shop, shot, stamp, wish, started, done[-1] if done else "ready", folder)
 
 
-def _ready(shot: Shot, stamp: Path, wish: str, started: float, what: str, folder: Path) -> Path:
+def _ready(
+    shop: Workshop, shot: Shot, stamp: Path, wish: str, started: float, what: str, folder: Path
+) -> Path:
     stamp.parent.mkdir(exist_ok=True)
     stamp.write_text(wish)
     seconds = time.monotonic() - started
@@ -233,7 +239,9 @@ def _lend_truth(lender: Path, borrower: Path) -> None:
     manifest = json.loads((borrower / "shot.json").read_text())
     source = json.loads((lender / "shot.json").read_text())
     truths = {f["frame"]: f["truth"] for f in source["frames"] if "truth" in f}
-    if not truths or not (source["static"] or truths.keys() & {f["frame"] for f in manifest["frames"]}):
+    if not truths or not (
+        source["static"] or truths.keys() & {f["frame"] for f in manifest["frames"]}
+    ):
         raise SystemExit(f"{lender}: no truth of the frames that {borrower} has")
     for entry in manifest["frames"]:
         path = next(iter(truths.values())) if source["static"] else truths.get(entry["frame"])

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import published
+import outcomes
 from figures import Difference, Run, across, kendall_tau, number, signed, verdict
 from page import Page, code
 
@@ -58,17 +58,42 @@ def _figure(value: float | None, digits: int = 3) -> str:
     return "–" if value is None else f"{value:.{digits}g}"
 
 
+FXAA, SMAA = "fxaa1:preset=5", "smaa1x:preset=ULTRA"  # as [Oliveros 2018] compares them
+
 # --- the index ---
 
 
 @dataclass
 class Study:
-    """Runs by shot: in our protocol, in that of the theses, and there one stop darker; hard_edges step by step."""
+    """Runs by shot: in our protocol, in that of the theses, and there one stop darker; hard_edges step by step; and what
+    became of the published tables."""
 
     runs: dict[str, Run]
     thesis: dict[str, Run]
     steps: dict[str, Run]
     headroom: dict[str, Run]
+    tables: dict[str, outcomes.Outcome]
+
+    def talk(self) -> dict[str, float]:
+        """Gains that [Reshetov 2012] states, dB."""
+        rows = (
+            self.tables["reshetov-quality"].experiment.published
+            if "reshetov-quality" in self.tables
+            else {}
+        )
+        return {name: row[0] for name, row in rows.items() if name != "columns"}
+
+    def published_gains(self, shot: str) -> dict[str, float]:
+        """PSNR over no anti-aliasing by our methods, dB, of the table that shows the shot's scene; empty: none does."""
+        for o in self.tables.values():
+            if (
+                o.experiment.kind == "table"
+                and o.experiment.shots["main"] == shot
+                and "No AA" in o.named()
+            ):
+                base = o.published("No AA", "psnr")
+                return {o.text(n): o.published(n, "psnr") - base for n in o.named() if n != "No AA"}
+        return {}
 
 
 def headlines(study: Study) -> list[str]:
@@ -101,11 +126,11 @@ def headlines(study: Study) -> list[str]:
         ("Is `uncharted`, sharpened as published (published: no)?", gain("uncharted", "noaa")),
         (
             "Is `master` better than FXAA (published: yes)?",
-            gain("master", published.METHODS["FXAA"]),
+            gain("master", FXAA),
         ),
         (
             "Is `master` better than SMAA (published: yes)?",
-            gain("master", published.METHODS["SMAA"]),
+            gain("master", SMAA),
         ),
         ("Is `master` better than `unchartedNorm`?", gain("master", "unchartedNorm")),
         ("Does un-jittering help `master`?", gain("master", "master:unjitter=off")),
@@ -162,14 +187,14 @@ def static_page(study: Study) -> Page:
         _setup(run),
     )
     page.points([THESIS_QUESTION, OUR_QUESTION])
-    _, theirs = published.GAINS["hard_edges"]
+    theirs = study.published_gains("hard_edges")
     page.heading("Gain over no anti-aliasing, dB")
     page.table(
         ["method", "published", "the thesis's question", "95 %", "ours", "95 %"],
         [
-            [f"{name} ({code(text)})" if name else code(text), signed(theirs[name]) if name else "–",
+            [code(text), signed(theirs[text]) if text in theirs else "–",
              signed(thesis.gain(text).db), _interval(thesis.gain(text)), signed(run.gain(text).db), _interval(run.gain(text))]
-            for name, text in [*published.METHODS.items(), ("", "unchartedNorm"), ("", "unchartedNoSharpen"), ("", "master:unjitter=off")]
+            for text in [*theirs, "unchartedNorm", "unchartedNoSharpen", "master:unjitter=off"]
         ],
     )  # fmt: skip
     page.say("The thesis's question: " + " ".join(_order(thesis, theirs)))
@@ -185,7 +210,7 @@ def static_page(study: Study) -> Page:
     page.points(
         answer
         for which, r in (("the thesis's question", thesis), ("ours", run))
-        for answer in _static_answers(which, r)
+        for answer in _static_answers(study, which, r)
     )
     page.points(
         [
@@ -222,21 +247,25 @@ def _short(d: Difference) -> str:
     return signed(d.db) + ("" if d.resolved else " (n. r.)")
 
 
-def _static_answers(which: str, run: Run) -> list[str]:
+def _static_answers(study: Study, which: str, run: Run) -> list[str]:
     """What the sharpen filter and un-jittering are worth, and whether master beats the baseline: of one protocol."""
     total = run.psnr("master") - run.psnr("uncharted")
     sharpen = run.psnr("unchartedNorm") - run.psnr("uncharted")
-    paper = published.SHARPEN
-    paper_share = (paper["unchartedNorm"] - paper["uncharted"]) / (
-        paper["master"] - paper["uncharted"]
-    )
+    paper = study.tables["oliveros-5.1"] if "oliveros-5.1" in study.tables else None
+    paper_share = ""
+    if paper:
+        at = lambda name: paper.published(name, "psnr")  # noqa: E731
+        part = (at("Uncharted 4.17") - at("Uncharted 3.1")) / (
+            at("Master 4.17") - at("Uncharted 3.1")
+        )
+        paper_share = f" Published (table 5.1, another scene): {100 * part:.0f} %."
     share = (
         f"{100 * sharpen / total:.0f} % ({sharpen:.2f} of {total:.2f} dB)" if total > 0
         else f"all of it and more: the normalised filter alone gains {sharpen:.2f} dB, `master` {total:.2f} dB"
     )  # fmt: skip
     return [
-        f"What share of `master`'s lead over `uncharted` is the sharpen filter ({which})? {share}. "
-        f"Published (table 5.1, another scene): {100 * paper_share:.0f} %.",
+        f"What share of `master`'s lead over `uncharted` is the sharpen filter ({which})? {share}."
+        + paper_share,
         f"Is un-jittering the current frame worth it ({which})? {verdict(run.gain('master', 'master:unjitter=off'))}",
         f"Is `master` better than the baseline with the same filter, `unchartedNorm` ({which})? "
         + verdict(run.gain("master", "unchartedNorm")),
@@ -251,48 +280,25 @@ def _order(run: Run, theirs: dict[str, float]) -> list[str]:
     swapped, unsure, agree = [], [], 0
     for i, first in enumerate(names):
         for second in names[i + 1 :]:
-            d = run.gain(published.METHODS[first], published.METHODS[second])
+            d = run.gain(first, second)
             if not d.resolved:
-                unsure.append(f"{first} and {second}")
+                unsure.append(f"{code(first)} and {code(second)}")
             elif d.db < 0:
-                swapped.append(f"{first} before {second} (here {signed(d.db)} dB)")
+                swapped.append(f"{code(first)} before {code(second)} (here {signed(d.db)} dB)")
             else:
                 agree += 1
-    tau = kendall_tau(
-        [0.0, *(theirs[n] for n in names)],
-        [0.0, *(run.gain(published.METHODS[n]).db for n in names)],
-    )
+    tau = kendall_tau([0.0, *(theirs[n] for n in names)], [0.0, *(run.gain(n).db for n in names)])
     sentences = [
         f"Kendall's τ of the order, no anti-aliasing among them: {signed(tau)}; "
         f"{agree} of {len(names) * (len(names) - 1) // 2} pairs of methods keep the published order."
     ]
     if swapped:
         sentences.append("Published, but not here: " + "; ".join(swapped) + ".")
-        if any(s.startswith("Master") for s in swapped):
-            sentences.append(_why_master_falls_behind(run))
+        if any(s.startswith("`master") for s in swapped):
+            sentences.append(outcomes.why_master_falls_behind(run))
     if unsure:
         sentences.append("Not resolved: " + "; ".join(unsure) + ".")
     return sentences
-
-
-def _why_master_falls_behind(run: Run) -> str:
-    """What `master` gains when one of its parts is switched off; only what the figures resolve counts as a reason."""
-    candidates = [
-        ("sharpening the output", "master:sharpen=none", "master"),
-        ("the first frame's lasting weight", "master:sharpen=none,warmup=ramp", "master:sharpen=none"),
-        ("a colour box that is closed where no edge is found", "master:sharpen=none,minAlias=1", "master:sharpen=none"),
-        ("un-jittering", "master:unjitter=off", "master"),
-        ("a feedback of .925 to .979 instead of INSIDE's", "master:kmin=0.88,kmax=0.97", "master"),
-        ("its test of depth over time", "master:depthTemporal=off", "master"),
-        ("depths in normalised units", "master:depthUnit=world,pastDepth=reprojected", "master"),
-    ]  # fmt: skip
-    gains = [(what, run.gain(a, b)) for what, a, b in candidates if a in run and b in run]
-    reasons = sorted((g for g in gains if g[1].resolved and g[1].db > 0.1), key=lambda g: -g[1].db)
-    innocent = [what for what, d in gains if not d.resolved or d.db <= 0.1]
-    text = "What `master` loses by, each part switched off in turn: " + (
-        ", ".join(f"{what} {d}" for what, d in reasons) or "none of its parts"
-    )
-    return text + (f"; not by {' or '.join(innocent)}." if innocent else ".")
 
 
 # --- 2: motion ------------------------------------------------------------------------------------------------------
@@ -419,7 +425,8 @@ def _with_error(value: float | None, error: float | None, scale: float) -> str:
 # --- 3: geometry ----------------------------------------------------------------------------------------------------
 
 
-def geometry_page(runs: dict[str, Run]) -> Page:
+def geometry_page(runs: dict[str, Run], talk: dict[str, float] | None = None) -> Page:
+    """`talk`: gains that [Reshetov 2012] states, by name, dB."""
     page = Page("Geometry-aware methods: how many sub-samples, and what they must know")
     page.say(
         "All at the pixel centre, no history. Sub-sample patterns are those of Direct3D. Shots with another number of",
@@ -432,7 +439,7 @@ def geometry_page(runs: dict[str, Run]) -> Page:
         by_s = {8: run} | {s: runs[f"{name}.s{s}"] for s in (2, 4, 16) if f"{name}.s{s}" in runs}
         page.heading(name)
         page.say(_setup(run))
-        page.points(_geometry_answers(run, by_s))
+        page.points(_geometry_answers(run, by_s, talk or {}))
         if name == "hairball":
             page.picture(
                 "hairball.jpg",
@@ -464,7 +471,7 @@ def geometry_page(runs: dict[str, Run]) -> Page:
     return page
 
 
-def _geometry_answers(run: Run, by_s: dict[int, Run]) -> list[str]:
+def _geometry_answers(run: Run, by_s: dict[int, Run], talk: dict[str, float]) -> list[str]:
     answers = [
         f"Is SADP with tuning better than {what}? " + verdict(run.gain("rsaa", variant))
         for what, variant in (
@@ -488,11 +495,11 @@ def _geometry_answers(run: Run, by_s: dict[int, Run]) -> list[str]:
                 + verdict(by_s[s].gain("rsaa", "msaa"))
             )
     answers.append("Is RSAA better than MLAA? " + verdict(run.gain("rsaa", "mlaa")))
-    answers += _against_the_talk(run, by_s)
+    answers += _against_the_talk(run, by_s, talk) if talk else []
     return answers
 
 
-def _against_the_talk(run: Run, by_s: dict[int, Run]) -> list[str]:
+def _against_the_talk(run: Run, by_s: dict[int, Run], talk: dict[str, float]) -> list[str]:
     """The talk's three figures against ours, in words that depend on the intervals."""
 
     def compare(what: str, claim: float, ours: Difference) -> str:
@@ -501,14 +508,14 @@ def _against_the_talk(run: Run, by_s: dict[int, Run]) -> list[str]:
         return f"The talk says {what}: {signed(claim, 0)} dB. Ours {relation}: {ours}."
 
     answers = [
-        compare("RSAA with 8 sub-samples gains", published.RSAA_GAIN, run.gain("rsaa")),
-        compare("MLAA gains", published.MLAA_GAIN, run.gain("mlaa")),
+        compare("RSAA with 8 sub-samples gains", talk["RSAA"], run.gain("rsaa")),
+        compare("MLAA gains", talk["MLAA"], run.gain("mlaa")),
     ]
     if 4 in by_s:
         answers.append(
             compare(
                 "4 sub-samples instead of 8 change",
-                -published.RSAA4_LOSS,
+                talk["RSAA of 4"] - talk["RSAA"],
                 across(by_s[4], "rsaa", run, "rsaa"),
             )
         )
@@ -578,93 +585,33 @@ def speed_page(rows: list[dict], where: str, size: tuple[int, int]) -> Page:
     return page
 
 
-def published_page(study: Study) -> Page:
+def spaces_page(study: Study) -> Page:
     runs = study.runs
-    page = Page("Published figures and ours")
-    page.say(
-        "The Oliveros thesis measured at 1600 × 900 in the Crytek Sponza and in scenes of its own; ours are rebuilt after its",
-        "descriptions at 480 × 270, so that edges are a larger share of the picture and decibels differ. What can be compared",
-        "is signs and order. `unchartedNorm` is the baseline with the filter that `master` uses, which the thesis's tables lack.",
-    )
+    page = Page("The thesis's question beside ours")
     page.points([THESIS_QUESTION, OUR_QUESTION])
-    names = list(published.METHODS)
     rows, notes = [], []
-    for shot, (title, theirs) in published.GAINS.items():
-        if shot not in study.thesis:
+    for shot, run in study.thesis.items():
+        theirs = study.published_gains(shot)
+        if not theirs or shot not in runs:
             continue
-        rows.append([title, "published", *(signed(theirs[n]) for n in names), ""])
-        for which, run in (("the thesis's question", study.thesis[shot]), ("ours", runs[shot])):
-            gains = [run.gain(published.METHODS[n]) for n in names] + [run.gain("unchartedNorm")]
-            rows.append([shot, which, *(_short(d) for d in gains)])
-        notes.append(
-            f"**{shot}**, the thesis's question: "
-            + " ".join(
-                [
-                    *_signs(study.thesis[shot], study.headroom[shot], theirs),
-                    *_order(study.thesis[shot], theirs),
-                ]
-            )
-        )
-        notes.append(f"**{shot}**, ours: " + " ".join(_order(runs[shot], theirs)))
-    page.heading("PSNR gain over no anti-aliasing, dB")
-    page.table(
-        [
-            "scene",
-            "question",
-            *(f"{n} ({code(published.METHODS[n])})" for n in names),
-            code("unchartedNorm"),
-        ],
-        rows,
-    )
-    page.say("n. r.: not resolved from no anti-aliasing.")
-    page.points(notes)
-    page.heading("In motion: how much lower is the error of master than that of uncharted?")
-    rows = []
-    for shot, (title, theirs) in published.MOVING_MSE.items():
-        if shot not in runs:
-            continue
-        run = runs[shot]
-        db = 10 * math.log10(theirs["Uncharted"] / theirs["Master"])
-        rows.append(
-            [
-                f"{title} / {shot}",
-                signed(db),
-                str(run.gain("master", "uncharted")),
-                str(run.gain("master", "unchartedNorm")),
-            ]
-        )
-    page.table(["scene", "published, dB", "ours, dB", "ours, against `unchartedNorm`"], rows)
+        texts = [*theirs, "unchartedNorm"]
+        rows.append([shot, "published", *(signed(theirs[t]) if t in theirs else "" for t in texts)])
+        for which, r in (("the thesis's question", run), ("ours", runs[shot])):
+            rows.append(["", which, *(_short(r.gain(t)) for t in texts)])
+            notes.append(f"**{shot}**, {which}: " + " ".join(_order(r, theirs)))
+    if rows:
+        page.heading("PSNR gain over no anti-aliasing, dB")
+        page.table(["scene", "question", *(code(t) for t in texts)], rows)
+        page.say("n. r.: not resolved from no anti-aliasing.")
+        page.points(notes)
     if {"hard_edges.t2msaa", "hard_edges.s2", "hard_edges.s4"} <= set(study.thesis):
-        page.heading("T2MSAA lies between 2x and 4x MSAA (Linköping thesis)")
+        page.heading("T2MSAA lies between 2x and 4x MSAA [Stejmar n.d.]")
         page.say(
             "Its samples are those that it asks for: two per pixel, moved between frames by 0.25, 0.1875 or 0.125 px. The answer depends on",
             "the space in which samples are averaged, so every space is shown; both sides of a pair in different spaces is no comparison.",
         )
         page.points(_t2msaa_answers(study))
     return page
-
-
-def _signs(run: Run, headroom: Run, theirs: dict[str, float]) -> list[str]:
-    """Whether every method stands on its published side of no anti-aliasing; where not, what one stop of headroom changes."""
-    other = [n for n in theirs if run.gain(published.METHODS[n]).db * theirs[n] < 0]
-    if not other:
-        return ["All signs are the published ones."]
-    sentences = []
-    for name in other:
-        text = published.METHODS[name]
-        sentence = f"{name} has the other sign: {signed(theirs[name])} dB published, {run.gain(text)} here."
-        if text in headroom:
-            dark = headroom.gain(text)
-            sentence += (
-                f" One stop darker, so that its overshoot is not clipped at the ends of the display, it is {dark}"
-                + (
-                    ": the published sign. The clipping hides what the sharpening does."
-                    if dark.db * theirs[name] > 0
-                    else "."
-                )
-            )
-        sentences.append(sentence)
-    return sentences
 
 
 def _t2msaa_answers(study: Study) -> list[str]:

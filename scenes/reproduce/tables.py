@@ -17,7 +17,9 @@ _HEADS = {
 }  # fmt: skip
 
 
-def source_page(title: str, found: list[Outcome], pictures: dict[str, str], charts: dict[str, str]) -> Page:
+def source_page(
+    title: str, found: list[Outcome], pictures: dict[str, str], charts: dict[str, str]
+) -> Page:
     """All tables of one source."""
     page = Page(title)
     said = {}
@@ -74,11 +76,23 @@ def _sentence(text: str) -> str:
 
 
 def _cell(theirs: float | None, ours: float | None, digits: int) -> str:
-    show = lambda v: "–" if v is None else "Inf" if math.isinf(v) else f"{v:.{digits}f}"  # noqa: E731
+    show = (
+        lambda v: "–" if v is None else "Inf" if math.isinf(v) else f"{v:.{digits}f}"
+    )  # noqa: E731
     return f"{show(theirs)} / {show(ours)}"
 
 
-_DIGITS = {"mse": 2, "rmse": 2, "psnr": 2, "snr": 2, "ssimLuma": 4, "fmagMse": 4, "ms": 2, "ms above": 2, "MB": 1}
+_DIGITS = {
+    "mse": 2,
+    "rmse": 2,
+    "psnr": 2,
+    "snr": 2,
+    "ssimLuma": 4,
+    "fmagMse": 4,
+    "ms": 2,
+    "ms above": 2,
+    "MB": 1,
+}
 
 
 def _table(page: Page, o: Outcome) -> None:
@@ -92,7 +106,13 @@ def _table(page: Page, o: Outcome) -> None:
         listed = name in e.published
         row = [f"{name} ({code(text)})"]
         for column in columns:
-            row.append(_cell(o.published(name, column) if listed else None, o.by_name.get(name, {}).get(column), _DIGITS[column]))
+            row.append(
+                _cell(
+                    o.published(name, column) if listed else None,
+                    o.by_name.get(name, {}).get(column),
+                    _DIGITS[column],
+                )
+            )
         gain = o.gain(name)
         theirs = None
         if listed and "gain" in e.published["columns"]:
@@ -100,7 +120,11 @@ def _table(page: Page, o: Outcome) -> None:
         elif listed and base is not None:
             theirs = o.published(name, "psnr") - base
         row.append("–" if theirs is None else signed(theirs))
-        row += [signed(gain.db), f"{signed(gain.low)} to {signed(gain.high)}"] if text != "noaa" else ["", ""]
+        row += (
+            [signed(gain.db), f"{signed(gain.low)} to {signed(gain.high)}"]
+            if text != "noaa"
+            else ["", ""]
+        )
         rows.append(row)
     for text in ("unchartedNorm", "unchartedNoSharpen", "master:unjitter=off"):
         if text in o.run and text not in e.methods.values():
@@ -108,7 +132,9 @@ def _table(page: Page, o: Outcome) -> None:
             ours = outcomes._pooled(o.run, text, e.protocol.codes)
             rows.append([code(text), *(_cell(None, ours[c], _DIGITS[c]) for c in columns), "–", signed(gain.db),
                          f"{signed(gain.low)} to {signed(gain.high)}"])  # fmt: skip
-    page.table(["method", *(_HEADS[c] for c in columns), "gain, published", "gain, ours", "95 %"], rows)
+    page.table(
+        ["method", *(_HEADS[c] for c in columns), "gain, published", "gain, ours", "95 %"], rows
+    )
     signs = _other_signs(o)
     if signs:
         page.points(signs)
@@ -128,7 +154,11 @@ def _other_signs(o: Outcome) -> list[str]:
         if headroom and o.text(name) in headroom:
             dark = headroom.gain(o.text(name))
             line += f" One stop darker, so that its overshoot is not clipped at the ends of the display, it is {dark}"
-            line += ": the published sign. The clipping hides what the sharpening does." if dark.db * theirs > 0 else "."
+            line += (
+                ": the published sign. The clipping hides what the sharpening does."
+                if dark.db * theirs > 0
+                else "."
+            )
         lines.append(line)
     return lines
 
@@ -140,14 +170,31 @@ def _ghosts(page: Page, o: Outcome) -> None:
             theirs, ours = e.published[name].get(figure), outcomes.extremes(o, name, figure)
             show = lambda v: f"{v:.{_DIGITS[figure]}f}".replace("inf", "Inf")  # noqa: E731
             both = [f"{show(t)} / {show(u)}" for t, u in zip(theirs[:3], ours[:3])]
-            rows.append([f"{_HEADS[figure]}, {name}", *both, f"{theirs[3]:g}, {theirs[4]:g} / {ours[3]}, {ours[4]}"])
+            rows.append(
+                [
+                    f"{_HEADS[figure]}, {name}",
+                    *both,
+                    f"{theirs[3]:g}, {theirs[4]:g} / {ours[3]}, {ours[4]}",
+                ]
+            )
     page.table(["figure", "best", "worst", "mean", "frames of best, worst"], rows)
     more = [n for n in e.methods if n not in e.published]
     rows = []
-    for label, text in [*((n, o.text(n)) for n in more), ("", "unchartedNorm"), ("", "master:sharpen=none")]:
+    for label, text in [
+        *((n, o.text(n)) for n in more),
+        ("", "unchartedNorm"),
+        ("", "master:sharpen=none"),
+    ]:
         if text in o.run:
             pooled = outcomes._pooled(o.run, text, e.protocol.codes)
-            rows.append([f"{label} ({code(text)})" if label else code(text), f"{pooled['mse']:.2f}", f"{pooled['psnr']:.2f}", f"{pooled['ssimLuma']:.4f}"])
+            rows.append(
+                [
+                    f"{label} ({code(text)})" if label else code(text),
+                    f"{pooled['mse']:.2f}",
+                    f"{pooled['psnr']:.2f}",
+                    f"{pooled['ssimLuma']:.4f}",
+                ]
+            )
     page.say("Beside them, ours alone: mean MSE, pooled PSNR and mean SSIM.")
     page.table(["method", "MSE", "PSNR", "SSIM"], rows)
     page.say(
@@ -187,7 +234,14 @@ def _fourier(page: Page, o: Outcome) -> None:
             f"{1e6 * true:.2f}", f"{o.other[name]['psnr']:.2f}",
         ])  # fmt: skip
     page.table(
-        ["method", "published", f"ours against {reference}, × 10⁻⁶", "over no AA, published / ours", "ours against the truth, × 10⁻⁶", "PSNR against the truth"],
+        [
+            "method",
+            "published",
+            f"ours against {reference}, × 10⁻⁶",
+            "over no AA, published / ours",
+            "ours against the truth, × 10⁻⁶",
+            "PSNR against the truth",
+        ],
         rows,
     )
 
@@ -196,7 +250,10 @@ def _cost(page: Page, o: Outcome) -> None:
     e = o.experiment
     columns = e.published["columns"]
     rows = [
-        [f"{n} ({code(o.text(n))})", *(_cell(o.published(n, c), o.by_name[n][c], _DIGITS[c]) for c in columns)]
+        [
+            f"{n} ({code(o.text(n))})",
+            *(_cell(o.published(n, c), o.by_name[n][c], _DIGITS[c]) for c in columns),
+        ]
         for n in o.named()
     ]
     page.table(["method", *(_HEADS[c] for c in columns)], rows)
@@ -231,8 +288,17 @@ def agreement_page(found: list[Outcome], pages: dict[str, str]) -> Page:
         "Every published table that we run, the order of its methods against ours (Kendall's τ: 1 = the same order, 0 = none),",
         "and every claim of its text: it holds, does not hold, or is not resolved by our figures. The reasons follow from runs with a part switched off.",
     )
-    count = {a: sum(v.answer == a for o in found for v in o.verdicts) for a in (HOLDS, "holds on some", FAILS, UNRESOLVED)}
-    page.say(", ".join(f"{n} {'claims' if i == 0 else ''} **{a}**".replace("  ", " ") for i, (a, n) in enumerate(count.items())) + ".")
+    count = {
+        a: sum(v.answer == a for o in found for v in o.verdicts)
+        for a in (HOLDS, "holds on some", FAILS, UNRESOLVED)
+    }
+    page.say(
+        ", ".join(
+            f"{n} {'claims' if i == 0 else ''} **{a}**".replace("  ", " ")
+            for i, (a, n) in enumerate(count.items())
+        )
+        + "."
+    )
     rows = []
     for o in found:
         e = o.experiment
@@ -260,7 +326,9 @@ def anchor(heading: str) -> str:
     return kept.replace(" ", "-")
 
 
-def write_svg(path: Path, series: dict[str, list[float]], title: str, unit: str, first: int = 0) -> None:
+def write_svg(
+    path: Path, series: dict[str, list[float]], title: str, unit: str, first: int = 0
+) -> None:
     """Curves over the frames; infinite values leave a gap."""
     width, height, left, right, top, bottom = 860, 300, 56, 150, 28, 34
     finite = [v for values in series.values() for v in values if math.isfinite(v)]
@@ -269,7 +337,16 @@ def write_svg(path: Path, series: dict[str, list[float]], title: str, unit: str,
     count = max(len(v) for v in series.values())
     x = lambda i: left + (width - left - right) * i / max(1, count - 1)  # noqa: E731
     y = lambda v: height - bottom - (height - top - bottom) * (v - low) / (high - low)  # noqa: E731
-    colours = ("#1f6fb2", "#d1651a", "#2e8b57", "#9b4fb0", "#7a7a7a", "#b8860b", "#c23b4a", "#3aa6a6")
+    colours = (
+        "#1f6fb2",
+        "#d1651a",
+        "#2e8b57",
+        "#9b4fb0",
+        "#7a7a7a",
+        "#b8860b",
+        "#c23b4a",
+        "#3aa6a6",
+    )
     out = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="12">',
         f'<rect width="{width}" height="{height}" fill="#fff"/><text x="{left}" y="18" font-size="13">{title}</text>',
@@ -277,10 +354,16 @@ def write_svg(path: Path, series: dict[str, list[float]], title: str, unit: str,
     for k in range(5):
         value = low + (high - low) * k / 4
         out.append(f'<path d="M{left} {y(value):.1f}H{width - right}" stroke="#ddd"/>')
-        out.append(f'<text x="{left - 6}" y="{y(value) + 4:.1f}" text-anchor="end" fill="#555">{value:.3g}</text>')
+        out.append(
+            f'<text x="{left - 6}" y="{y(value) + 4:.1f}" text-anchor="end" fill="#555">{value:.3g}</text>'
+        )
     for k in range(0, count, max(1, count // 10)):
-        out.append(f'<text x="{x(k):.1f}" y="{height - 16}" text-anchor="middle" fill="#555">{k + first}</text>')
-    out.append(f'<text x="{width - right}" y="{height - 3}" text-anchor="end" fill="#555">frame; {unit}</text>')
+        out.append(
+            f'<text x="{x(k):.1f}" y="{height - 16}" text-anchor="middle" fill="#555">{k + first}</text>'
+        )
+    out.append(
+        f'<text x="{width - right}" y="{height - 3}" text-anchor="end" fill="#555">frame; {unit}</text>'
+    )
     for n, (name, values) in enumerate(series.items()):
         colour, pen, path_data = colours[n % len(colours)], "M", []
         for i, value in enumerate(values):
@@ -289,8 +372,12 @@ def write_svg(path: Path, series: dict[str, list[float]], title: str, unit: str,
                 pen = "L"
             else:
                 pen = "M"
-        out.append(f'<path d="{"".join(path_data)}" fill="none" stroke="{colour}" stroke-width="1.8"/>')
-        out.append(f'<text x="{width - right + 8}" y="{top + 14 + 17 * n}" fill="{colour}">{name}</text>')
+        out.append(
+            f'<path d="{"".join(path_data)}" fill="none" stroke="{colour}" stroke-width="1.8"/>'
+        )
+        out.append(
+            f'<text x="{width - right + 8}" y="{top + 14 + 17 * n}" fill="{colour}">{name}</text>'
+        )
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_suffix(".tmp")
     temporary.write_text("\n".join([*out, "</svg>", ""]), encoding="utf-8")

@@ -82,7 +82,7 @@ class Reproduce(ProgramTest):
                     (shot.scene, shot.variant, shot.size),
                     (lender.scene, lender.variant, lender.size),
                 )
-        shop = Workshop(PROGRAM, "no blender", self.folder, True, {"noaa"})
+        shop = Workshop(PROGRAM, "no blender", self.folder, "quick", {"noaa"})
         folder = make(SHOTS, SHOTS["synth_moving"], shop)
         self.assertTrue((folder / "shot.json").exists())
         self.assertTrue(shop.serves("noaa") and not shop.serves("noaa+fill=none"))
