@@ -261,7 +261,7 @@ def main(argv: list[str]) -> int:
                 f"--only: no table or shot '{name}'; tables: {', '.join(known)}; shots: {', '.join(SHOTS)}"
             )
     chosen = {k: e for k, e in known.items() if not only or k in only}
-    shots = needed_shots(only, chosen)
+    shots = needed_shots(only, chosen, SHOTS)
     if a.list:
         for key, e in known.items():
             print(f"{key:20} {e.label} {e.title}: {', '.join([*e.shots.values(), *e.on])}")
@@ -293,16 +293,18 @@ def main(argv: list[str]) -> int:
     return 0
 
 
-def needed_shots(only: list[str], chosen: dict[str, experiments.Experiment]) -> list[str]:
+def needed_shots(
+    only: list[str], chosen: dict[str, experiments.Experiment], catalogue: dict[str, Shot]
+) -> list[str]:
     """Those that are to be rendered, lenders of truth before their borrowers."""
     wanted = (
-        [n for n in only if n in SHOTS]
+        [n for n in only if n in catalogue]
         if only
-        else [n for n, s in SHOTS.items() if s.methods and s.truth]
+        else [n for n, s in catalogue.items() if s.methods and s.truth]
     )
     for e in chosen.values():
         wanted += [*e.shots.values(), *e.on]
-    lenders = [SHOTS[n].truth_of for n in wanted if SHOTS[n].truth_of]
+    lenders = [catalogue[n].truth_of for n in wanted if catalogue[n].truth_of]
     return list(dict.fromkeys([*lenders, *wanted]))
 
 

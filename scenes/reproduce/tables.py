@@ -197,10 +197,11 @@ def _ghosts(page: Page, o: Outcome) -> None:
             )
     page.say("Beside them, ours alone: mean MSE, pooled PSNR and mean SSIM.")
     page.table(["method", "MSE", "PSNR", "SSIM"], rows)
+    filters = o.run.gain("master", "unchartedNorm") if "unchartedNorm" in o.run else None
     page.say(
         f"Master over Uncharted, MSE pooled: {o.gain('Master', 'Uncharted')}; published "
         f"{signed(10 * math.log10(e.published['Uncharted']['mse'][2] / e.published['Master']['mse'][2]))} dB. "
-        f"Over the same filter, `unchartedNorm`: {o.run.gain('master', 'unchartedNorm')}."
+        + (f"Over the same filter, `unchartedNorm`: {filters}." if filters else ""),
     )
 
 

@@ -1,0 +1,174 @@
+"""Published tables as data: their files, the shots that they share, and what outcomes say of claims, on analytic shots."""
+
+from __future__ import annotations
+
+import math
+import sys
+from dataclasses import replace
+from program import PROGRAM, ROOT, ProgramTest, main
+
+sys.path.insert(0, str(ROOT / "scenes/reproduce"))
+
+import experiments  # noqa: E402
+import outcomes  # noqa: E402
+import tables  # noqa: E402
+from catalogue import SHOTS  # noqa: E402
+from experiments import Claim, Experiment, Protocol  # noqa: E402
+from reproduce import estimate, needed_shots  # noqa: E402
+from shots import Shot, Workshop, is_ready, make  # noqa: E402
+
+
+class Files(ProgramTest):
+    def setUp(self) -> None:
+        super().setUp()
+        self.catalogue = dict(SHOTS)
+        self.known = experiments.load(self.catalogue)
+
+    def test_every_file_is_whole(self) -> None:
+        listed = {m.split(":")[0] for m in self.aaresolve("list").stdout.split()}
+        for key, e in self.known.items():
+            for text in e.methods.values():
+                self.assertIn(text.split(":")[0], listed, key)
+            columns = e.published.get("columns")
+            for name, row in e.published.items():
+                if columns and name != "columns":
+                    self.assertEqual(len(row), len(columns), (key, name))
+            for claim in e.claims:
+                names = claim.of if isinstance(claim.of, list) else [claim.of]
+                for name in names:
+                    if isinstance(name, str) and name not in self.known:
+                        self.assertIn(name, e.methods, (key, claim))
+            for name in (*e.shots.values(), *e.on):
+                shot = self.catalogue[name]
+                scene = shot.scene.removeprefix("synth:")
+                self.assertTrue(shot.scene != scene or (ROOT / f"scenes/{scene}.py").exists(), (key, scene))
+
+    def test_published_triples_agree(self) -> None:
+        """PSNR and RMSD follow from MSE: what was copied wrongly would not."""
+        for key, e in self.known.items():
+            columns = e.published.get("columns", [])
+            if not {"mse", "rmse", "psnr"} <= set(columns):
+                continue
+            for name in (n for n in e.published if n != "columns"):
+                row = dict(zip(columns, e.published[name]))
+                self.assertAlmostEqual(row["rmse"], math.sqrt(row["mse"]), delta=0.002, msg=f"{key} {name}")
+                self.assertAlmostEqual(
+                    row["psnr"], 10 * math.log10(255**2 / row["mse"]), delta=0.005, msg=f"{key} {name}"
+                )  # fmt: skip
+
+    def test_shots_are_shared(self) -> None:
+        self.assertEqual(self.known["oliveros-5.1"].shots, self.known["oliveros-5.6"].shots)
+        main = self.known["oliveros-5.8"].shots["main"]
+        self.assertEqual(main, "hard_edges", "the studies' export serves the table")
+        self.assertIn("master", self.catalogue[main].all_methods())
+        first, second = (self.known[k].shots for k in ("linkoping-5.1", "linkoping-5.17"))
+        self.assertEqual(first["main"], second["main"])
+        self.assertNotEqual(first["t2msaa"], second["t2msaa"], "the jitter before projection is another picture")
+        sizes = self.known["oliveros-4.1"].shots
+        self.assertEqual(len(set(sizes.values())), 2, "two truths, two shots")
+        for shot in self.catalogue.values():
+            if shot.truth_of:
+                lender = self.catalogue[shot.truth_of]
+                for form in ("quick", "whole", "full"):
+                    self.assertEqual(shot.in_form(form).size, lender.in_form(form).size, shot.name)
+        wanted = needed_shots(["linkoping-5.17"], {"linkoping-5.17": self.known["linkoping-5.17"]}, self.catalogue)
+        self.assertEqual(wanted[0], self.catalogue[second["s2"]].truth_of, "a lender comes first")
+
+    def test_bad_files_are_told(self) -> None:
+        good = (experiments.FOLDER / "oliveros-5.8.toml").read_text()
+        protocols = (experiments.FOLDER / "protocols.toml").read_text()
+        cases = (
+            (good.replace('kind = "table"', 'kind = "tabel"'), "kind: expected table"),
+            (good.replace("frames = 16", "frame = 16"), "unknown key 'frame'"),
+            (good.replace('protocol = "oliveros still"', 'protocol = "still"'), "protocol: expected oliveros still"),
+            (good.replace("better =", "bester ="), "a claim: expected one of better"),
+            (good + "\n[[", "bad.toml"),
+            (good.replace('title = "Hard edges"\n', ""), "expected the key 'title'"),
+        )
+        before = experiments.FOLDER
+        try:
+            experiments.FOLDER = self.folder
+            (self.folder / "protocols.toml").write_text(protocols)
+            for text, expected in cases:
+                (self.folder / "bad.toml").write_text(text)
+                with self.assertRaises(experiments.BadExperiment) as told:
+                    experiments.load(dict(SHOTS))
+                self.assertIn(expected, str(told.exception))
+                self.assertNotIn("\n", str(told.exception).split("(at")[0])
+        finally:
+            experiments.FOLDER = before
+
+
+class Outcomes(ProgramTest):
+    METHODS = {"No AA": "noaa", "SMAA": "smaa1x:preset=ULTRA", "Master": "master", "Uncharted": "uncharted"}
+
+    def outcome(self, scene: str, kind: str, published: dict, claims: list[Claim], **more) -> outcomes.Outcome:
+        shot = Shot(scene, f"synth:{scene}", "", frames=8, quick_frames=8, size=(96, 64), jitter="thesis", serves="noaa master")
+        listed = self.aaresolve("list").stdout.split()
+        shop = Workshop(PROGRAM, "no blender", self.folder, "quick", set(listed))
+        e = Experiment(
+            "test", kind, "Nobody 2000", "1", "Test", "A test.",
+            Protocol(flags=("--display", "identity", "--quantise", "8"), codes=255.0), shots={"main": scene},
+            methods=self.METHODS, published=published, claims=tuple(claims), **more,
+        )  # fmt: skip
+        return outcomes.of(e, {scene: shot}, shop, {})
+
+    def test_table(self) -> None:
+        names = list(self.METHODS)
+        claims = [
+            Claim("a", "better", ["Master", "Uncharted"], {}),
+            Claim("b", "better", ["Uncharted", "Master"], {"else": "Because."}),
+            Claim("c", "near", ["Master", "Master"], {"within": 0.5}),
+            Claim("d", "best", "Uncharted", {}),
+        ]
+        published = {"columns": ["psnr"], **{n: [30.0 + i] for i, n in enumerate(names)}}
+        o = self.outcome("half_planes", "table", published, claims)
+        ours = {n: o.by_name[n]["psnr"] for n in names}
+        for n in names:  # the units of the protocol
+            self.assertAlmostEqual(ours[n], 10 * math.log10(255**2 / o.by_name[n]["mse"]), places=6)
+        sign = lambda v: (v > 0) - (v < 0)  # noqa: E731
+        pairs = [(a, b) for i, a in enumerate(names) for b in names[:i]]
+        tau = sum(sign(ours[a] - ours[b]) for a, b in pairs) / len(pairs)
+        self.assertAlmostEqual(o.taus["psnr"], tau)
+        d = o.gain("Master", "Uncharted")
+        self.assertTrue(d.resolved and d.db > 0, d)
+        self.assertEqual([v.answer for v in o.verdicts], ["holds", "does not hold", "holds", "does not hold"])
+        self.assertEqual(o.verdicts[1].reasons, ["Because."])
+        page = "\n".join(tables.source_page("T", [o], {}, {}).lines)
+        self.assertIn(f"| Master (`master`) | 32.00 / {ours['Master']:.2f} |", page)
+        agreement = "\n".join(tables.agreement_page([o], {"Nobody 2000": "t.md"}).lines)
+        self.assertIn("2 claims **holds**", agreement)
+        self.assertIn("(t.md#1-test)", agreement)
+
+    def test_ghosts(self) -> None:
+        row = {k: [1.0, 2.0, 1.5, 3, 4] for k in ("mse", "psnr", "snr", "ssimLuma")}
+        o = self.outcome("moving", "ghosts", {"Uncharted": row, "Master": row}, [])
+        best, worst, mean, at_best, at_worst = outcomes.extremes(o, "Master", "mse")
+        frames = [65025 * f["metrics"]["mse"] for f in o.run.methods["master"]["frames"]]
+        self.assertEqual((at_best, at_worst), (frames.index(min(frames)), frames.index(max(frames))))
+        self.assertAlmostEqual(best, min(frames))
+        self.assertAlmostEqual(worst, max(frames))
+        self.assertAlmostEqual(mean, sum(frames) / len(frames))
+        top, low, *_ = outcomes.extremes(o, "Master", "psnr")
+        self.assertGreater(top, low)
+        page = "\n".join(tables.source_page("T", [o], {}, {}).lines)
+        self.assertIn(f"3, 4 / {at_best}, {at_worst}", page)
+
+    def test_estimate_and_cache(self) -> None:
+        shot = replace(SHOTS["synth_moving"], size=(64, 36), quick_frames=4)
+        shop = Workshop(PROGRAM, "no blender", self.folder, "quick", {"noaa"})
+        self.assertFalse(is_ready(shot, shop))
+        make({shot.name: shot}, shot, shop)
+        self.assertTrue(is_ready(shot, shop))
+        self.assertFalse(is_ready(replace(shot, period=8), shop), "another content")
+        self.assertIn("to render", estimate(["synth_moving"], shop))
+
+    def test_curves(self) -> None:
+        path = self.folder / "a.svg"
+        tables.write_svg(path, {"A": [1.0, math.inf, 3.0], "B": [2.0, 2.0, 2.0]}, "T", "dB")
+        text = path.read_text()
+        self.assertEqual(text.count("<path d=\"M"), 7, "five lines, two curves")
+        self.assertNotIn("inf", text)
+
+
+main()
