@@ -18,7 +18,7 @@ except ImportError:  # Python before 3.11
 from shots import ROOT, Shot
 
 FOLDER = ROOT / "scenes/experiments"
-KINDS = ("table", "ghosts", "fourier", "reference size", "cost", "options", "series")
+KINDS = ("table", "ghosts", "fourier", "reference size", "cost", "options", "series", "rates")
 
 
 @dataclass(frozen=True)
@@ -61,6 +61,7 @@ class Experiment:
     claims: tuple[Claim, ...] = ()
     regions: dict = field(default_factory=dict)
     options: tuple[dict, ...] = ()
+    moment: tuple[int, ...] = ()  # first and last frame of what happens in a series
     on: tuple[str, ...] = ()  # shots of the catalogue that the studies use, too
 
     @property
@@ -84,11 +85,12 @@ class BadExperiment(Exception):
 TESTS = (
     "better", "near", "best", "between", "less_than_half", "more_flicker", "less_ghost", "exact_at_best",
     "changes_below", "changes_more", "better_than_in", "worse_than_still", "costs", "cheapest", "above_by",
+    "dips", "above_in_moment",
 )  # fmt: skip
 _SHOT_FIELDS = {f.name for f in fields(Shot)} - {"name", "methods", "serves"}
 _KEYS = {
     "kind", "source", "table", "title", "says", "protocol", "shots", "methods", "published", "claims", "regions",
-    "options", "on",
+    "options", "on", "moment",
 }  # fmt: skip
 
 
@@ -152,6 +154,7 @@ def _experiment(
         methods=methods, published=data.get("published", {}),
         claims=tuple(_claim(path, c) for c in data.get("claims", ())),
         regions=data.get("regions", {}), options=tuple(data.get("options", ())), on=tuple(data.get("on", ())),
+        moment=tuple(data.get("moment", ())),
     )  # fmt: skip
     shots: dict[str, str] = {}
     for own, wish in data.get("shots", {}).items():

@@ -170,7 +170,43 @@ def _options(o: Outcome, catalogue: dict[str, Shot], shop: Workshop) -> None:
         o.verdicts.append(Verdict(claim, _over_all([d for d in found.values() if d]), words))
 
 
+def _series(o: Outcome, _catalogue: dict[str, Shot], shop: Workshop) -> None:
+    e = o.experiment
+    o.run = run_methods(o.folders["main"], e.key, e.texts(), shop, e.protocol.flags)
+    for name in e.methods:
+        o.by_name[name] = _pooled(o.run, o.text(name), e.protocol.codes)
+
+
+def gains_over_time(o: Outcome, name: str) -> dict[int, float]:
+    """PSNR over no anti-aliasing in every frame that has truth, dB, by the frame's number."""
+    values = lambda text: {  # noqa: E731
+        f["frame"]: number(f["metrics"]["psnr"])
+        for f in o.run.methods[text]["frames"]
+        if f.get("metrics")
+    }
+    base, own = values("noaa"), values(o.text(name))
+    return {frame: own[frame] - base[frame] for frame in own}
+
+
+def _rates(o: Outcome, _catalogue: dict[str, Shot], shop: Workshop) -> None:
+    """Samples per pixel and frame of every sort, by the program's own tables of methods and passes."""
+    listed = json.loads(shop.run("list", [shop.program, "list", "--json"]))
+    passes = {p["name"]: p for p in listed["passes"]}
+    methods = {m["id"]: m for m in listed["methods"]}
+    for name, text in o.experiment.methods.items():
+        method = methods[text.split(":")[0]]
+        samples = {p: SUBSAMPLES if passes[p]["perSubSample"] else 1 for p in method["passes"]}
+        o.by_name[name] = {
+            **samples,
+            "bytes": sum(n * passes[p]["bytesPerPixel"] for p, n in samples.items()),
+            "history": float(bool(method["temporal"])),
+        }
+
+
+SUBSAMPLES = 8  # per pixel, in the table of rates
+
 _FILL = {
+    "series": _series, "rates": _rates,
     "table": _table, "ghosts": _ghosts, "reference size": _reference_size, "fourier": _fourier, "cost": _cost,
     "options": _options,
 }  # fmt: skip
@@ -354,6 +390,32 @@ def _above_by(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
     return answer, f"{d}; asked is {low:g} to {high:g} dB", []
 
 
+def _moment(o: Outcome, name: str) -> tuple[list[float], list[float]]:
+    """Gains inside and outside of the moment."""
+    first, last = o.experiment.moment
+    gains = gains_over_time(o, name)
+    inside = [g for f, g in gains.items() if first <= f <= last]
+    return inside, [g for f, g in gains.items() if not first <= f <= last]
+
+
+def _dips(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
+    inside, outside = (sum(g) / len(g) for g in _moment(o, claim.of))
+    words = f"its gain is {signed(outside)} dB before and after, {signed(inside)} dB in the moment"
+    return (HOLDS if outside - inside > claim.options["by"] else FAILS), words, []
+
+
+def _above_in_moment(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
+    (a, _), (b, _) = (_moment(o, n) for n in claim.of)
+    worst = min(x - y for x, y in zip(a, b))
+    mean = sum(a) / len(a) - sum(b) / len(b)
+    answer = HOLDS if worst > 0 else FAILS if mean < 0 else "holds on some"
+    return (
+        answer,
+        f"{signed(mean)} dB in the mean, {signed(worst)} dB in the least favourable frame",
+        [],
+    )
+
+
 def _costs(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
     a, b = (o.by_name[n]["ms"] for n in claim.of)
     low, high = claim.options["times"]
@@ -377,7 +439,7 @@ _TESTS = {
     "better": _better, "near": _near, "best": _best, "between": _between, "less_than_half": _less_than_half,
     "more_flicker": _more_flicker, "less_ghost": _less_ghost, "exact_at_best": _exact_at_best,
     "changes_below": _changes_below, "changes_more": _changes_more, "better_than_in": _better_than_in,
-    "worse_than_still": _worse_than_still, "costs": _costs, "cheapest": _cheapest, "above_by": _above_by,
+    "dips": _dips, "above_in_moment": _above_in_moment, "worse_than_still": _worse_than_still, "costs": _costs, "cheapest": _cheapest, "above_by": _above_by,
 }  # fmt: skip
 
 # What `master` gains when one of its parts is switched off, or read otherwise.

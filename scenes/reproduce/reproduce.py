@@ -152,6 +152,23 @@ def run_experiments(
                 docs / f"{key}.svg", series, f"{experiment.title}: PSNR over the frames", "dB"
             )
             charts[key] = f"{key}.svg"
+        elif experiment.kind == "series":
+            middle = sum(experiment.moment) // 2
+            pictures[key] = picture(key, o.folders["main"], texts, docs, shop, flags, middle)
+            series = {
+                n: list(outcomes.gains_over_time(o, n).values())
+                for n in experiment.methods
+                if n != "No AA"
+            }
+            title = f"{experiment.title}: PSNR over no anti-aliasing"
+            tables.write_svg(
+                docs / f"{key}.svg",
+                series,
+                title,
+                "dB",
+                o.run.data["methods"][0]["frames"][0]["frame"],
+            )
+            charts[key] = f"{key}.svg"
         elif experiment.kind == "fourier":
             main = [
                 t

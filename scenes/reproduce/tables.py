@@ -276,7 +276,41 @@ def _short(d) -> str:
     return "–" if d is None else signed(d.db) + ("" if d.resolved else " (n. r.)")
 
 
+def _series(page: Page, o: Outcome) -> None:
+    first, last = o.experiment.moment
+    rows = []
+    for name, text in o.experiment.methods.items():
+        if text == "noaa":
+            continue
+        inside, outside = outcomes._moment(o, name)
+        mean = lambda values: signed(sum(values) / len(values))  # noqa: E731
+        rows.append([f"{name} ({code(text)})", mean(outside), mean(inside), signed(min(inside))])
+    page.table(
+        ["method", "before and after", f"in frames {first} to {last}", "least in them"], rows
+    )
+    page.say("Mean gain over no anti-aliasing, dB.")
+
+
+def _rates(page: Page, o: Outcome) -> None:
+    sorts = list(
+        dict.fromkeys(k for row in o.by_name.values() for k in row if k not in ("bytes", "history"))
+    )
+    rows = []
+    for name, row in o.by_name.items():
+        cells = [f"{row[k]:.0f}" if k in row else "" for k in sorts]
+        rows.append(
+            [
+                f"{name} ({code(o.text(name))})",
+                *cells,
+                "yes" if row["history"] else "",
+                f"{row['bytes']:.0f}",
+            ]
+        )
+    page.table(["method", *sorts, "history", "bytes read per pixel"], rows)
+
+
 _BODY = {
+    "series": _series, "rates": _rates,
     "table": _table, "ghosts": _ghosts, "reference size": _reference_size, "fourier": _fourier, "cost": _cost,
     "options": _options,
 }  # fmt: skip

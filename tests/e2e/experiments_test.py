@@ -41,7 +41,9 @@ class Files(ProgramTest):
             for name in (*e.shots.values(), *e.on):
                 shot = self.catalogue[name]
                 scene = shot.scene.removeprefix("synth:")
-                self.assertTrue(shot.scene != scene or (ROOT / f"scenes/{scene}.py").exists(), (key, scene))
+                self.assertTrue(
+                    shot.scene != scene or (ROOT / f"scenes/{scene}.py").exists(), (key, scene)
+                )
 
     def test_published_triples_agree(self) -> None:
         """PSNR and RMSD follow from MSE: what was copied wrongly would not."""
@@ -51,7 +53,9 @@ class Files(ProgramTest):
                 continue
             for name in (n for n in e.published if n != "columns"):
                 row = dict(zip(columns, e.published[name]))
-                self.assertAlmostEqual(row["rmse"], math.sqrt(row["mse"]), delta=0.002, msg=f"{key} {name}")
+                self.assertAlmostEqual(
+                    row["rmse"], math.sqrt(row["mse"]), delta=0.002, msg=f"{key} {name}"
+                )
                 self.assertAlmostEqual(
                     row["psnr"], 10 * math.log10(255**2 / row["mse"]), delta=0.005, msg=f"{key} {name}"
                 )  # fmt: skip
@@ -63,7 +67,9 @@ class Files(ProgramTest):
         self.assertIn("master", self.catalogue[main].all_methods())
         first, second = (self.known[k].shots for k in ("linkoping-5.1", "linkoping-5.17"))
         self.assertEqual(first["main"], second["main"])
-        self.assertNotEqual(first["t2msaa"], second["t2msaa"], "the jitter before projection is another picture")
+        self.assertNotEqual(
+            first["t2msaa"], second["t2msaa"], "the jitter before projection is another picture"
+        )
         sizes = self.known["oliveros-4.1"].shots
         self.assertEqual(len(set(sizes.values())), 2, "two truths, two shots")
         for shot in self.catalogue.values():
@@ -71,7 +77,9 @@ class Files(ProgramTest):
                 lender = self.catalogue[shot.truth_of]
                 for form in ("quick", "whole", "full"):
                     self.assertEqual(shot.in_form(form).size, lender.in_form(form).size, shot.name)
-        wanted = needed_shots(["linkoping-5.17"], {"linkoping-5.17": self.known["linkoping-5.17"]}, self.catalogue)
+        wanted = needed_shots(
+            ["linkoping-5.17"], {"linkoping-5.17": self.known["linkoping-5.17"]}, self.catalogue
+        )
         self.assertEqual(wanted[0], self.catalogue[second["s2"]].truth_of, "a lender comes first")
 
     def test_bad_files_are_told(self) -> None:
@@ -80,7 +88,10 @@ class Files(ProgramTest):
         cases = (
             (good.replace('kind = "table"', 'kind = "tabel"'), "kind: expected table"),
             (good.replace("frames = 16", "frame = 16"), "unknown key 'frame'"),
-            (good.replace('protocol = "oliveros still"', 'protocol = "still"'), "protocol: expected oliveros still"),
+            (
+                good.replace('protocol = "oliveros still"', 'protocol = "still"'),
+                "protocol: expected oliveros still",
+            ),
             (good.replace("better =", "bester ="), "a claim: expected one of better"),
             (good + "\n[[", "bad.toml"),
             (good.replace('title = "Hard edges"\n', ""), "expected the key 'title'"),
@@ -100,10 +111,26 @@ class Files(ProgramTest):
 
 
 class Outcomes(ProgramTest):
-    METHODS = {"No AA": "noaa", "SMAA": "smaa1x:preset=ULTRA", "Master": "master", "Uncharted": "uncharted"}
+    METHODS = {
+        "No AA": "noaa",
+        "SMAA": "smaa1x:preset=ULTRA",
+        "Master": "master",
+        "Uncharted": "uncharted",
+    }
 
-    def outcome(self, scene: str, kind: str, published: dict, claims: list[Claim], **more) -> outcomes.Outcome:
-        shot = Shot(scene, f"synth:{scene}", "", frames=8, quick_frames=8, size=(96, 64), jitter="thesis", serves="noaa master")
+    def outcome(
+        self, scene: str, kind: str, published: dict, claims: list[Claim], **more
+    ) -> outcomes.Outcome:
+        shot = Shot(
+            scene,
+            f"synth:{scene}",
+            "",
+            frames=8,
+            quick_frames=8,
+            size=(96, 64),
+            jitter="thesis",
+            serves="noaa master",
+        )
         listed = self.aaresolve("list").stdout.split()
         shop = Workshop(PROGRAM, "no blender", self.folder, "quick", set(listed))
         e = Experiment(
@@ -125,14 +152,18 @@ class Outcomes(ProgramTest):
         o = self.outcome("half_planes", "table", published, claims)
         ours = {n: o.by_name[n]["psnr"] for n in names}
         for n in names:  # the units of the protocol
-            self.assertAlmostEqual(ours[n], 10 * math.log10(255**2 / o.by_name[n]["mse"]), places=6)
+            self.assertAlmostEqual(
+                ours[n], 10 * math.log10(255**2 / o.by_name[n]["mse"]), places=6
+            )
         sign = lambda v: (v > 0) - (v < 0)  # noqa: E731
         pairs = [(a, b) for i, a in enumerate(names) for b in names[:i]]
         tau = sum(sign(ours[a] - ours[b]) for a, b in pairs) / len(pairs)
         self.assertAlmostEqual(o.taus["psnr"], tau)
         d = o.gain("Master", "Uncharted")
         self.assertTrue(d.resolved and d.db > 0, d)
-        self.assertEqual([v.answer for v in o.verdicts], ["holds", "does not hold", "holds", "does not hold"])
+        self.assertEqual(
+            [v.answer for v in o.verdicts], ["holds", "does not hold", "holds", "does not hold"]
+        )
         self.assertEqual(o.verdicts[1].reasons, ["Because."])
         page = "\n".join(tables.source_page("T", [o], {}, {}).lines)
         self.assertIn(f"| Master (`master`) | 32.00 / {ours['Master']:.2f} |", page)
@@ -145,7 +176,9 @@ class Outcomes(ProgramTest):
         o = self.outcome("moving", "ghosts", {"Uncharted": row, "Master": row}, [])
         best, worst, mean, at_best, at_worst = outcomes.extremes(o, "Master", "mse")
         frames = [65025 * f["metrics"]["mse"] for f in o.run.methods["master"]["frames"]]
-        self.assertEqual((at_best, at_worst), (frames.index(min(frames)), frames.index(max(frames))))
+        self.assertEqual(
+            (at_best, at_worst), (frames.index(min(frames)), frames.index(max(frames)))
+        )
         self.assertAlmostEqual(best, min(frames))
         self.assertAlmostEqual(worst, max(frames))
         self.assertAlmostEqual(mean, sum(frames) / len(frames))
@@ -167,7 +200,7 @@ class Outcomes(ProgramTest):
         path = self.folder / "a.svg"
         tables.write_svg(path, {"A": [1.0, math.inf, 3.0], "B": [2.0, 2.0, 2.0]}, "T", "dB")
         text = path.read_text()
-        self.assertEqual(text.count("<path d=\"M"), 7, "five lines, two curves")
+        self.assertEqual(text.count('<path d="M'), 7, "five lines, two curves")
         self.assertNotIn("inf", text)
 
 
