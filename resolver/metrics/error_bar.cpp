@@ -5,25 +5,10 @@
 #include <cmath>
 #include <functional>
 
+#include "metrics/pcg32.h"
+
 namespace aa {
 namespace {
-// PCG32, [O'Neill 2014]; std distributions differ between libraries, and the same input must give the same bits.
-class Pcg32 {
-  public:
-    // Uniform in [0, bound): the high bits of a 32 x 32 product; its bias of bound / 2^32 is below a millionth here.
-    size_t below(size_t bound) { return size_t((uint64_t(next()) * uint64_t(bound)) >> 32); }
-
-  private:
-    uint32_t next() {
-        const uint64_t old = state_;
-        state_ = old * 6364136223846793005ull + 1442695040888963407ull;
-        const auto shifted = uint32_t(((old >> 18) ^ old) >> 27);
-        const auto turn = uint32_t(old >> 59);
-        return (shifted >> turn) | (shifted << ((32 - turn) & 31));
-    }
-    uint64_t state_ = 0x853c49e6748fea9bull;
-};
-
 FrameSum total(std::span<const FrameSum> frames) {
     FrameSum t;
     for (const auto& f : frames) t.sum += f.sum, t.count += f.count;

@@ -2,12 +2,11 @@
 // same description, so that nothing is written that cannot be read. JSON has no infinity and no NaN: they are texts.
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "image/error.h"
 #include "image/io.h"
-#include "study/non_finite.h"
+#include "study/json_number.h"
 #include "study/results.h"
 
 namespace aa {
@@ -15,32 +14,18 @@ namespace {
 namespace fs = std::filesystem;
 using json = nlohmann::ordered_json;
 
-json number(double v) {
-    if (const char* word = nonFinite(v)) return word;
-    return v;
-}
-double toNumber(const json& j) {
-    if (j.is_string()) {
-        const auto& s = j.get_ref<const std::string&>();
-        if (s == "Inf") return std::numeric_limits<double>::infinity();
-        if (s == "-Inf") return -std::numeric_limits<double>::infinity();
-        if (s == "NaN") return std::numeric_limits<double>::quiet_NaN();
-    }
-    return j.get<double>();  // throws on any other type
-}
-
 // A value as JSON holds it, and back.
 template <class T>
 json toJson(const T& v) {
     if constexpr (std::is_same_v<T, double>)
-        return number(v);
+        return jsonNumber(v);
     else
         return v;
 }
 template <class T>
 void fromJson(const json& j, T& v) {
     if constexpr (std::is_same_v<T, double>)
-        v = toNumber(j);
+        v = numberOf(j);
     else
         j.get_to(v);
 }
