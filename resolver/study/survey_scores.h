@@ -30,11 +30,11 @@ Estimate wilsonShare(double wins, size_t of);
 
 struct ScoredPicture {
     const SurveyPicture* picture = nullptr;
-    std::vector<size_t> counts;  // rank, rating: how often 1, 2, ...; pair: wins, times asked
-    Estimate score;
-    Estimate best;  // rank: share of participants who put it first; pair: share of its comparisons won
+    std::vector<size_t> counts{};  // rank, rating: how often 1, 2, ...; pair: wins, times asked
+    Estimate score{};
+    Estimate best{};  // rank: share of participants who put it first; pair: share of its comparisons won
     // Score less that of the next better picture of the set; absent of the best. Resolved: the interval excludes 0.
-    std::optional<Estimate> toNext;
+    std::optional<Estimate> toNext{};
     bool resolved = false;
 };
 // Of two pictures, over who preferred one. A rating that is equal is half a win either way.
@@ -53,14 +53,14 @@ struct Agreement {
 // What is scored together: a rank or rating question, or the pair questions about one part of one shot.
 struct ScoredSet {
     QuestionKind kind = QuestionKind::rank;
-    std::vector<const SurveyQuestion*> questions;
-    std::vector<ScoredPicture> pictures;  // as in the key
-    std::vector<size_t> order;            // best first
-    std::vector<ScoredPair> pairs;
-    std::optional<double> kendallW;        // rank: concordance of the participants, 1 = all gave the same ranks
-    std::vector<double> meanByPlace;       // rank: mean rank by place on the screen, without a habit (n + 1) / 2 each
+    std::vector<const SurveyQuestion*> questions{};
+    std::vector<ScoredPicture> pictures{};  // as in the key
+    std::vector<size_t> order{};            // best first
+    std::vector<ScoredPair> pairs{};
+    std::optional<double> kendallW{};        // rank: concordance of the participants, 1 = all gave the same ranks
+    std::vector<double> meanByPlace{};       // rank: mean rank by place on the screen, without a habit (n + 1) / 2 each
     double secondsMedian = 0;              // that participants took
-    std::vector<Agreement> agreements;
+    std::vector<Agreement> agreements{};
     bool lowIsBetter() const { return kind == QuestionKind::rank; }
     bool isBradleyTerry() const { return kind == QuestionKind::pair && pictures.size() > 2; }
 };
