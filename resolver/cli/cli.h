@@ -54,6 +54,7 @@ void addImport(CommandLine& line, Context& context);
 void addSweep(CommandLine& line, Context& context);
 void addAngles(CommandLine& line, Context& context);
 void addDevices(CommandLine& line, Context& context);
+void addSurvey(CommandLine& line, Context& context);
 void addVerify(CommandLine& line, Context& context);
 
 }  // namespace aa

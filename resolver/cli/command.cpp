@@ -44,6 +44,10 @@ Option Command::option(const std::string& names, double& to, const std::string& 
 Option Command::flag(const std::string& names, bool& to, const std::string& help) {
     return Option(app_->add_flag(names, to, help));
 }
+Command Command::command(const std::string& name, const std::string& help) {
+    app_->require_subcommand(1);
+    return Command(app_->add_subcommand(name, help));
+}
 void Command::run(std::function<void()> body) { app_->callback(std::move(body)); }
 
 CommandLine::CommandLine(const std::string& help, const std::string& version) : app_(std::make_unique<CLI::App>(help)) {

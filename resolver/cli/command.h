@@ -47,6 +47,8 @@ class Command {
     Option option(const std::string& names, uint32_t& to, const std::string& help);
     Option option(const std::string& names, double& to, const std::string& help);
     Option flag(const std::string& names, bool& to, const std::string& help);
+    // A command of this command, one of which must then be given.
+    Command command(const std::string& name, const std::string& help);
     // What it does once everything is read.
     void run(std::function<void()> body);
 

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "image/error.h"
+#include "report/page.h"
 #include "report/web/web_files.h"
 
 namespace aa {
@@ -124,9 +125,7 @@ std::string anglesForReport(const std::filesystem::path& folder) {
     if (j.is_discarded() || !j.is_object() || j.value("format", "") != "aaresolve-angles" || !j.contains("degrees") ||
         !j.contains("methods"))
         throw InputError(file.string() + ": expected what `aaresolve angles` writes; run it again or remove the file");
-    std::string data = j.dump();
-    for (size_t at = 0; (at = data.find("</", at)) != std::string::npos; at += 3) data.insert(at + 1, "\\");
-    return "<script type=\"application/json\" id=\"angles-data\">" + data + "</script>\n<script>" +
+    return "<script type=\"application/json\" id=\"angles-data\">" + forScript(j) + "</script>\n<script>" +
            std::string(web::angles) + "</script>\n";
 }
 

@@ -10,6 +10,7 @@
 #include "report/canvas.h"
 #include "report/caption.h"
 #include "report/colour_map.h"
+#include "report/page.h"
 #include "report/sheet.h"
 #include "report/web/web_files.h"
 #include "shot/pass_table.h"
@@ -56,26 +57,6 @@ json embedded(const Pictures& whole, const Window& window, size_t& bytes) {
         j["details"].push_back(rectangle(d));
     }
     return j;
-}
-std::string replaced(std::string text, std::string_view what, std::string_view with) {
-    const size_t at = text.find(what);
-    return text.replace(at, what.size(), with);
-}
-// Inside <script>, "</" would end it; "<\/" is the same JSON string.
-std::string forScript(const json& j) {
-    const std::string text = j.dump();
-    std::string safe;
-    safe.reserve(text.size());
-    for (const char c : text) {
-        if (c == '/' && !safe.empty() && safe.back() == '<') safe += '\\';
-        safe += c;
-    }
-    return safe;
-}
-std::string forHtml(const std::string& text) {
-    std::string safe;
-    for (const char c : text) safe += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
-    return safe;
 }
 }  // namespace
 
@@ -142,15 +123,15 @@ std::string reportHtml(const RunResults& run, const std::vector<Pictures>& pictu
         data["pictures"].push_back(embedded(p, shownPart(p), bytes));
         last = bytes - before;
     }
-    std::string page(web::html);
-    page = replaced(page, "{{title}}", forHtml("AA Resolve: " + run.shot));
-    page = replaced(page, "{{sliderCss}}", web::sliderCss);
-    page = replaced(page, "{{css}}", web::css);
-    page = replaced(page, "{{chart}}", web::chart);
-    page = replaced(page, "{{slider}}", web::slider);
-    page = replaced(page, "{{js}}", web::js);
-    page = replaced(page, "{{angles}}", angles);
-    return replaced(page, "{{data}}", forScript(data));
+    return filled(web::html, {{"title", forHtml("AA Resolve: " + run.shot)},
+                              {"sliderCss", web::sliderCss},
+                              {"css", web::css},
+                              {"chart", web::chart},
+                              {"slider", web::slider},
+                              {"common", web::common},
+                              {"js", web::js},
+                              {"angles", angles},
+                              {"data", forScript(data)}});
 }
 
 }  // namespace aa

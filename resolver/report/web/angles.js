@@ -2,12 +2,6 @@
 "use strict";
 (() => {
   const study = JSON.parse(document.getElementById("angles-data").textContent);
-  const element = (name, attributes = {}, ...children) => {
-    const e = document.createElement(name);
-    for (const [key, v] of Object.entries(attributes)) e.setAttribute(key, v);
-    e.append(...children);
-    return e;
-  };
   const number = (v, digits = 2) => (Number.isFinite(v) ? v.toFixed(digits).replace("-", "−") : "–");
   const extreme = (m, better) => m.gainDb.reduce((best, v, k) => (best < 0 || better(v, m.gainDb[best]) ? k : best), -1);
   const at = (m, k) => `${number(m.gainDb[k])} at ${number(study.degrees[k], 1)}°`;
@@ -25,7 +19,6 @@
     element("div", { class: "scroll", tabindex: "0", role: "region", "aria-labelledby": "angles-title" }, table));
   document.getElementById("viewer").before(section);
 
-  const hues = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#b8a800"]; // [Okabe 2008]
   const dashes = [[], [6, 3], [2, 2]];
   let chart;
   const draw = () => {

@@ -18,13 +18,6 @@
   const millionths = (v) => { const n = value(v) * 1e6; return Number.isFinite(n) ? (n >= 1000 ? n.toFixed(0) : Number(n.toPrecision(3)).toString()) : fixed(v, 0); };
   const psnr = (mse) => (mse > 0 ? -10 * Math.log10(mse) : Infinity);
 
-  const element = (name, attributes = {}, ...children) => {
-    const e = document.createElement(name);
-    for (const [key, v] of Object.entries(attributes)) if (v != null) e.setAttribute(key, v);
-    e.append(...children.filter((c) => c != null));
-    return e;
-  };
-
   // ---- header and words ----
   $("shot").textContent = run.shot.name;
   $("subtitle").textContent = "Anti-aliasing methods against ground truth, " + run.shot.resolution.join(" × ") + ", " +
@@ -194,23 +187,16 @@
     (Object.keys(published).length ? " (" + [...new Set(Object.values(published).map((p) => p.source))].join(", ") + ")" : "") + ", which packs its buffers more tightly and counts its render targets.";
 
   // ---- charts ----
-  const hues = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#b8a800"]; // [Okabe 2008]
   const markers = ["circle", "rect", "triangle", "rectRot", "star", "crossRot", "rectRounded", "cross"];
   const colourOf = (i) => hues[order.indexOf(i) % hues.length];
   const markerOf = (i) => markers[(order.indexOf(i) + Math.floor(order.indexOf(i) / hues.length)) % markers.length];
   const dashOf = (i) => [[], [6, 3], [2, 2]][Math.floor(order.indexOf(i) / hues.length) % 3];
-  const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   let charts = [];
   const drawCharts = () => {
     charts.forEach((c) => c.destroy());
     charts = [];
-    Chart.defaults.color = css("--quiet");
-    Chart.defaults.borderColor = css("--line");
-    Chart.defaults.font.family = getComputedStyle(document.body).fontFamily;
-    Chart.defaults.animation = false;
-    Chart.defaults.maintainAspectRatio = false;
+    dressCharts();
     const finite = (v) => (Number.isFinite(value(v)) ? value(v) : null);
-    const axis = (text, more = {}) => ({ title: { display: true, text }, ...more });
     const shown = order.filter((i) => methods[i].pooled && finite(methods[i].pooled.psnr) !== null);
     const show = (id, config) => charts.push(new Chart($(id), config));
     if (!shown.length) { $("charts").hidden = true; return; }
@@ -235,34 +221,12 @@
         (device.kind === "cpu" ? " Software on the processor, which checks the shaders: these are no card's times." : "");
       scatter("device-scatter", deviceMs, onDevice, "ms");
     }
-    // Horizontal bars, as tall as their number asks for.
     const bars = (id, indices, get, axisTitle, colour, tip, errorOf) => {
       $(id).closest("figure").hidden = !indices.length;
       if (!indices.length) return;
-      $(id).parentElement.style.height = Math.max(160, 60 + 22 * indices.length) + "px";
-      show(id, {
-        type: "bar",
-        data: { labels: indices.map((i) => methods[i].text), datasets: [{ data: indices.map(get), backgroundColor: indices.map(colour), maxBarThickness: 18 }] },
-        options: { indexAxis: "y", scales: { x: axis(axisTitle), y: { ticks: { autoSkip: false } } },
-          plugins: { legend: { display: false }, tooltip: { callbacks: { label: (t) => tip(t.parsed.x, indices[t.dataIndex]) } } } },
-        plugins: errorOf ? [{ // whiskers of the error bars
-          afterDatasetsDraw: (chart) => {
-            const pen = chart.ctx;
-            pen.save();
-            pen.strokeStyle = css("--ink");
-            pen.lineWidth = 1.5;
-            pen.beginPath();
-            chart.getDatasetMeta(0).data.forEach((bar, k) => {
-              const e = errorOf(indices[k]), v = get(indices[k]);
-              if (!(e > 0)) return;
-              const [from, to] = [Math.max(0, v - e), v + e].map((x) => chart.scales.x.getPixelForValue(x));
-              pen.moveTo(from, bar.y); pen.lineTo(to, bar.y);
-              for (const x of [from, to]) { pen.moveTo(x, bar.y - 4); pen.lineTo(x, bar.y + 4); }
-            });
-            pen.stroke();
-            pen.restore();
-          } }] : [],
-      });
+      charts.push(barChart($(id), { labels: indices.map((i) => methods[i].text), values: indices.map(get), colours: indices.map(colour), axisTitle,
+        tip: (v, k) => tip(v, indices[k]),
+        intervalOf: errorOf && ((k) => { const e = errorOf(indices[k]), v = get(indices[k]); return e > 0 ? [Math.max(0, v - e), v + e] : null; }) }));
     };
     bars("gain", order.filter((i) => i !== noaa && methods[i].pooled && methods[i].pooled.gainDb != null && finite(methods[i].pooled.gainDb) !== null),
       (i) => methods[i].pooled.gainDb, "dB; grey = not resolved",

@@ -1,0 +1,214 @@
+// `survey make` and `survey score`: what viewers say of a run's pictures.
+#include "report/survey.h"
+
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+#include "cli/cli.h"
+#include "image/error.h"
+#include "image/io.h"
+
+namespace aa {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr const char* kIntro =
+    "You will see pictures of the same view, each made in another way. Judge how good they look: are edges smooth or "
+    "stepped, are thin lines whole or broken, is fine detail there or blurred, and, where pictures move, are they calm "
+    "or do they flicker, crawl or leave trails?\n"
+    "What counts is your impression; there is no right answer.";
+
+std::string textOf(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    if (!in || fs::is_directory(file)) throw InputError(file.string() + ": no such file");
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
+
+// ---- make ----
+struct MakeOptions {
+    SurveyOptions survey;
+    std::vector<std::string> questions;
+    std::string out, file, introFile, seed;
+    WorkOptions work;
+};
+void make(MakeOptions& o) {
+    const Exec exec = o.work.exec();
+    for (const auto& q : o.questions) o.survey.questions.push_back({q, "--question '" + q + "'", false});
+    if (!o.file.empty()) {
+        std::istringstream lines(textOf(o.file));
+        std::string line;
+        for (int number = 1; std::getline(lines, line); number++) {
+            const size_t from = line.find_first_not_of(" \t\r");
+            if (from == std::string::npos || line[from] == '#') continue;
+            line.erase(line.find_last_not_of(" \t\r") + 1);
+            o.survey.questions.push_back({line, o.file + ": line " + std::to_string(number), true});
+        }
+        if (o.survey.questions.empty()) throw InputError(o.file + ": expected a question per line, found none");
+    }
+    o.survey.intro = o.introFile.empty() ? kIntro : textOf(o.introFile);
+    if (!o.seed.empty()) {
+        char* end = nullptr;
+        o.survey.seed = std::strtoull(o.seed.c_str(), &end, 10);
+        if (*end || o.seed[0] == '-') throw UsageError("--seed: expected a whole number, found '" + o.seed + "'");
+    }
+    fs::path page = o.out;
+    if (page.extension() != ".html") page /= "survey.html";
+    Survey survey;
+    withThreads(o.work.threads, [&] { survey = makeSurvey(o.survey, exec); });
+    if (page.has_parent_path()) makeWritableFolder(page.parent_path());
+    writeText(page, survey.page);
+    writeText(keyBeside(page), toJsonText(survey.key));
+    for (const auto& note : survey.notes) std::fprintf(stderr, "aaresolve: survey: note: %s\n", note.c_str());
+    std::printf("%zu questions, %zu pictures, %.1f MB\n", survey.key.questions.size(), survey.pictures,
+                double(survey.page.size()) / 1e6);
+    for (const auto& q : survey.key.questions) {
+        std::printf("%-4s %-6s %s, ", q.id.c_str(), name(q.kind), q.run.c_str());
+        if (q.isPlayed())
+            std::printf("frames %d to %d", q.frames.front(), q.frames.back());
+        else
+            std::printf("frame %d", q.frames[0]);
+        std::printf(", %dx%d at %d,%d, x%d:", q.region[2], q.region[3], q.region[0], q.region[1], q.zoom);
+        for (const auto& p : q.pictures) std::printf(" %s", p.method.c_str());
+        std::printf("\n");
+    }
+    std::printf("page, for participants: %s\nkey, not for them:      %s\n", page.c_str(), keyBeside(page).c_str());
+}
+
+// ---- score ----
+struct ScoreOptions {
+    std::vector<std::string> answers;
+    std::string survey, out;
+    bool json = false;
+};
+std::string shownScore(const ScoredSet& set, const Estimate& e) {
+    const bool share = set.kind == QuestionKind::pair && !set.isBradleyTerry();
+    char text[64];
+    const double by = share ? 100 : 1;
+    if (e.low)
+        std::snprintf(text, sizeof text, "%7.2f  %6.2f to %6.2f", by * e.value, by * *e.low, by * *e.high);
+    else
+        std::snprintf(text, sizeof text, "%7.2f  %16s", by * e.value, "-");
+    return text;
+}
+void printScores(const SurveyScores& scores) {
+    std::printf("%s: %zu participant%s\n", scores.key->title.c_str(), scores.participants,
+                scores.participants == 1 ? "" : "s");
+    for (const ScoredSet& set : scores.sets) {
+        std::string ids;
+        for (const auto* q : set.questions) ids += (ids.empty() ? "" : " ") + q->id;
+        const char* what = set.kind == QuestionKind::rank     ? "mean rank, 1 is best"
+                           : set.kind == QuestionKind::rating ? "mean rating, 5 is best"
+                           : set.isBradleyTerry()             ? "Bradley-Terry, more is better"
+                                                              : "wins, %";
+        std::printf("\n%s (%s, %s)", ids.c_str(), set.questions[0]->run.c_str(), what);
+        if (set.kendallW) std::printf(", Kendall's W %.2f", *set.kendallW);
+        std::printf("\n");
+        size_t width = 6;
+        for (const auto& p : set.pictures) width = std::max(width, p.picture->method.size());
+        std::printf("  %-*s   score  %-16s  counts\n", int(width), "method", "95 %");
+        for (const size_t a : set.order) {
+            const ScoredPicture& p = set.pictures[a];
+            std::printf("  %-*s %s  ", int(width), p.picture->method.c_str(), shownScore(set, p.score).c_str());
+            if (set.kind == QuestionKind::pair)
+                std::printf("%zu of %zu", p.counts[0], p.counts[1]);
+            else
+                for (size_t r = 0; r < p.counts.size(); r++) std::printf("%s%zu", r ? " " : "", p.counts[r]);
+            std::printf("%s\n", p.toNext && !p.resolved ? "  not resolved from the one above" : "");
+        }
+    }
+    bool head = false;
+    for (const Agreement& a : scores.pooled) {
+        if (!a.kendall || !a.spearman) continue;
+        if (!head) std::printf("\nagreement with viewers, pooled    pairs     tau  95 %%                rho  95 %%\n");
+        head = true;
+        const auto shown = [](const Estimate& e) {
+            char text[64];
+            if (e.low)
+                std::snprintf(text, sizeof text, "%+6.2f  %+.2f to %+.2f", e.value, *e.low, *e.high);
+            else
+                std::snprintf(text, sizeof text, "%+6.2f  %14s", e.value, "-");
+            return std::string(text);
+        };
+        std::printf("  %-30s %6zu  %s   %s\n", (a.title + (a.ofShown ? ", shown" : ", run")).c_str(), a.pairs,
+                    shown(*a.kendall).c_str(), shown(*a.spearman).c_str());
+    }
+}
+void score(const ScoreOptions& o) {
+    const SurveyKey key = readSurveyKey(o.survey);
+    const Answers answers = readAnswers(o.answers, key);
+    const SurveyScores scores = scoreSurvey(key, answers);
+    std::vector<fs::path> written;
+    const auto write = [&](const fs::path& file, const std::string& text) {
+        writeText(file, text);
+        written.push_back(file);
+    };
+    const auto page = [&] {
+        return scoresHtml(scores, fs::path(o.survey).extension() == ".html" && fs::exists(o.survey) ? textOf(o.survey)
+                                                                                                    : std::string());
+    };
+    const fs::path out = o.out;
+    const std::string kind = out.extension().string();
+    if (kind == ".html") {
+        write(out, page());
+    } else if (kind == ".json") {
+        write(out, toJsonText(scores));
+    } else if (kind == ".csv") {
+        write(out, toCsvText(scores));
+    } else if (!o.out.empty()) {
+        makeWritableFolder(out);
+        write(out / "scores.html", page());
+        write(out / "scores.json", toJsonText(scores));
+        write(out / "scores.csv", toCsvText(scores));
+    }
+    for (const auto& note : scores.notes) std::fprintf(stderr, "aaresolve: survey: note: %s\n", note.c_str());
+    if (o.json) {
+        std::cout << toJsonText(scores);
+        return;
+    }
+    printScores(scores);
+    for (const auto& p : answers.participants)
+        if (!p.remarks.empty()) std::printf("\nremark of %s: %s\n", p.id.c_str(), p.remarks.c_str());
+    for (const auto& file : written) std::printf("%s%s\n", &file == &written[0] ? "\n" : "", file.c_str());
+}
+
+void addMake(Command& survey) {
+    auto o = std::make_shared<MakeOptions>();
+    Command c = survey.command("make", "A page on which viewers judge pictures of runs, and its key");
+    o->survey.title = "Which picture is better?";
+    c.option("RUN", o->survey.runs, "output folders of `aaresolve run`, with images").required();
+    c.option("-o,--out", o->out, "the page, NAME.html, or a folder for survey.html; the key NAME.key.json beside it")
+        .required();
+    c.option("-q,--question", o->questions, std::string("one question; repeat for more:\n") + kQuestionForm).oneEach();
+    c.option("--questions", o->file, "a file with a question per line, in the same form; # begins a comment");
+    c.option("-m,--method", o->survey.methods, "a method for questions that name none; repeat for more; default all")
+        .oneEach();
+    c.option("--title", o->survey.title, "what participants read first");
+    c.option("--intro", o->introFile, "a text file in place of the page's introduction, a paragraph per line");
+    c.option("--seed", o->seed, "number from which the codes of pictures follow; default by chance");
+    addWorkOptions(c, o->work);
+    c.run([o] { make(*o); });
+}
+void addScore(Command& survey) {
+    auto o = std::make_shared<ScoreOptions>();
+    Command c = survey.command("score", "Scores with intervals from the saved answers, beside the run's metrics");
+    c.option("ANSWERS", o->answers, "JSON files that participants saved, one each").required();
+    c.option("--survey", o->survey,
+             "the page, which brings its pictures into the scores' page and whose key lies beside it; or the key")
+        .required();
+    c.option("-o,--out", o->out, "NAME.html, NAME.json or NAME.csv, or a folder for all three; default none");
+    c.flag("--json", o->json, "print the scores' JSON instead of the table");
+    c.run([o] { score(*o); });
+}
+}  // namespace
+
+void addSurvey(CommandLine& line, Context&) {
+    Command survey = line.command("survey", "What viewers say: make a survey of a run's pictures, score its answers");
+    addMake(survey);
+    addScore(survey);
+}
+
+}  // namespace aa

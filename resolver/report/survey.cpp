@@ -1,0 +1,437 @@
+#include "report/survey.h"
+
+#include <algorithm>
+#include <charconv>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <sstream>
+
+#include "image/error.h"
+#include "image/io.h"
+#include "report/canvas.h"
+#include "report/html.h"
+#include "report/page.h"
+#include "report/web/web_files.h"
+
+namespace aa {
+namespace {
+namespace fs = std::filesystem;
+using json = nlohmann::ordered_json;
+
+constexpr const char* kTruth = "truth";
+constexpr double kFramesPerSecond = 24;
+constexpr size_t kLargePage = 50'000'000;  // bytes, beyond what goes by mail
+
+struct Run {
+    std::string name;  // of its folder
+    fs::path folder;
+    RunResults results;
+    std::vector<int> frames;  // of which every method has a picture
+};
+// A question as it was asked for.
+struct Wish {
+    std::string kind = "rank", run, text;
+    std::vector<std::string> methods;
+    std::string frame, frames, region;
+    int zoom = 1;
+    double framesPerSecond = kFramesPerSecond;
+};
+
+std::string joined(const std::vector<std::string>& texts) {
+    std::string all;
+    for (const auto& t : texts) all += (all.empty() ? "" : ", ") + t;
+    return all;
+}
+// Of "4,8,15,16" or "1-9", split at `separator`; nothing unless they are `count` whole numbers.
+std::optional<std::vector<int>> numbersOf(std::string_view text, char separator, size_t count) {
+    std::vector<int> numbers;
+    const char *at = text.data(), *end = at + text.size();
+    while (true) {
+        int v = 0;
+        const auto [next, error] = std::from_chars(at, end, v);
+        if (error != std::errc()) return {};
+        numbers.push_back(v);
+        if (next == end) break;
+        if (*next != separator) return {};
+        at = next + 1;
+    }
+    return numbers.size() == count ? std::optional(numbers) : std::nullopt;
+}
+
+Wish wishOf(const std::string& text) {
+    Wish wish;
+    std::istringstream in(text);
+    constexpr std::string_view kKinds[] = {"rank", "pair", "pairs", "rating"};
+    in >> wish.kind;
+    if (std::find(std::begin(kKinds), std::end(kKinds), wish.kind) == std::end(kKinds)) {
+        const std::string near = suggestion(wish.kind, {std::begin(kKinds), std::end(kKinds)});
+        throw UsageError("expected rank, pair, pairs or rating first, found '" + wish.kind + "'" +
+                         (near.empty() ? "" : "; did you mean '" + near + "'?"));
+    }
+    std::string word;
+    while (in >> word) {
+        const size_t equals = word.find('=');
+        const std::string name = word.substr(0, equals), value = equals == std::string::npos ? "" : word.substr(equals + 1);
+        if (equals == std::string::npos || name.find_first_of(":+") != std::string::npos) {
+            wish.methods.push_back(word);
+        } else if (name == "text") {
+            std::getline(in, wish.text);
+            wish.text = value + wish.text;
+        } else if (name == "run") {
+            wish.run = value;
+        } else if (name == "frame") {
+            wish.frame = value;
+        } else if (name == "frames") {
+            wish.frames = value;
+        } else if (name == "region") {
+            wish.region = value;
+        } else if (name == "zoom") {
+            const auto zoom = numbersOf(value, ',', 1);
+            constexpr int kMost = 16;
+            if (!zoom || (*zoom)[0] < 1 || (*zoom)[0] > kMost)
+                throw UsageError("zoom: expected a whole number from 1 to 16, found '" + value + "'");
+            wish.zoom = (*zoom)[0];
+        } else if (name == "fps") {
+            char* end = nullptr;
+            wish.framesPerSecond = std::strtod(value.c_str(), &end);
+            if (value.empty() || *end || !(wish.framesPerSecond >= 0.1 && wish.framesPerSecond <= 240))
+                throw UsageError("fps: expected 0.1 to 240, found '" + value + "'");
+        } else {
+            const std::string near = suggestion(name, {"run", "frame", "frames", "fps", "region", "zoom", "text"});
+            throw UsageError("unknown '" + name + "='" + (near.empty() ? "" : "; did you mean '" + near + "='?"));
+        }
+    }
+    if (!wish.frame.empty() && !wish.frames.empty()) throw UsageError("frame= and frames= exclude each other");
+    return wish;
+}
+
+// What a question asks of one run, with everything settled but the pictures themselves.
+std::vector<int> framesOf(const Wish& wish, const Run& run) {
+    if (run.frames.empty())
+        throw InputError(run.folder.string() + ": no frame of which every method has an image; run again with --write exr");
+    if (!wish.frame.empty()) {
+        const auto one = numbersOf(wish.frame, ',', 1);
+        if (!one) throw UsageError("frame: expected a whole number, found '" + wish.frame + "'");
+        if (std::find(run.frames.begin(), run.frames.end(), (*one)[0]) == run.frames.end())
+            throw UsageError("frame: expected one of " + std::to_string(run.frames.front()) + " to " +
+                             std::to_string(run.frames.back()) + " with images in " + run.name + ", found " + wish.frame);
+        return *one;
+    }
+    if (wish.frames.empty()) return {run.frames.back()};
+    std::vector<int> range = {run.frames.front(), run.frames.back()};
+    if (wish.frames != "all") {
+        const auto given = numbersOf(wish.frames, '-', 2);
+        if (!given) throw UsageError("frames: expected A-B or all, found '" + wish.frames + "'");
+        range = *given;
+    }
+    std::vector<int> frames;
+    for (const int f : run.frames)
+        if (f >= range[0] && f <= range[1]) frames.push_back(f);
+    if (frames.size() < 2)
+        throw UsageError("frames: expected two or more with images, found " + std::to_string(frames.size()) + " in " +
+                         run.name + " (write them all: run --write exr --write-frames all)");
+    return frames;
+}
+std::vector<std::string> methodsOf(const Wish& wish, const Run& run, const std::vector<std::string>& standing) {
+    std::vector<std::string> methods = wish.methods.empty() ? standing : wish.methods;
+    std::vector<std::string_view> known = {kTruth};
+    for (const auto& m : run.results.methods) known.push_back(m.text);
+    if (methods.empty())
+        for (const auto& m : run.results.methods) methods.push_back(m.text);
+    for (size_t i = 0; i < methods.size(); i++) {
+        if (std::find(known.begin(), known.end(), methods[i]) == known.end()) {
+            const std::string near = suggestion(methods[i], known);
+            throw UsageError("no method '" + methods[i] + "' in " + run.name +
+                             (near.empty() ? "" : "; did you mean '" + near + "'?"));
+        }
+        if (std::find(methods.begin(), methods.begin() + long(i), methods[i]) != methods.begin() + long(i))
+            throw UsageError("method '" + methods[i] + "' is named twice");
+    }
+    return methods;
+}
+// The methods of one question each: see kQuestionForm.
+std::vector<std::vector<std::string>> shared(const std::vector<std::string>& methods, const std::string& kind) {
+    const size_t n = methods.size();
+    if (kind != "rating" && n < 2) throw UsageError(kind + ": expected two methods or more, found " + std::to_string(n));
+    if (kind == "pair" && n != 2) throw UsageError("pair: expected two methods, found " + joined(methods));
+    if (kind == "rating" || (kind == "rank" && n <= size_t(kMostRanked)) || kind == "pair") return {methods};
+    std::vector<std::vector<std::string>> all;
+    if (kind == "pairs") {
+        for (size_t a = 0; a < n; a++)
+            for (size_t b = a + 1; b < n; b++) all.push_back({methods[a], methods[b]});
+        return all;
+    }
+    const size_t others = n - 1, most = size_t(kMostRanked) - 1, count = (others + most - 1) / most;
+    for (size_t k = 0; k < count; k++) {
+        all.push_back({methods[0]});
+        for (size_t i = k * others / count; i < (k + 1) * others / count; i++) all.back().push_back(methods[i + 1]);
+    }
+    return all;
+}
+Window regionOf(const std::string& text, const Pictures& p) {
+    const int w = p.methods[0].width(), h = p.methods[0].height();
+    if (text.empty()) return {0, 0, w, h};
+    if (text.starts_with("auto")) {
+        Window size{0, 0, std::min(w, 480), std::min(h, 270)};
+        if (text != "auto") {
+            const auto given = text.starts_with("auto:") ? numbersOf(std::string_view(text).substr(5), 'x', 2) : std::nullopt;
+            if (!given || (*given)[0] < 1 || (*given)[1] < 1)
+                throw UsageError("region: expected X,Y,W,H, auto or auto:WxH, found '" + text + "'");
+            size.width = std::min(w, (*given)[0]), size.height = std::min(h, (*given)[1]);
+        }
+        const auto windows = mostTellingWindows(p, size.width, size.height, 1);
+        return windows.empty() ? size : windows[0];
+    }
+    const auto given = numbersOf(text, ',', 4);
+    if (!given) throw UsageError("region: expected X,Y,W,H, auto or auto:WxH, found '" + text + "'");
+    const Window window{(*given)[0], (*given)[1], (*given)[2], (*given)[3]};
+    if (window.x < 0 || window.y < 0 || window.width < 1 || window.height < 1 || window.width > w - window.x ||
+        window.height > h - window.y)
+        throw UsageError("region: expected a part of " + std::to_string(w) + "x" + std::to_string(h) + ", found " + text);
+    return window;
+}
+
+// ---- figures ----
+// Against the truth, of the shown part: what viewers saw is what is measured.
+class ShownFigures {
+  public:
+    void add(const Rgb& test, const Rgb& truth, const Exec& exec) {
+        FrameMetrics f = frameMetrics(squaredError(test, truth, exec));
+        for (const char* name : kNames) addFigures(f, *findFigure(name).metric, {test, truth}, exec);
+        mse_ += f.mse, frames_++;
+        for (const char* name : kNames) sums_[name] += *f.figure(name);
+    }
+    Figures figures() const {
+        if (frames_ == 0) return {};
+        Figures all = {{"psnr", psnr(mse_ / frames_)}};
+        for (const auto& [name, sum] : sums_) all[name] = sum / frames_;
+        return all;
+    }
+
+  private:
+    static constexpr const char* kNames[] = {"ssimLuma", "flip", "fmagMse"};
+    double mse_ = 0, frames_ = 0;
+    Figures sums_;
+};
+Figures runFigures(const RunResults& run, const std::string& method) {
+    Figures all;
+    for (const auto& m : run.methods) {
+        if (m.text != method) continue;
+        if (m.pooled) {
+            all["psnr"] = m.pooled->mean.psnr;
+            for (const auto& [name, value] : m.pooled->mean.others) all[name] = value;
+        }
+        if (!m.temporal) continue;
+        const auto add = [&](const char* name, const std::optional<double>& v) {
+            if (v) all[name] = *v;
+        };
+        add("tPsnr", m.temporal->tPsnr), add("flickerStatic", m.temporal->flickerStatic);
+        add("flickerMoving", m.temporal->flickerMoving), add("ghostMse", m.temporal->ghostMse);
+    }
+    return all;
+}
+
+// ---- codes ----
+// Words by chance or from a seed: nothing of a method's name or place is in them.
+class Codes {
+  public:
+    explicit Codes(uint64_t seed) : random_(seed) {}
+    std::string next(int digits) {
+        std::string code;
+        while (int(code.size()) < digits) code += "0123456789abcdef"[random_() >> 60];
+        return code;
+    }
+
+  private:
+    std::mt19937_64 random_;  // the same everywhere, unlike distributions
+};
+uint64_t anySeed() {
+    std::random_device device;
+    return uint64_t(device()) << 32 | device();
+}
+// FNV-1a: two surveys of one seed are two surveys.
+uint64_t digest(const std::string& text, uint64_t state = 0xcbf29ce484222325ull) {
+    for (const char c : text) state = (state ^ uint64_t(static_cast<unsigned char>(c))) * 0x100000001b3ull;
+    return state;
+}
+
+// ---- putting it together ----
+class Maker {
+  public:
+    Maker(const SurveyOptions& options, const Exec& exec)
+        : options_(options), exec_(exec), codes_(options.seed.value_or(anySeed())) {
+        for (const auto& folder : options.runs) {
+            RunResults results = readResults(folder);
+            std::string name = fs::path(folder).filename().string();
+            if (name.empty() || name == ".") name = fs::weakly_canonical(folder).filename().string();
+            if (name.empty()) name = fs::weakly_canonical(folder).parent_path().filename().string();
+            auto frames = framesWithPictures(results);
+            runs_.push_back({name, folder, std::move(results), std::move(frames)});
+        }
+    }
+    Survey made() {
+        for (const auto& q : options_.questions) {
+            try {
+                ask(wishOf(q.text));
+            } catch (const UsageError& e) {
+                const std::string message = q.place + ": " + e.what();
+                if (q.inFile) throw InputError(message);
+                throw UsageError(message);
+            }
+        }
+        if (options_.questions.empty()) ask({});
+        return finished();
+    }
+
+  private:
+    void ask(const Wish& wish) {
+        bool asked = false;
+        for (size_t r = 0; r < runs_.size(); r++)
+            if (wish.run.empty() || wish.run == runs_[r].name || wish.run == std::to_string(r + 1))
+                askOf(wish, runs_[r]), asked = true;
+        if (asked) return;
+        std::vector<std::string> names;
+        for (const Run& r : runs_) names.push_back(r.name);
+        throw UsageError("run: expected one of " + joined(names) + " or its number, found '" + wish.run + "'");
+    }
+    void askOf(const Wish& wish, const Run& run) {
+        const auto methods = methodsOf(wish, run, options_.methods);
+        const auto groups = shared(methods, wish.kind);
+        const auto frames = framesOf(wish, run);
+        // Only the pictures that are asked for are read.
+        RunResults few = run.results;
+        std::erase_if(few.methods, [&](const MethodResult& m) {
+            return std::find(methods.begin(), methods.end(), m.text) == methods.end();
+        });
+        const bool withTruth = few.methods.size() < methods.size();
+        if (few.methods.empty()) throw UsageError("expected a method beside truth");
+        std::vector<ShownFigures> figures(few.methods.size());
+        std::vector<std::vector<std::string>> files(methods.size());  // by method and frame, data URIs
+        Window region;
+        bool allHaveTruth = true;
+        for (const int frame : frames) {
+            const Pictures p = loadPictures(few, run.folder, frame, exec_);
+            if (frame == frames[0]) region = regionOf(wish.region, p);
+            if (p.truth.empty() && withTruth)
+                throw InputError(run.folder.string() + ": no image of the truth of frame " + std::to_string(frame));
+            const Rgb truth = p.truth.empty() ? Rgb() : cropped(p.truth, region);
+            allHaveTruth = allHaveTruth && !truth.empty();
+            for (size_t m = 0; m < methods.size(); m++) {
+                const auto found = std::find_if(few.methods.begin(), few.methods.end(),
+                                                [&](const MethodResult& r) { return r.text == methods[m]; });
+                const auto i = size_t(found - few.methods.begin());
+                const Rgb shown = found == few.methods.end() ? truth : cropped(p.methods[i], region);
+                if (found != few.methods.end() && !truth.empty()) figures[i].add(shown, truth, exec_);
+                files[m].push_back("data:image/png;base64," + base64(pngBytes(shown)));
+            }
+        }
+        std::map<std::string, SurveyPicture> pictures;
+        for (size_t m = 0; m < methods.size(); m++) {
+            const auto found = std::find_if(few.methods.begin(), few.methods.end(),
+                                            [&](const MethodResult& r) { return r.text == methods[m]; });
+            SurveyPicture& p = pictures[methods[m]];
+            p = {codeOf(run, methods[m], frames, region, files[m]), methods[m], {}, runFigures(few, methods[m])};
+            if (allHaveTruth && found != few.methods.end())
+                p.shown = figures[size_t(found - few.methods.begin())].figures();
+        }
+        for (const auto& group : groups) {
+            SurveyQuestion q;
+            q.id = "q" + std::to_string(survey_.key.questions.size() + 1);
+            q.kind = wish.kind == "rank"     ? QuestionKind::rank
+                     : wish.kind == "rating" ? QuestionKind::rating
+                                             : QuestionKind::pair;
+            q.text = wish.text, q.run = run.name, q.shot = run.results.shot, q.frames = frames;
+            q.region = {region.x, region.y, region.width, region.height};
+            q.zoom = wish.zoom, q.framesPerSecond = frames.size() > 1 ? wish.framesPerSecond : 0;
+            for (const auto& m : group) q.pictures.push_back(pictures[m]);
+            noteSame(q);
+            noteNamed(q.text, q.id);
+            survey_.key.questions.push_back(std::move(q));
+        }
+    }
+    // The same pictures of two questions are kept once.
+    std::string codeOf(const Run& run, const std::string& method, const std::vector<int>& frames, const Window& region,
+                       const std::vector<std::string>& files) {
+        const std::string what = json({run.folder.string(), method, frames,
+                                       {region.x, region.y, region.width, region.height}})
+                                     .dump();
+        auto& code = known_[what];
+        if (!code.empty()) return code;
+        constexpr int kDigits = 8;
+        do code = codes_.next(kDigits);
+        while (images_.contains(code));
+        images_[code] = files;
+        for (const auto& f : files) survey_.bytes += f.size();
+        survey_.pictures += files.size();
+        return code;
+    }
+    void noteSame(const SurveyQuestion& q) {
+        for (size_t a = 0; a < q.pictures.size(); a++)
+            for (size_t b = a + 1; b < q.pictures.size(); b++)
+                if (images_[q.pictures[a].code] == images_[q.pictures[b].code])
+                    survey_.notes.push_back(q.id + ": " + q.pictures[a].method + " and " + q.pictures[b].method +
+                                            " have the same pixels here; viewers can only guess");
+    }
+    // A text that names a method tells what is to be hidden.
+    void noteNamed(const std::string& text, const std::string& where) {
+        std::istringstream in(text);
+        for (std::string word; in >> word;) {
+            while (!word.empty() && !std::isalnum(static_cast<unsigned char>(word.back()))) word.pop_back();
+            for (const Run& run : runs_)
+                for (const auto& m : run.results.methods)
+                    if (word == m.text || word == m.id) {
+                        survey_.notes.push_back(where + ": its text names the method " + word +
+                                                ", which participants should not know");
+                        return;
+                    }
+        }
+    }
+    Survey finished() {
+        SurveyKey& key = survey_.key;
+        key.title = options_.title, key.program = AA_VERSION;
+        noteNamed(options_.title, "title"), noteNamed(options_.intro, "introduction");
+        // Of what the page holds, codes in their own order: nothing of the key's order.
+        json page = {{"title", options_.title}, {"intro", options_.intro}, {"questions", json::array()}};
+        for (const auto& q : key.questions) {
+            std::vector<std::string> codes;
+            for (const auto& p : q.pictures) codes.push_back(p.code);
+            std::sort(codes.begin(), codes.end());
+            page["questions"].push_back({{"id", q.id},
+                                         {"kind", name(q.kind)},
+                                         {"text", q.text},
+                                         {"size", {q.region[2], q.region[3]}},
+                                         {"zoom", q.zoom},
+                                         {"framesPerSecond", q.framesPerSecond},
+                                         {"pictures", codes}});
+        }
+        page["images"] = images_;
+        uint64_t all = digest(page.dump());
+        constexpr int kDigits = 10;
+        std::string& id = key.survey;
+        for (; int(id.size()) < kDigits; all <<= 4) id += "0123456789abcdef"[all >> 60];
+        page["survey"] = id;
+        survey_.page = filled(web::surveyHtml, {{"title", forHtml(options_.title)},
+                                                {"css", web::css},
+                                                {"surveyCss", web::surveyCss},
+                                                {"common", web::common},
+                                                {"surveyJs", web::surveyJs},
+                                                {"data", forScript(page)}});
+        if (survey_.bytes > kLargePage)
+            survey_.notes.push_back("the page has " + std::to_string(survey_.page.size() / 1'000'000) +
+                                    " MB; region= shows less of a picture, frames= fewer");
+        return std::move(survey_);
+    }
+
+    const SurveyOptions& options_;
+    const Exec& exec_;
+    Codes codes_;
+    std::vector<Run> runs_;
+    Survey survey_;
+    std::map<std::string, std::string> known_;                // what it shows -> code
+    std::map<std::string, std::vector<std::string>> images_;  // code -> data URIs
+};
+}  // namespace
+
+Survey makeSurvey(const SurveyOptions& options, const Exec& exec) { return Maker(options, exec).made(); }
+
+}  // namespace aa
