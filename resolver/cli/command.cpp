@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "image/error.h"
+
 namespace aa {
 
 Option& Option::required() { return option_->required(), *this; }
@@ -45,8 +47,21 @@ Option Command::flag(const std::string& names, bool& to, const std::string& help
     return Option(app_->add_flag(names, to, help));
 }
 Command Command::command(const std::string& name, const std::string& help) {
-    app_->require_subcommand(1);
-    return Command(app_->add_subcommand(name, help));
+    CLI::App* inner = app_->add_subcommand(name, help);
+    inner->allow_extras(false);
+    app_->require_subcommand(0);
+    // CLI11 would say that a subcommand is missing, but neither which there are nor what was found.
+    app_->allow_extras();
+    app_->callback([app = app_] {
+        if (!app->get_subcommands().empty()) return;
+        std::string all;
+        for (const auto* c : app->get_subcommands({})) all += (all.empty() ? "" : " or ") + c->get_name();
+        const auto found = app->remaining();
+        throw UsageError(app->get_name() + ": expected " + all + ", found " +
+                         (found.empty() ? "nothing" : "'" + found[0] + "'") + "; see aaresolve " + app->get_name() +
+                         " --help");
+    });
+    return Command(inner);
 }
 void Command::run(std::function<void()> body) { app_->callback(std::move(body)); }
 

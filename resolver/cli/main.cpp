@@ -11,9 +11,9 @@ int main(int argc, char** argv) {
         AA_VERSION);
     aa::Context context;
     const auto commands = {
-        aa::addList,  aa::addPlan,   aa::addCheck,   aa::addRun,    aa::addFilter,    aa::addBench,
-        aa::addSheet, aa::addReport, aa::addCompare, aa::addSynth,  aa::addLearnRsaa, aa::addImport,
-        aa::addSweep, aa::addAngles, aa::addSurvey,  aa::addDevices,   aa::addVerify,
+        aa::addList,  aa::addPlan,   aa::addCheck,   aa::addRun,     aa::addFilter,    aa::addBench,
+        aa::addSheet, aa::addReport, aa::addCompare, aa::addSynth,   aa::addLearnRsaa, aa::addImport,
+        aa::addSweep, aa::addAngles, aa::addSurvey,  aa::addDevices, aa::addVerify,
     };
     for (const auto add : commands) add(line, context);
     try {

@@ -71,7 +71,8 @@ Wish wishOf(const std::string& text) {
     std::string word;
     while (in >> word) {
         const size_t equals = word.find('=');
-        const std::string name = word.substr(0, equals), value = equals == std::string::npos ? "" : word.substr(equals + 1);
+        const std::string name = word.substr(0, equals),
+                          value = equals == std::string::npos ? "" : word.substr(equals + 1);
         if (equals == std::string::npos || name.find_first_of(":+") != std::string::npos) {
             wish.methods.push_back(word);
         } else if (name == "text") {
@@ -108,13 +109,15 @@ Wish wishOf(const std::string& text) {
 // What a question asks of one run, with everything settled but the pictures themselves.
 std::vector<int> framesOf(const Wish& wish, const Run& run) {
     if (run.frames.empty())
-        throw InputError(run.folder.string() + ": no frame of which every method has an image; run again with --write exr");
+        throw InputError(run.folder.string() +
+                         ": no frame of which every method has an image; run again with --write exr");
     if (!wish.frame.empty()) {
         const auto one = numbersOf(wish.frame, ',', 1);
         if (!one) throw UsageError("frame: expected a whole number, found '" + wish.frame + "'");
         if (std::find(run.frames.begin(), run.frames.end(), (*one)[0]) == run.frames.end())
             throw UsageError("frame: expected one of " + std::to_string(run.frames.front()) + " to " +
-                             std::to_string(run.frames.back()) + " with images in " + run.name + ", found " + wish.frame);
+                             std::to_string(run.frames.back()) + " with images in " + run.name + ", found " +
+                             wish.frame);
         return *one;
     }
     if (wish.frames.empty()) return {run.frames.back()};
@@ -152,7 +155,8 @@ std::vector<std::string> methodsOf(const Wish& wish, const Run& run, const std::
 // The methods of one question each: see kQuestionForm.
 std::vector<std::vector<std::string>> shared(const std::vector<std::string>& methods, const std::string& kind) {
     const size_t n = methods.size();
-    if (kind != "rating" && n < 2) throw UsageError(kind + ": expected two methods or more, found " + std::to_string(n));
+    if (kind != "rating" && n < 2)
+        throw UsageError(kind + ": expected two methods or more, found " + std::to_string(n));
     if (kind == "pair" && n != 2) throw UsageError("pair: expected two methods, found " + joined(methods));
     if (kind == "rating" || (kind == "rank" && n <= size_t(kMostRanked)) || kind == "pair") return {methods};
     std::vector<std::vector<std::string>> all;
@@ -174,7 +178,8 @@ Window regionOf(const std::string& text, const Pictures& p) {
     if (text.starts_with("auto")) {
         Window size{0, 0, std::min(w, 480), std::min(h, 270)};
         if (text != "auto") {
-            const auto given = text.starts_with("auto:") ? numbersOf(std::string_view(text).substr(5), 'x', 2) : std::nullopt;
+            const auto given =
+                text.starts_with("auto:") ? numbersOf(std::string_view(text).substr(5), 'x', 2) : std::nullopt;
             if (!given || (*given)[0] < 1 || (*given)[1] < 1)
                 throw UsageError("region: expected X,Y,W,H, auto or auto:WxH, found '" + text + "'");
             size.width = std::min(w, (*given)[0]), size.height = std::min(h, (*given)[1]);
@@ -187,7 +192,8 @@ Window regionOf(const std::string& text, const Pictures& p) {
     const Window window{(*given)[0], (*given)[1], (*given)[2], (*given)[3]};
     if (window.x < 0 || window.y < 0 || window.width < 1 || window.height < 1 || window.width > w - window.x ||
         window.height > h - window.y)
-        throw UsageError("region: expected a part of " + std::to_string(w) + "x" + std::to_string(h) + ", found " + text);
+        throw UsageError("region: expected a part of " + std::to_string(w) + "x" + std::to_string(h) + ", found " +
+                         text);
     return window;
 }
 
@@ -352,9 +358,8 @@ class Maker {
     // The same pictures of two questions are kept once.
     std::string codeOf(const Run& run, const std::string& method, const std::vector<int>& frames, const Window& region,
                        const std::vector<std::string>& files) {
-        const std::string what = json({run.folder.string(), method, frames,
-                                       {region.x, region.y, region.width, region.height}})
-                                     .dump();
+        const std::string what =
+            json({run.folder.string(), method, frames, {region.x, region.y, region.width, region.height}}).dump();
         auto& code = known_[what];
         if (!code.empty()) return code;
         constexpr int kDigits = 8;

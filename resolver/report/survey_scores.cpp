@@ -1,9 +1,10 @@
+#include "study/survey_scores.h"
+
 #include <nlohmann/json.hpp>
 
 #include "report/page.h"
 #include "report/survey.h"
 #include "report/web/web_files.h"
-#include "study/survey_scores.h"
 
 namespace aa {
 namespace {

@@ -17,7 +17,7 @@ enum class QuestionKind {
     rating,  // each picture for itself, 1 (bad) to 5 (excellent)
 };
 const char* name(QuestionKind kind);
-inline constexpr int kMostRanked = 5;   // of [Stejmar n.d., 4.5.2]: nine were too many for one question
+inline constexpr int kMostRanked = 5;  // of [Stejmar n.d., 4.5.2]: nine were too many for one question
 inline constexpr int kBestRating = 5;
 
 using Figures = std::map<std::string, double, std::less<>>;  // by name

@@ -118,8 +118,8 @@ SurveyQuestion questionOf(const Place& q) {
     question.zoom = q.at("zoom").whole(1, kMost);
     question.framesPerSecond = q.at("framesPerSecond").number();
     for (const Place& p : q.at("pictures").list())
-        question.pictures.push_back({p.at("code").text(), p.at("method").text(), figuresOf(p.at("shown")),
-                                     figuresOf(p.at("run"))});
+        question.pictures.push_back(
+            {p.at("code").text(), p.at("method").text(), figuresOf(p.at("shown")), figuresOf(p.at("run"))});
     const size_t n = question.pictures.size();
     if (n == 0 || (question.kind == QuestionKind::pair && n != 2) || (question.kind == QuestionKind::rank && n < 2))
         q.at("pictures").refuse("two pictures or more, of a pair two, of a rating one", std::to_string(n));
@@ -177,12 +177,18 @@ size_t SurveyQuestion::indexOf(std::string_view code) const {
 }
 
 std::string toJsonText(const SurveyKey& key) {
-    json j = {{"format", kKeyFormat},     {"version", kVersion},    {"survey", key.survey},
-              {"program", key.program}, {"title", key.title}, {"questions", json::array()}};
+    json j = {{"format", kKeyFormat},   {"version", kVersion}, {"survey", key.survey},
+              {"program", key.program}, {"title", key.title},  {"questions", json::array()}};
     for (const auto& q : key.questions) {
-        json question = {{"id", q.id},         {"kind", name(q.kind)}, {"text", q.text},
-                         {"run", q.run},       {"shot", q.shot},       {"frames", q.frames},
-                         {"region", q.region}, {"zoom", q.zoom},       {"framesPerSecond", q.framesPerSecond},
+        json question = {{"id", q.id},
+                         {"kind", name(q.kind)},
+                         {"text", q.text},
+                         {"run", q.run},
+                         {"shot", q.shot},
+                         {"frames", q.frames},
+                         {"region", q.region},
+                         {"zoom", q.zoom},
+                         {"framesPerSecond", q.framesPerSecond},
                          {"pictures", json::array()}};
         for (const auto& p : q.pictures)
             question["pictures"].push_back(

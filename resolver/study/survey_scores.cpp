@@ -289,7 +289,8 @@ std::string tooFew(size_t participants) {
     const std::string number = std::to_string(participants) + " participant" + (participants == 1 ? "" : "s");
     if (participants < kFewestForIntervals)
         return "too few: " + number + "; below " + std::to_string(kFewestForIntervals) +
-               " no two pictures can be told apart at 95 %, even if all agree (two-sided sign test), so no intervals are "
+               " no two pictures can be told apart at 95 %, even if all agree (two-sided sign test), so no intervals "
+               "are "
                "given";
     if (participants < kFewestObservers)
         return "few: " + number + "; ITU-R BT.500 asks for at least " + std::to_string(kFewestObservers) +

@@ -1,5 +1,5 @@
-// What the answers of a survey say: the score of [Stejmar n.d., eq 4.5] and its kin, with intervals, and how far metrics
-// agree with viewers.
+// What the answers of a survey say: the score of [Stejmar n.d., eq 4.5] and its kin, with intervals, and how far
+// metrics agree with viewers.
 //
 // - rank: score = sum over ranks of rank * share = mean rank; 1 is best.
 // - rating: the mean; 5 is best.
@@ -57,9 +57,9 @@ struct ScoredSet {
     std::vector<ScoredPicture> pictures{};  // as in the key
     std::vector<size_t> order{};            // best first
     std::vector<ScoredPair> pairs{};
-    std::optional<double> kendallW{};        // rank: concordance of the participants, 1 = all gave the same ranks
-    std::vector<double> meanByPlace{};       // rank: mean rank by place on the screen, without a habit (n + 1) / 2 each
-    double secondsMedian = 0;              // that participants took
+    std::optional<double> kendallW{};   // rank: concordance of the participants, 1 = all gave the same ranks
+    std::vector<double> meanByPlace{};  // rank: mean rank by place on the screen, without a habit (n + 1) / 2 each
+    double secondsMedian = 0;           // that participants took
     std::vector<Agreement> agreements{};
     bool lowIsBetter() const { return kind == QuestionKind::rank; }
     bool isBradleyTerry() const { return kind == QuestionKind::pair && pictures.size() > 2; }

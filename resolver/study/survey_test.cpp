@@ -92,9 +92,7 @@ const std::vector<Published> kPublished = {
       {1.52, 1.52, 6.06, 15.15, 75.76},
       {86.36, 10.61, 1.52, 0, 1.52}},
      {2.17, 3.79, 3.23, 4.62, 1.20}},
-    {{"FXAA", "No AA", "ASAA"},
-     {{19.70, 69.70, 10.61}, {0, 15.15, 84.85}, {80.30, 15.15, 4.55}},
-     {1.91, 2.85, 1.24}},
+    {{"FXAA", "No AA", "ASAA"}, {{19.70, 69.70, 10.61}, {0, 15.15, 84.85}, {80.30, 15.15, 4.55}}, {1.91, 2.85, 1.24}},
 };
 constexpr size_t kPublishedParticipants = 66;
 
@@ -227,8 +225,7 @@ TEST(SurveyScores, PairsOfOnePartAreOneSet) {
                question("q3", QuestionKind::pair, {"a", "c"}), other});
     Answers answers;
     for (int i = 0; i < 8; i++)
-        answers.participants.push_back(
-            participant("p" + std::to_string(i), {{1, 0}, {i < 6, i >= 6}, {1, 0}, {0, 1}}));
+        answers.participants.push_back(participant("p" + std::to_string(i), {{1, 0}, {i < 6, i >= 6}, {1, 0}, {0, 1}}));
     const SurveyScores scores = scoreSurvey(key, answers);
     ASSERT_EQ(scores.sets.size(), 2u);
     const ScoredSet& set = scores.sets[0];
@@ -336,8 +333,9 @@ TEST_F(SurveyFiles, AnswersAreRead) {
 TEST_F(SurveyFiles, BadAnswersAreNamed) {
     const std::string file = (folder_ / "answers.json").string();
     EXPECT_EQ(said([](json&) {}), "accepted");
-    EXPECT_EQ(said([](json& j) { j["survey"] = "s2"; }),
-              file + ": survey: expected \"s1\" as in the key, for these answers belong to another survey, found \"s2\"");
+    EXPECT_EQ(
+        said([](json& j) { j["survey"] = "s2"; }),
+        file + ": survey: expected \"s1\" as in the key, for these answers belong to another survey, found \"s2\"");
     EXPECT_EQ(said([](json& j) { j["answers"][0]["question"] = "q9"; }),
               file + ": answers[0].question: expected a question of the survey, q1 to q3, found \"q9\"");
     EXPECT_EQ(said([](json& j) { j["answers"].erase(2); }),
@@ -356,10 +354,11 @@ TEST_F(SurveyFiles, BadAnswersAreNamed) {
               file + ": answers[2].better: expected a text, found null");
     EXPECT_EQ(said([](json& j) { j["answers"][0]["ratings"]["code-a"] = 6; }),
               file + ": answers[0].ratings.code-a: expected a whole number from 1 to 5, found 6");
-    EXPECT_EQ(said([](json& j) { j["answers"][1]["shown"] = {"code-a", "code-a"}; }),
+    EXPECT_EQ(said([](json& j) {
+                  j["answers"][1]["shown"] = {"code-a", "code-a"};
+              }),
               file + ": answers[1].shown: expected every picture of question q1 once, found [\"code-a\",\"code-a\"]");
-    EXPECT_EQ(said([](json& j) { j.erase("participant"); }),
-              file + ": expected a member \"participant\", found none");
+    EXPECT_EQ(said([](json& j) { j.erase("participant"); }), file + ": expected a member \"participant\", found none");
     EXPECT_THAT(said([](json& j) { j["format"] = "aaresolve-results"; }), HasSubstr("format: expected"));
     EXPECT_EQ(saidOf(good_.dump().substr(0, 100)),
               file + ": damaged JSON at byte 101; expected answers that the survey's page saved");
@@ -397,7 +396,8 @@ TEST(SurveyScores, AsCsv) {
     q.pictures[0].run["psnr"] = 30, q.pictures[1].run["psnr"] = INFINITY;
     const SurveyKey key = keyOf({q, question("q2", QuestionKind::pair, {"a", "b"})});
     Answers answers;
-    for (int i = 0; i < 4; i++) answers.participants.push_back(participant(std::to_string(i), {{1, 2}, {i > 0, i == 0}}));
+    for (int i = 0; i < 4; i++)
+        answers.participants.push_back(participant(std::to_string(i), {{1, 2}, {i > 0, i == 0}}));
     const std::string text = toCsvText(scoreSurvey(key, answers));
     EXPECT_THAT(text, HasSubstr("q1,rank,\"scene\",\"a\",4,1.0,,,,,1.0,0.0,,,,,,,30.0\n"));
     EXPECT_THAT(text, HasSubstr("q1,rank,\"scene\",\"b\",4,2.0,,,1.0,no,0.0,1.0,,,,,,,Inf\n"));

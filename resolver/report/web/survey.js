@@ -95,8 +95,8 @@
     const one = isOneAtATime();
     panes.forEach((pane, k) => {
       pane.figure.hidden = one && k !== current;
-      pane.window.scrollLeft = scroll[0];
-      pane.window.scrollTop = scroll[1];
+      pane.port.scrollLeft = scroll[0];
+      pane.port.scrollTop = scroll[1];
       pane.tab.setAttribute("aria-pressed", String(k === current));
       pane.row?.classList.toggle("current", k === current);
     });
@@ -112,16 +112,25 @@
     const picture = played
       ? element("canvas", { width: q.size[0], height: q.size[1], role: "img", "aria-label": "Picture " + letterOf(k) + ", moving" })
       : element("img", { src: survey.images[code][0], alt: "Picture " + letterOf(k), draggable: "false" });
-    const window = element("div", { class: "window", tabindex: "0", role: "group", "aria-label": `Picture ${letterOf(k)}; scroll to see all of it` }, picture);
-    const pane = { code, picture, window, figure: element("figure", {}, element("figcaption", { "aria-hidden": "true" }, letterOf(k)), window),
+    const port = element("div", { class: "window", tabindex: "0", role: "group", "aria-label": `Picture ${letterOf(k)}; scroll to see all of it` }, picture);
+    const pane = { code, picture, port, figure: element("figure", { "data-picture": code }, element("figcaption", { "aria-hidden": "true" }, letterOf(k)), port),
       tab: Object.assign(element("button", { type: "button", "aria-label": "Show picture " + letterOf(k) }, letterOf(k)), { onclick: () => select(k) }) };
     // All pictures show the same place.
-    window.addEventListener("scroll", () => {
-      if (pane.figure.hidden || (window.scrollLeft === scroll[0] && window.scrollTop === scroll[1])) return;
-      scroll = [window.scrollLeft, window.scrollTop];
-      for (const other of panes) if (other !== pane) [other.window.scrollLeft, other.window.scrollTop] = scroll;
+    port.addEventListener("scroll", () => {
+      if (pane.figure.hidden || (port.scrollLeft === scroll[0] && port.scrollTop === scroll[1])) return;
+      scroll = [port.scrollLeft, port.scrollTop];
+      for (const other of panes) if (other !== pane) [other.port.scrollLeft, other.port.scrollTop] = scroll;
     });
-    window.addEventListener("click", () => { if (!isOneAtATime()) select(k); });
+    port.addEventListener("click", () => { if (!isOneAtATime()) select(k); });
+    // A mouse drags the picture; fingers scroll it.
+    let grip = null;
+    port.addEventListener("pointerdown", (event) => {
+      if (event.pointerType !== "mouse" || event.button !== 0) return;
+      grip = [event.clientX + port.scrollLeft, event.clientY + port.scrollTop];
+      port.setPointerCapture(event.pointerId);
+    });
+    port.addEventListener("pointermove", (event) => { if (grip) port.scrollTo(grip[0] - event.clientX, grip[1] - event.clientY); });
+    for (const end of ["pointerup", "pointercancel"]) port.addEventListener(end, () => { grip = null; });
     if (played) imagesOf(code).then((all) => { pane.frames = all; drawFrame(pane); });
     return pane;
   };
@@ -228,7 +237,7 @@
     $("question-title").textContent = `Question ${state.at + 1} of ${count}`;
     $("question-text").textContent = words[q.kind](places().length) + (q.text ? " " + q.text : "");
     $("tabs").replaceChildren(...panes.map((p) => p.tab));
-    $("stage").replaceChildren(...panes.map((p) => p.figure));
+    $("pictures").replaceChildren(...panes.map((p) => p.figure));
     $("views").hidden = panes.length < 2;
     document.querySelector(`#views input[value="${wide() ? "all" : "one"}"]`).checked = true;
     $("answer").replaceChildren(...form());
@@ -252,6 +261,7 @@
     for (const id of ["welcome", "question", "end"]) $(id).hidden = id !== part;
     if (part === "question") showQuestion();
     if (part === "end") $("answers").textContent = $("answers").value = answers();
+    $("survey-title").hidden = part === "welcome";
     $("progress").max = count;
     $("progress").value = Math.max(0, state.at);
     $("progress").setAttribute("aria-valuetext", `${Math.max(0, state.at)} of ${count}`);

@@ -6,4 +6,4 @@ namespace aa::web {
 extern const std::string_view html, css, js, chart, slider, sliderCss, common, angles;
 extern const std::string_view surveyHtml, surveyCss, surveyJs;  // the survey's page
 extern const std::string_view scoresHtml, scoresJs;             // and that of its scores
-}
+}  // namespace aa::web
