@@ -33,8 +33,21 @@ struct MakeOptions {
     SurveyOptions survey;
     std::vector<std::string> questions;
     std::string out, file, introFile, seed;
+    bool overwrite = false;
     WorkOptions work;
 };
+// A key that is lost leaves the answers to its survey without a meaning.
+void refuseAnotherKey(const fs::path& file, const std::string& survey) {
+    if (!fs::exists(file)) return;
+    std::string found = "a damaged one";
+    try {
+        found = "survey " + readSurveyKey(file).survey;
+    } catch (const InputError&) {
+    }
+    if (found != "survey " + survey)
+        throw InputError(file.string() + ": expected no other survey's key, found that of " + found +
+                         ", which its answers need; give another -o, or --overwrite");
+}
 void make(MakeOptions& o) {
     const Exec exec = o.work.exec();
     for (const auto& q : o.questions) o.survey.questions.push_back({q, "--question '" + q + "'", false});
@@ -59,6 +72,7 @@ void make(MakeOptions& o) {
     if (page.extension() != ".html") page /= "survey.html";
     Survey survey;
     withThreads(o.work.threads, [&] { survey = makeSurvey(o.survey, exec); });
+    if (!o.overwrite) refuseAnotherKey(keyBeside(page), survey.key.survey);
     if (page.has_parent_path()) makeWritableFolder(page.parent_path());
     writeText(page, survey.page);
     writeText(keyBeside(page), toJsonText(survey.key));
@@ -189,6 +203,7 @@ void addMake(Command& survey) {
     c.option("--title", o->survey.title, "what participants read first");
     c.option("--intro", o->introFile, "a text file in place of the page's introduction, a paragraph per line");
     c.option("--seed", o->seed, "number from which the codes of pictures follow; default by chance");
+    c.flag("--overwrite", o->overwrite, "replace the key of another survey: answers to it can then not be scored");
     addWorkOptions(c, o->work);
     c.run([o] { make(*o); });
 }

@@ -106,6 +106,14 @@ Wish wishOf(const std::string& text) {
     return wish;
 }
 
+void mustBeUtf8(const std::string& text, const std::string& what) {
+    try {
+        (void)json(text).dump();
+    } catch (const json::exception&) {
+        throw UsageError(what + ": expected UTF-8, found other bytes");
+    }
+}
+
 // What a question asks of one run, with everything settled but the pictures themselves.
 std::vector<int> framesOf(const Wish& wish, const Run& run) {
     if (run.frames.empty())
@@ -271,6 +279,8 @@ class Maker {
             std::string name = fs::path(folder).filename().string();
             if (name.empty() || name == ".") name = fs::weakly_canonical(folder).filename().string();
             if (name.empty()) name = fs::weakly_canonical(folder).parent_path().filename().string();
+            // Two folders of one name are told apart by what was given.
+            if (std::any_of(runs_.begin(), runs_.end(), [&](const Run& r) { return r.name == name; })) name = folder;
             auto frames = framesWithPictures(results);
             runs_.push_back({name, folder, std::move(results), std::move(frames)});
         }
@@ -350,6 +360,7 @@ class Maker {
             q.region = {region.x, region.y, region.width, region.height};
             q.zoom = wish.zoom, q.framesPerSecond = frames.size() > 1 ? wish.framesPerSecond : 0;
             for (const auto& m : group) q.pictures.push_back(pictures[m]);
+            mustBeUtf8(q.text, "text of " + q.id);
             noteSame(q);
             noteNamed(q.text, q.id);
             survey_.key.questions.push_back(std::move(q));
@@ -394,6 +405,7 @@ class Maker {
     Survey finished() {
         SurveyKey& key = survey_.key;
         key.title = options_.title, key.program = AA_VERSION;
+        mustBeUtf8(options_.title, "title"), mustBeUtf8(options_.intro, "introduction");
         noteNamed(options_.title, "title"), noteNamed(options_.intro, "introduction");
         // Of what the page holds, codes in their own order: nothing of the key's order.
         json page = {{"title", options_.title}, {"intro", options_.intro}, {"questions", json::array()}};

@@ -3,10 +3,11 @@
 //
 // - rank: score = sum over ranks of rank * share = mean rank; 1 is best.
 // - rating: the mean; 5 is best.
-// - pair: the share of wins, with Wilson's interval. Pair questions about the same part of the same frames make one
-//   set; of three pictures or more it is scored by Bradley and Terry's model, P(a beats b) = 1 / (1 + exp(s_b - s_a)),
-//   fitted by minorisation with half a win either way for every pair that was asked, so that who never lost stays
-//   finite; the scores of a set sum to 0, more is better.
+// - pair: the share of wins, with the interval of [Wilson 1927]. Pair questions about the same part of the same frames
+// make one
+//   set; of three pictures or more it is scored by the model of [Bradley 1952], P(a beats b) = 1 / (1 + exp(s_b -
+//   s_a)), fitted as in [Hunter 2004] with half a win either way for every pair that was asked, so that who never lost
+//   stays finite; the scores of a set sum to 0, more is better.
 //
 // Intervals are 95 %, by 2000 bootstraps over participants: one draw serves every score, difference and correlation.
 // Shares of votes have Wilson's. Below kFewestForIntervals participants none is given: a two-sided sign test reaches
@@ -19,7 +20,7 @@
 namespace aa {
 
 inline constexpr size_t kFewestForIntervals = 6;
-inline constexpr size_t kFewestObservers = 15;  // what [ITU-R BT.500] asks for
+inline constexpr size_t kFewestObservers = 15;  // [ITU 2019] asks for at least so many
 
 struct Estimate {
     double value = 0;
@@ -57,7 +58,7 @@ struct ScoredSet {
     std::vector<ScoredPicture> pictures{};  // as in the key
     std::vector<size_t> order{};            // best first
     std::vector<ScoredPair> pairs{};
-    std::optional<double> kendallW{};   // rank: concordance of the participants, 1 = all gave the same ranks
+    std::optional<double> kendallW{};   // rank: concordance [Kendall 1939], 1 = all gave the same ranks
     std::vector<double> meanByPlace{};  // rank: mean rank by place on the screen, without a habit (n + 1) / 2 each
     double secondsMedian = 0;           // that participants took
     std::vector<Agreement> agreements{};

@@ -179,6 +179,7 @@ class Survey(ProgramTest):
             self.folder / "questions.txt",
             "--title",
             "Edges & <lines>",
+            "--overwrite",
         )
         return page, json.loads((self.folder / "survey.key.json").read_text())
 
@@ -275,9 +276,7 @@ class Survey(ProgramTest):
             {p["method"]: (p["won"], p["asked"]) for p in pairs["pictures"]},
             {"smaa1x": (13, 14), "fxaa311": (8, 14), "noaa": (0, 14)},
         )
-        self.assertEqual(
-            [p["method"] for p in pairs["pictures"]], ["smaa1x", "fxaa311", "noaa"]
-        )
+        self.assertEqual([p["method"] for p in pairs["pictures"]], ["smaa1x", "fxaa311", "noaa"])
         self.assertAlmostEqual(sum(p["score"]["value"] for p in pairs["pictures"]), 0)
         # Four of seven give 5, three give 4.
         self.assert_near(value(("q5",)), {"smaa1x": 32 / 7, "noaa": 2})
@@ -288,9 +287,7 @@ class Survey(ProgramTest):
         psnr = [p["shown"]["psnr"] for p in q1["pictures"]]  # best first
         pairs_of = [(a, b) for a in range(4) for b in range(a + 1, 4)]
         tau = sum(1 if psnr[a] > psnr[b] else -1 for a, b in pairs_of) / 6
-        found = next(
-            a for a in q1["agreement"] if a["figure"] == "psnr" and a["of"] == "shown"
-        )
+        found = next(a for a in q1["agreement"] if a["figure"] == "psnr" and a["of"] == "shown")
         self.assertAlmostEqual(found["kendallTau"]["value"], tau)
         self.assertIsNotNone(found["kendallTau"]["low95"])
         self.assertTrue(any(a["figure"] == "flip" for a in scores["agreement"]))
@@ -368,7 +365,11 @@ class Survey(ProgramTest):
         first = (self.folder / "s/survey.html").read_bytes()
         self.aaresolve("survey", "make", run, "-o", self.folder / "s", "--seed", 1, *methods[2:16])
         self.assertEqual(first, (self.folder / "s/survey.html").read_bytes())
-        self.aaresolve("survey", "make", run, "-o", self.folder / "s", *methods[2:16])
+        # The key of a survey is not lost by making another.
+        again = ("survey", "make", run, "-o", self.folder / "s", *methods[2:16])
+        self.refused(3, *again, says=("survey.key.json", "which its answers need", "--overwrite"))
+        self.assertEqual(first, (self.folder / "s/survey.html").read_bytes())
+        self.aaresolve(*again, "--overwrite")
         self.assertNotEqual(first, (self.folder / "s/survey.html").read_bytes())
 
 

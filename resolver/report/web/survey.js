@@ -214,7 +214,7 @@
     return [ends, ...panes.map((pane, k) => {
       const choices = Array.from({ length: most }, (_, r) => choice(pane.code, r + 1, String(r + 1), `Picture ${letterOf(k)}: ${word(r + 1)}`, given()[pane.code] === r + 1,
         () => answerIt(pane.code, r + 1)));
-      pane.row = element("fieldset", { class: "row" }, element("legend", { "aria-label": (q.kind === "rank" ? "Rank of picture " : "Rating of picture ") + letterOf(k) }, letterOf(k)),
+      pane.row = element("fieldset", { class: "row" }, element("legend", {}, element("span", { class: "unseen" }, q.kind === "rank" ? "Rank of picture " : "Rating of picture "), letterOf(k)),
         element("div", { class: "choices" }, ...choices));
       pane.row.addEventListener("focusin", () => select(k));
       pane.row.addEventListener("pointerdown", () => select(k));
