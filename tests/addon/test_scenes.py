@@ -13,6 +13,7 @@ import os
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import bpy_extras  # noqa: E402
 import support as t  # noqa: E402
 from support import bpy, np, oiio  # noqa: E402
 
@@ -154,6 +155,89 @@ def left_half_clear() -> np.ndarray:
 
 def test_obj_with_holes() -> None:
     """A mask, holes in the colour picture, the old `d 0` of an opaque surface, and a picture that is not there."""
+    model = obj_of_squares()
+    assert refused(model) == 3, "a picture that is not there"
+    picture = shown(model, "--ignore-missing")
+    found = [covered(picture, x) for x in (-3.0, -1.0, 1.0, 3.0)]
+    assert found == [(False, True), (False, True), (True, True), (True, True)], found
+
+
+def refused(*words: str) -> int:
+    """Exit code of a model that cannot be shown."""
+    script = importlib.import_module("from_file")
+    try:
+        arguments = common.parse_arguments(
+            "test", script.options, ["--out", "unused.blend", *words]
+        )
+        script.inputs(arguments)
+        script.build(arguments)
+    except SystemExit as stop:
+        return stop.code
+    raise AssertionError(f"{words} was taken")
+
+
+def test_what_cannot_be_shown_is_refused() -> None:
+    folder = t.temporary_folder()
+
+    def file(name: str, text: str) -> str:
+        path = os.path.join(folder, name)
+        with open(path, "w", encoding="utf-8") as out:
+            out.write(text)
+        return path
+
+    triangle = "v 0 0 0\nv 1 0 0\nv 0 0 1\n"
+    assert refused(os.path.join(folder, "nowhere.obj")) == 3
+    assert refused(file("points.obj", triangle)) == 3
+    assert refused(file("flat.obj", "v 1 1 1\n" * 3 + "f 1 2 3\n")) == 3
+    assert refused(file("dressed.obj", "mtllib lost.mtl\n" + triangle + "f 1 2 3\n")) == 3
+    assert refused(file("broken.gltf", "{")) == 3
+    assert refused(file("model.stl", "")) == 2
+    assert refused(file("good.obj", triangle + "f 1 2 3\n"), "--scale", "0") == 2
+    build("from_file", os.path.join(folder, "good.obj"))
+
+
+def test_view_turn_and_path() -> None:
+    """The whole model is seen from outside; it turns about its middle; the camera moves along its path."""
+    model = obj_of_squares()
+    scene = build(
+        "from_file",
+        model,
+        "--ignore-missing",
+        "--scale",
+        "2",
+        "--turn",
+        "3",
+        "--camera-to",
+        "1",
+        "-9",
+        "1",
+    )
+    assert (scene.frame_start, scene.frame_end) == (1, 100)
+    cut = bpy_extras.object_utils.world_to_camera_view
+    for x, z in ((-7.6, -1.6), (-7.6, 1.6), (7.6, -1.6), (7.6, 1.6)):
+        seen = cut(scene, scene.camera, t.Vector((x, 0.0, z)))
+        assert 0.0 < seen.x < 1.0 and 0.0 < seen.y < 1.0 and seen.z > 0.0, (x, z, seen)
+    places = []
+    for frame in (1, 31, 100):
+        scene.frame_set(frame)
+        places.append(bpy.data.objects["Square3"].matrix_world @ t.Vector((3.0, 0.0, 0.0)))
+    assert (places[0] - t.Vector((6.0, 0.0, 0.0))).length < 1e-4, places
+    assert (places[1] - t.Vector((0.0, 6.0, 0.0))).length < 1e-4, places
+    assert (scene.camera.matrix_world.translation - t.Vector((1.0, -9.0, 1.0))).length < 1e-4
+
+    scene = build("from_file", model, "--ignore-missing", "--view", "inside", "--frames", "7")
+    assert scene.frame_end == 7
+    (
+        place,
+        ahead,
+    ) = scene.camera.matrix_world.translation, scene.camera.matrix_world.to_3x3() @ t.Vector(
+        (0, 0, -1)
+    )
+    assert -3.8 < place.x < -1.9 and abs(ahead.x - 1.0) < 1e-4, (place, ahead)
+
+
+def obj_of_squares() -> str:
+    """Four squares side by side, each of a material of its own; y is up and they look along z."""
     folder = t.temporary_folder()
     png(os.path.join(folder, "mask.png"), left_half_clear(), mask=True)
     png(os.path.join(folder, "holes.png"), left_half_clear())
@@ -175,18 +259,7 @@ def test_obj_with_holes() -> None:
     for path, text in ((model, "\n".join(lines) + "\n"), (model[:-3] + "mtl", "".join(materials))):
         with open(path, "w", encoding="utf-8") as file:
             file.write(text)
-    picture = shown(model)
-    found = [covered(picture, x) for x in (-3.0, -1.0, 1.0, 3.0)]
-    assert found == [(False, True), (False, True), (True, True), (True, True)], found
-
-    scene = build("from_file", model, "--scale", "2", "--turn", "3", "--camera-to", "1", "-9", "1")
-    assert (scene.frame_start, scene.frame_end) == (1, 100)
-    places = []
-    for frame in (1, 31):
-        scene.frame_set(frame)
-        places.append(bpy.data.objects["Square3"].matrix_world @ t.Vector((3.0, 0.0, 0.0)))
-    assert (places[0] - t.Vector((6.0, 0.0, 0.0))).length < 1e-4, places
-    assert (places[1] - t.Vector((0.0, 6.0, 0.0))).length < 1e-4, places
+    return model
 
 
 def test_gltf_with_holes() -> None:
@@ -239,10 +312,33 @@ def test_gltf_with_holes() -> None:
     assert covered(picture, -1.0) == (False, True) and covered(picture, 1.0) == (True, True)
 
 
+def test_fbx_with_holes() -> None:
+    """What Blender's own exporter writes of a square whose colour picture has holes."""
+    folder = t.temporary_folder()
+    png(os.path.join(folder, "holes.png"), left_half_clear())
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    surface = bpy.data.materials.new("Holes")
+    surface.use_nodes = True
+    tree = surface.node_tree
+    texture = tree.nodes.new("ShaderNodeTexImage")
+    texture.image = bpy.data.images.load(os.path.join(folder, "holes.png"))
+    principled = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeBsdfPrincipled")
+    tree.links.new(texture.outputs["Color"], principled.inputs["Base Color"])
+    square = t.Vector((0.8, 0.0, 0.0)), t.Vector((0.0, 0.0, 0.8))
+    common.add_squares("Square", [(t.Vector((-1.0, 0.0, 0.0)), *square)], surface)
+    model = os.path.join(folder, "model.fbx")
+    with importlib.import_module("from_file").old_numpy_names():
+        bpy.ops.export_scene.fbx(filepath=model, path_mode="RELATIVE")
+    assert covered(shown(model), -1.0) == (False, True)
+
+
 if __name__ == "__main__":
     t.main(
         test_every_scene_builds_the_same_twice,
         test_slits_and_fibres_keep_their_pixels,
         test_obj_with_holes,
+        test_what_cannot_be_shown_is_refused,
+        test_view_turn_and_path,
         test_gltf_with_holes,
+        test_fbx_with_holes,
     )
