@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import itertools
 import json
 import math
 import os
@@ -30,6 +31,7 @@ import common as c  # noqa: E402  (the folder of this file is no package)
 bpy = c.bpy
 ENDINGS = (".obj", ".gltf", ".glb", ".fbx")
 GREY: c.RGB = (0.5, 0.5, 0.5)
+FILLED = 0.9  # of the picture, by the box about the model
 
 
 def _stop(message: str) -> NoReturn:
@@ -320,7 +322,7 @@ def _turn_about(scene, holder, middle, scale: float, degrees_per_frame: float, f
 
 def _viewpoint(arguments, low, high) -> tuple:
     """Where the camera stands and what it looks at."""
-    middle, radius = (low + high) / 2, (high - low).length / 2
+    middle = (low + high) / 2
     if arguments.view == "inside":
         axis = 0 if high.x - low.x >= high.y - low.y else 1
         place = c.Vector((middle.x, middle.y, low.z + 0.25 * (high.z - low.z)))
@@ -328,11 +330,28 @@ def _viewpoint(arguments, low, high) -> tuple:
         place[axis] = low[axis] + 0.15 * (high[axis] - low[axis])
         target[axis] = high[axis]
         return c.Vector(arguments.camera or place), c.Vector(arguments.target or target)
-    width, height = arguments.resolution
-    half_angle = math.atan(18.0 * min(1.0, height / width) / arguments.lens)
-    away = c.Vector((-0.35, -1.0, 0.3)).normalized() * radius / math.sin(half_angle)
     target = c.Vector(arguments.target or middle)
-    return c.Vector(arguments.camera or target + away), target
+    away = c.Vector((-0.35, -1.0, 0.3)).normalized()
+    distance = _distance_to_see(arguments, low, high, target, away)
+    return c.Vector(arguments.camera or target + away * distance), target
+
+
+def _distance_to_see(arguments, low, high, target, away) -> float:
+    """How far away the camera must stand for the whole box to be seen, turned about its middle where it turns."""
+    right = c.Vector((0.0, 0.0, 1.0)).cross(away).normalized()
+    axes = c.Matrix((right, away.cross(right), away))  # to the right, up, towards the camera
+    axes = c.Matrix.Rotation(math.radians(-arguments.roll), 3, "Z") @ axes
+    width, height = arguments.resolution
+    slope = 18.0 / arguments.lens / max(width, height)  # per pixel from the picture's middle
+    middle = (low + high) / 2
+    farthest = 0.0
+    for degrees in range(0, 360, 15) if arguments.turn else (0,):
+        turn = c.Matrix.Rotation(math.radians(degrees), 3, "Z")
+        for x, y, z in itertools.product(*zip(low, high)):
+            corner = axes @ (middle + turn @ (c.Vector((x, y, z)) - middle) - target)
+            aside = max(abs(corner.x) / width, abs(corner.y) / height)
+            farthest = max(farthest, corner.z + aside / (slope * FILLED))
+    return farthest
 
 
 def _add_camera(scene, arguments, low, high) -> None:

@@ -20,7 +20,12 @@ def write_png(path: Path, size: int, channels: int, pixel) -> None:
     rows = b"".join(b"\0" + b"".join(bytes(pixel(x, y)) for x in range(size)) for y in range(size))
 
     def chunk(kind: bytes, content: bytes) -> bytes:
-        return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
+        return (
+            struct.pack(">I", len(content))
+            + kind
+            + content
+            + struct.pack(">I", zlib.crc32(kind + content))
+        )
 
     header = struct.pack(">IIBBBBB", size, size, 8, {1: 0, 4: 6}[channels], 0, 0, 0)
     parts = chunk(b"IHDR", header), chunk(b"IDAT", zlib.compress(rows)), chunk(b"IEND", b"")
@@ -41,7 +46,9 @@ def write_tree(folder: Path) -> int:
         height, radius = 3.0 * ring / TRUNK_RINGS, 0.3 - 0.2 * ring / TRUNK_RINGS
         for side in range(TRUNK_SIDES):
             angle = 2 * math.pi * side / TRUNK_SIDES
-            lines.append(f"v {radius * math.cos(angle):.4f} {height:.4f} {radius * math.sin(angle):.4f}")
+            lines.append(
+                f"v {radius * math.cos(angle):.4f} {height:.4f} {radius * math.sin(angle):.4f}"
+            )
     lines.append("usemtl bark")
     for ring in range(TRUNK_RINGS):
         for side in range(TRUNK_SIDES):
@@ -60,7 +67,10 @@ def write_tree(folder: Path) -> int:
             right = [generator.uniform(-0.09, 0.09) for _ in range(3)]
             up = [generator.uniform(-0.12, 0.12) for _ in range(3)]
             for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
-                lines.append("v " + " ".join(f"{c + a * r + b * u:.4f}" for c, r, u in zip(centre, right, up)))
+                lines.append(
+                    "v "
+                    + " ".join(f"{c + a * r + b * u:.4f}" for c, r, u in zip(centre, right, up))
+                )
             lines.append("f " + " ".join(f"{first + 1 + k}/{1 + k}" for k in range(4)))
             first += 4
             triangles += 2
@@ -94,7 +104,11 @@ class FromFile(ProgramTest):
     def test_tree(self) -> None:
         triangles = write_tree(self.folder)
         self.assertGreaterEqual(triangles, 30000)
-        blend, shot, out = self.folder / "built/tree.blend", self.folder / "shot", self.folder / "out"
+        blend, shot, out = (
+            self.folder / "built/tree.blend",
+            self.folder / "shot",
+            self.folder / "out",
+        )
         said = self.scene("--out", blend, "--turn", 1)
         self.assertIn(f"3 meshes, {triangles} triangles", said)
         self.assertIn("up to date", self.scene("--out", blend, "--turn", 1))
