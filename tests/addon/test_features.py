@@ -223,6 +223,8 @@ def test_a_hidden_camera_at_a_marker() -> None:
 def test_holdouts_and_volumes() -> None:
     told, _ = attempt(lambda _s, _c, cube, _f: setattr(cube, "is_holdout", True))
     assert "holdouts ('Cube')" in told, told
+    told, _ = attempt(lambda _s, _c, cube, _f: t.key(cube, "is_holdout", {3: True, 1: False}))
+    assert "holdouts ('Cube')" in told, told
 
     def fog(_scene, _camera, cube, _floor):
         tree = cube.data.materials[0].node_tree

@@ -109,7 +109,7 @@ def switch_off(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> list[
         told.append(
             f"{_some(catchers)} catches shadows only in the scene; in the shot it is an ordinary surface"
         )
-    holdouts = [item for item in rendered if item.is_holdout]
+    holdouts = [item for item in rendered if item.is_holdout or is_animated(item, "is_holdout")]
     if holdouts or _any_layer(view_layer.layer_collection, "holdout"):
         told.append(
             f"holdouts ({_some(holdouts) if holdouts else 'a collection'}) are holes of the picture: black, and with the "
