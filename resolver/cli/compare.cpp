@@ -10,8 +10,8 @@
 #include "image/colour.h"
 #include "image/error.h"
 #include "image/io.h"
+#include "metrics/maps.h"
 #include "metrics/measure.h"
-#include "report/colour_map.h"
 #include "report/format.h"
 #include "report/gallery.h"
 #include "study/protocol.h"
@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-    std::string a, b, map, display = "srgb";
+    std::string a, b, map, mapOf, region, display = "srgb";
     std::vector<std::string> metrics = {"mse", "psnr", "ssimLuma"}, thresholds;
     double exposure = 0;
     bool json = false, q8 = false;
@@ -108,6 +108,12 @@ Both loadBoth(const Pair& pair, const Options& o, const Exec& exec) {
     };
     prepare(a, both.encodedA, both.linearA);
     prepare(b, both.encodedB, both.linearB);
+    if (!o.region.empty()) {
+        const Window w =
+            windowFrom(o.region, "--region", pair.a.string(), both.encodedA.width(), both.encodedA.height());
+        for (Rgb* image : {&both.encodedA, &both.encodedB, &both.linearA, &both.linearB})
+            if (!image->empty()) *image = cropped(*image, w);
+    }
     return both;
 }
 // The device that measures what has a shader.
@@ -158,9 +164,6 @@ nlohmann::ordered_json numbers(const FrameMetrics& m, const std::vector<const Fi
     }
     return j;
 }
-void writeErrorMap(const Both& p, const fs::path& file) {
-    writePng(file, colouredError(errorMap(p.encodedA, p.encodedB)));
-}
 
 void compare(const Options& o, Context& context) {
     const Exec exec = o.work.exec();
@@ -173,6 +176,8 @@ void compare(const Options& o, Context& context) {
         wanted.insert(choice.metric);
     }
     for (const auto& t : thresholds) wanted.insert(findFigure(t.figure->name).metric);
+    if (o.map.empty() && !o.mapOf.empty()) throw UsageError("--map-of: no effect without --map FILE");
+    const MapKind& map = mapKindByName(o.mapOf.empty() ? "error" : o.mapOf);
     const auto pairs = pairsOf(o);
     if (!o.map.empty() && pairs.size() > 1) makeWritableFolder(o.map);
     Measuring device{.session = o.work.session()};
@@ -191,7 +196,8 @@ void compare(const Options& o, Context& context) {
             squares.mse += f.mse / count, squares.reference += f.reference / count;
             for (const auto& [name, value] : f.others) others[name] += value / count;
             if (!o.map.empty())
-                writeErrorMap(both, pairs.size() > 1 ? fs::path(o.map) / (pair.name + ".png") : fs::path(o.map));
+                writePng(pairs.size() > 1 ? fs::path(o.map) / (pair.name + ".png") : fs::path(o.map),
+                         map.draw(both.encodedA, both.encodedB, exec));
         }
     });
     FrameMetrics pooled = frameMetrics(squares);
@@ -207,6 +213,8 @@ void compare(const Options& o, Context& context) {
             {"a", o.a}, {"b", o.b}, {"frames", pairs.size()}, {"pooled", numbers(pooled, figures)}};
         for (size_t i = 0; i < pairs.size() && pairs.size() > 1; i++)
             j["perFrame"][pairs[i].name] = numbers(frames[i], figures);
+        if (!o.region.empty()) j["region"] = o.region;
+        if (!o.map.empty()) j["map"] = {{"of", map.name}, {"scale", map.scale}};
         if (device.session) j["device"]["name"] = device.name();
         if (device.seconds > 0) j["device"]["seconds"] = device.seconds;
         j["failures"] = failures;
@@ -221,6 +229,8 @@ void compare(const Options& o, Context& context) {
         if (pairs.size() > 1)
             for (size_t i = 0; i < pairs.size(); i++) line(pairs[i].name, frames[i]);
         line(pairs.size() > 1 ? "pooled" : pairs[0].name, pooled);
+        if (!o.map.empty()) std::printf("map %s: %s\n", o.map.c_str(), std::string(map.scale).c_str());
+        if (!o.region.empty()) std::printf("figures of the region %s\n", o.region.c_str());
         if (device.session) {
             std::printf("on %s", device.name().c_str());
             if (device.seconds > 0) std::printf(": %.4f ms", 1e3 * device.seconds);
@@ -238,13 +248,16 @@ void addCompare(CommandLine& line, Context& context) {
     c.option("A", o->a, "PNG (sRGB codes), EXR (linear), or a folder of frames").required();
     c.option("B", o->b, "the reference, of the same size or with the same frames").required();
     c.option("--metrics", o->metrics, "comma-separated; `ssim` is ssimLuma:" + listOfFigures()).separatedBy(',');
-    c.option("--map", o->map, "error map on the fixed scale: a PNG, of folders a folder");
+    c.option("--map", o->map, "picture of the difference on a fixed scale: a PNG, of folders a folder");
+    c.option("--map-of", o->mapOf, "what it shows; default error:" + listOfMapKinds());
     c.option("--fail-below", o->thresholds, "exit 1 when a pooled figure is below, for example psnr=40")
         .separatedBy(',');
     c.option("--exposure", o->exposure, "display exposure for linear images, EV").range(-20.0, 20.0);
     c.option("--display", o->display,
              "of EXR files: srgb = encode, identity = the clamped values are compared as they are")
         .oneOf({"srgb", "identity"});
+    c.option("--region", o->region,
+             "X,Y,WIDTH,HEIGHT: figures and map of these pixels alone, as if they were the picture");
     c.flag("--q8", o->q8, "round both to 8-bit codes first");
     c.flag("--json", o->json, "as JSON");
     addWorkOptions(c, o->work);

@@ -30,7 +30,9 @@ void printTable(const RunResults& r) {
                 "state MB", r.device ? "  device ms" : "");
     for (const auto* m : rows) {
         std::printf("%-*s", int(width), m->text.c_str());
-        if (m->pooled) {
+        if (r.isReference(*m)) {
+            std::printf(" %10s %9s %9s", "reference", "-", "-");
+        } else if (m->pooled) {
             std::printf(" %10.3f", m->pooled->mean.psnr);
             if (m->pooled->gainDb)
                 std::printf(" %+9.3f", *m->pooled->gainDb);
@@ -52,7 +54,9 @@ void printTable(const RunResults& r) {
         std::printf("device: %s (%s), %s%s\n", r.device->name.c_str(), r.device->kind.c_str(),
                     r.device->precision.c_str(),
                     r.device->isSoftware() ? "; software on the processor, its times are no card's" : "");
-    if (r.truthNoise && *r.truthNoise == 0)
+    if (!r.protocol.reference.empty())
+        std::printf("reference: %s, a method of this run and not the truth\n", r.protocol.reference.c_str());
+    else if (r.truthNoise && *r.truthNoise == 0)
         std::puts("truth: exact");
     else if (r.truthNoise)
         std::printf("truth: %d samples per half, error bar of the MSE %.4g (PSNR %.2f dB)\n", r.truthSamplesPerHalf,
@@ -60,6 +64,7 @@ void printTable(const RunResults& r) {
     if (r.truthClipped)
         std::printf("truth: %zu of %zu pixels (%.3g %%) exceed the display and are clipped\n", r.truthClipped->pixels,
                     r.truthClipped->of, 100 * double(r.truthClipped->pixels) / double(r.truthClipped->of));
+    for (const auto& [kind, scale] : r.maps) std::printf("maps/%s: %s\n", kind.c_str(), scale.c_str());
     std::printf("figures: %s\n", inWords(r.protocol).c_str());
     for (const auto& [what, count] : r.sanitised)
         if (count > 0)

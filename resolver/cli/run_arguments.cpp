@@ -31,6 +31,16 @@ void addRunArguments(Command& c, RunArguments& a) {
         .oneOf({8});
     c.option("--metrics", a.metrics, "figures beside those that every run has, comma-separated:" + listOfFigures(true))
         .separatedBy(',');
+    c.option(
+         "--maps", a.maps,
+         "pictures of the differences from the truth, comma-separated, into OUT/maps/KIND/METHOD:" + listOfMapKinds())
+        .separatedBy(',');
+    c.option(
+        "--region", a.region,
+        "X,Y,WIDTH,HEIGHT: figures of these pixels alone, as if they were the picture; methods still see all of it");
+    c.option(
+        "--reference", a.reference,
+        "a method: the others are held against its images instead of the shot's truth; added where it is not there");
     c.option("--input", a.input, "NaN and Inf in the input: sanitise = replace and count, strict = refuse")
         .oneOf({"sanitise", "strict"});
     c.flag("--json", a.json, "print results.json instead of the table");
@@ -47,6 +57,7 @@ ShotReader openShot(const RunArguments& a, RunOptions& run) {
     run.timeOnly = a.timeOnly;
     if (a.timeOnly && !run.device) throw UsageError("--device-times: no effect without --device vulkan");
     run.measure = measureOptions(a.metrics);
+    for (const auto& kind : a.maps) run.maps.push_back(&mapKindByName(kind));
     run.protocol = {.display = {float(a.exposure), toneMapByName(a.toneMap), transferByName(a.display)},
                     .history = historyByName(a.history),
                     .eightBit = a.quantise == 8};
@@ -58,6 +69,10 @@ ShotReader openShot(const RunArguments& a, RunOptions& run) {
     run.writeAllFrames = a.writeFrames == "all";
     ShotReader shot(a.shot, a.input == "strict" ? InputPolicy::strict : InputPolicy::sanitise);
     run.frames = selectFrames(shot.manifest(), a.frames);
+    if (!a.region.empty())
+        run.protocol.region = windowFrom(a.region, "--region", "shot '" + shot.manifest().name + "'",
+                                         shot.manifest().width, shot.manifest().height);
+    if (!a.reference.empty()) judgeAgainst(run, a.reference);
     std::string without;
     for (const auto& method : applyHistory(run, shot.manifest())) without += (without.empty() ? "" : ", ") + method;
     if (!without.empty()) std::fprintf(stderr, "--history ramp: no ramp in %s; run as they are\n", without.c_str());

@@ -10,9 +10,9 @@ namespace aa {
 
 struct RunArguments {
     std::string shot, out, frames, write = "exr", writeFrames = "truth", toneMap = "none", display = "srgb",
-                                   history = "first", input = "sanitise";
+                                   history = "first", input = "sanitise", region, reference;
     double exposure = 0;
-    std::vector<std::string> metrics;
+    std::vector<std::string> metrics, maps;
     int quantise = 0;  // 0: off
     bool timeOnly = false;
     bool json = false, quiet = false;

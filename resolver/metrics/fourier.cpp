@@ -100,6 +100,26 @@ FourierError fourierError(const Rgb& test, const Rgb& reference, const Exec& exe
     return e;
 }
 
+PlaneF fourierDifference(const Rgb& test, const Rgb& reference, const Exec& exec) {
+    assert(test.width() == reference.width() && test.height() == reference.height());
+    const int w = test.width(), h = test.height();
+    std::vector<double> squares(size_t(w) * size_t(h));
+    for (size_t c = 0; c < 3; c++) {
+        // The difference alone: its transform is that of the real part.
+        PlaneF difference(w, h), none(w, h);
+        for (int y = 0; y < h; y++)
+            for (int x = 0; x < w; x++) difference.at(x, y) = test.c[c].at(x, y) - reference.c[c].at(x, y);
+        const auto spectrum = transformPair(difference, none, exec);
+        for (size_t i = 0; i < squares.size(); i++) squares[i] += std::norm(spectrum[i]) / (3.0 * w * h);
+    }
+    PlaneF map(w, h);
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++)
+            map.at((x + w / 2) % w, (y + h / 2) % h) = float(std::sqrt(squares[size_t(y) * size_t(w) + size_t(x)]));
+    map.fillBorder();
+    return map;
+}
+
 Metric fourierMetric() {
     return {.figures = {{"fmagMse", "Fourier MSE", "Fourier magnitudes, blind to phase"},
                         {"fband0", "MSE <1/8", "MSE at 0 to 1/8 cycles/px"},

@@ -18,6 +18,10 @@ struct FourierError {
 };
 FourierError fourierError(const Rgb& test, const Rgb& reference, const Exec& exec);
 
+// Where in the spectrum they differ: |F_T - F_R| / sqrt(W H), root mean square over the channels, frequency 0 at
+// (W / 2, H / 2), rounded down. Its root mean square over the frequencies is that of T - R over the pixels.
+PlaneF fourierDifference(const Rgb& test, const Rgb& reference, const Exec& exec);
+
 struct Metric;
 Metric fourierMetric();
 

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <random>
 
+#include "metrics/measure.h"
+
 namespace aa {
 namespace {
 constexpr double kPi = std::numbers::pi;
@@ -82,6 +84,37 @@ TEST(Fourier, PhaseBlindAndThesisForms) {
                 mirrored += d(x, y) * d((32 - x) % 32, (16 - y) % 16) / (3 * 32 * 16);
             }
     EXPECT_NEAR(fourierError(t, r, {}).fmseThesis, mirrored, 1e-9);
+}
+// By hand, four pixels in a row (conventions 13.3 and [Stejmar n.d., eq 4.3] as printed). A lone 1 at x has the
+// transform
+// (-i)^(k x): magnitude 1 everywhere.
+TEST(Fourier, FourPixelsByHand) {
+    const auto lone = [](int at) {
+        Rgb row(4, 1, 0.0f);
+        for (auto& p : row.c)
+            if (at >= 0) p.at(at, 0) = 1;
+        return row;
+    };
+    // Against black, D = 1, -i, -1, i: magnitudes 4 over 16, squares without modulus 1 - 1 + 1 - 1.
+    const FourierError black = fourierError(lone(1), lone(-1), {});
+    EXPECT_NEAR(black.fmse, 0.25, 1e-12);
+    EXPECT_NEAR(black.fmagMse, 0.25, 1e-12);
+    EXPECT_NEAR(black.fmseThesis, 0, 1e-12);
+    // Against a lone 1 at 0, D = 0, -1 - i, -2, -1 + i: magnitudes are equal; |D|^2 = 0 + 2 + 4 + 2 and
+    // Re D^2 = 0 + 0 + 4 + 0.
+    const FourierError moved = fourierError(lone(1), lone(0), {});
+    EXPECT_NEAR(moved.fmse, 0.5, 1e-12);
+    EXPECT_NEAR(moved.fmagMse, 0, 1e-12);
+    EXPECT_NEAR(moved.fmseThesis, 0.25, 1e-12);
+    // 1 cycle per 4 px is the third band, 1/2 the last.
+    EXPECT_NEAR(moved.fband[2], 4.0 / 16, 1e-12);
+    EXPECT_NEAR(moved.fband[3], 4.0 / 16, 1e-12);
+    // fmagMse is named in `--metrics` and measured with that value.
+    const Rgb test = lone(1), reference = lone(-1);
+    const FigureChoice choice = findFigure("fmagMse");
+    FrameMetrics m;
+    addFigures(m, *choice.metric, {test, reference}, {});
+    EXPECT_NEAR(*m.figure("fmagMse"), 0.25, 1e-12);
 }
 TEST(Fourier, IdenticalIsZero) {
     const Rgb a = noise(20, 10, 6);

@@ -42,13 +42,13 @@ float bilinear(const PlaneF& p, float x, float y) {
     const float bottom = s == 0 ? b[0] : b[0] + (b[1] - b[0]) * s;
     return top + (bottom - top) * t;
 }
-// Sums over rows in a fixed order, whatever the number of threads.
+// Sums over the rows of `area` in a fixed order, whatever the number of threads.
 template <size_t n>
-std::array<double, n> sumRows(const Exec& exec, int height,
+std::array<double, n> sumRows(const Exec& exec, const Window& area,
                               const std::function<void(int, std::array<double, n>&)>& row) {
-    std::vector<std::array<double, n>> rows(static_cast<size_t>(height));
-    forRows(exec, height, [&](int y0, int y1) {
-        for (int y = y0; y < y1; y++) row(y, rows[size_t(y)] = {});
+    std::vector<std::array<double, n>> rows(static_cast<size_t>(area.height));
+    forRows(exec, area.height, [&](int y0, int y1) {
+        for (int y = y0; y < y1; y++) row(area.y + y, rows[size_t(y)] = {});
     });
     std::array<double, n> total{};
     for (const auto& r : rows)
@@ -156,12 +156,16 @@ void TemporalScene::followSurfaces(const Frame& frame, const Exec& exec) {
 
 void TemporalJudge::add(const TemporalScene& scene, const Rgb& encoded, const Exec& exec) {
     const int w = scene.width(), h = scene.height();
+    area_ = region_.value_or(Window{0, 0, w, h});
+    const double pixels = double(area_.width) * area_.height;
     const bool counts = seen_++ >= warmup_;
     latest_ = {};
     isStatic_ = scene.isStatic();
     const Rgb* truth = scene.truth();
     if (truth) {
-        const double mse = squaredError(encoded, *truth, exec).mse;
+        const double mse = (region_ ? squaredError(cropped(encoded, area_), cropped(*truth, area_), exec)
+                                    : squaredError(encoded, *truth, exec))
+                               .mse;
         psnr_.push_back(psnr(mse));
         if (counts) squaredError_ += mse, framesWithTruth_++;
     }
@@ -172,8 +176,8 @@ void TemporalJudge::add(const TemporalScene& scene, const Rgb& encoded, const Ex
         fit(mean_, w, h), fit(spread_, w, h);
         counted_++;
         const float n = float(counted_);
-        const auto sums = sumRows<2>(exec, h, [&](int row, std::array<double, 2>& sum) {
-            for (int x = 0; x < w; x++) {  // Welford
+        const auto sums = sumRows<2>(exec, area_, [&](int row, std::array<double, 2>& sum) {
+            for (int x = area_.x; x < area_.x + area_.width; x++) {  // Welford
                 const float v = y.at(x, row), d = v - mean_.at(x, row);
                 mean_.at(x, row) += d / n;
                 spread_.at(x, row) += d * (v - mean_.at(x, row));
@@ -183,14 +187,14 @@ void TemporalJudge::add(const TemporalScene& scene, const Rgb& encoded, const Ex
             }
         });
         if (hasPrevious) {
-            stepSum_ += sums[0] / (double(w) * h), steps_++;
-            latest_.flickerSquares = sums[1], latest_.flickerPixels = double(w) * h;
+            stepSum_ += sums[0] / pixels, steps_++;
+            latest_.flickerSquares = sums[1], latest_.flickerPixels = pixels;
         }
     }
     if (!scene.isStatic() && scene.alongMotion() && counts) {
         if (scene.hasTruthStep() && hasPrevious) {
-            const auto sums = sumRows<2>(exec, h, [&](int row, std::array<double, 2>& sum) {
-                for (int x = 0; x < w; x++) {
+            const auto sums = sumRows<2>(exec, area_, [&](int row, std::array<double, 2>& sum) {
+                for (int x = area_.x; x < area_.x + area_.width; x++) {
                     const float px = scene.qx().at(x, row);
                     if (px != px) continue;
                     const double step = double(y.at(x, row) - bilinear(previousLuma_, px, scene.qy().at(x, row)));
@@ -203,8 +207,8 @@ void TemporalJudge::add(const TemporalScene& scene, const Rgb& encoded, const Ex
         }
         if (truth) {
             const auto sums =
-                sumRows<3 + 2 * kGhostAges>(exec, h, [&](int row, std::array<double, 3 + 2 * kGhostAges>& sum) {
-                    for (int x = 0; x < w; x++) {
+                sumRows<3 + 2 * kGhostAges>(exec, area_, [&](int row, std::array<double, 3 + 2 * kGhostAges>& sum) {
+                    for (int x = area_.x; x < area_.x + area_.width; x++) {
                         const uint32_t age = scene.age().at(x, row);
                         if (age == 0) continue;
                         double squares = 0, along = 0, norm = 0;
@@ -219,7 +223,7 @@ void TemporalJudge::add(const TemporalScene& scene, const Rgb& encoded, const Ex
                 });
             ghostSquares_ += sums[0], ghostPixels_ += sums[1];
             latest_.ghostSquares = sums[0], latest_.ghostValues = sums[1];
-            trailPixels_ += sums[2], trailFrames_ += double(w) * h;
+            trailPixels_ += sums[2], trailFrames_ += pixels;
             for (size_t a = 0; a < kGhostAges; a++) along_[a] += sums[3 + a], norm_[a] += sums[3 + kGhostAges + a];
         }
     }
@@ -234,13 +238,13 @@ TemporalMetrics TemporalJudge::result() const {
     if (framesWithTruth_ > 0) m.tPsnr = psnr(squaredError_ / framesWithTruth_);
     if (counted_ > 1) {
         double sum = 0;
-        for (int y = 0; y < spread_.height(); y++) {
+        for (int y = area_.y; y < area_.y + area_.height; y++) {
             double row = 0;
-            for (int x = 0; x < spread_.width(); x++)
+            for (int x = area_.x; x < area_.x + area_.width; x++)
                 row += std::sqrt(std::max(0.0, double(spread_.at(x, y))) / counted_);
             sum += row;
         }
-        m.flickerStatic = 255 * sum / (double(spread_.width()) * spread_.height());
+        m.flickerStatic = 255 * sum / (double(area_.width) * area_.height);
         if (steps_ > 0) m.flickerStep = 255 * stepSum_ / steps_;
     }
     if (motionPixels_ > 0) m.flickerMoving = 255 * std::sqrt(motionSquares_ / motionPixels_);

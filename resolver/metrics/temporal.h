@@ -22,6 +22,7 @@
 #include <optional>
 
 #include "image/colour.h"
+#include "image/window.h"
 #include "kernels/dispatch.h"
 #include "shot/frame.h"
 
@@ -85,10 +86,10 @@ struct TemporalFrame {
     double flickerSquares = 0, flickerPixels = 0;  // (D_T - D_R)^2 along the motion; static: (y_T(t) - y_T(t-1))^2
 };
 
-// One method's figures.
+// One method's figures, of the whole picture or of a region, whose surfaces may have come from beside it.
 class TemporalJudge {
   public:
-    explicit TemporalJudge(int warmup) : warmup_(warmup) {}
+    explicit TemporalJudge(int warmup, std::optional<Window> region = {}) : warmup_(warmup), region_(region) {}
     // After scene.advance() for the same frame. `encoded` has a filled border.
     void add(const TemporalScene& scene, const Rgb& encoded, const Exec& exec);
     TemporalMetrics result() const;
@@ -96,6 +97,8 @@ class TemporalJudge {
 
   private:
     int warmup_;
+    std::optional<Window> region_;
+    Window area_;  // the region, or the picture
     int seen_ = 0;
     TemporalFrame latest_;
     double squaredError_ = 0;

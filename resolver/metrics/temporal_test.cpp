@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "metrics/metrics.h"
+
 namespace aa {
 namespace {
 
@@ -100,6 +102,31 @@ TEST(TemporalMetrics, TrailIsWhatTheBarUncovers) {
             }
         }
     }
+}
+
+TEST(TemporalMetrics, ARegionHoldsItsOwnPixelsAlone) {
+    const Bar bar;
+    TemporalScene scene(false);
+    const int half = kW / 2;
+    TemporalJudge whole(1), left(1, Window{0, 0, half, kH}), right(1, Window{half, 0, kW - half, kH});
+    std::vector<Rgb> truths;
+    for (int n = 0; n < 7; n++) truths.push_back(bar.truth(n));
+    for (int n = 0; n < 7; n++) {
+        scene.advance(bar.frame(n), &truths[size_t(n)], {});
+        Rgb image = truths[size_t(n)];
+        for (auto& p : image.c)
+            for (int y = 0; y < kH; y++)
+                for (int x = half; x < kW; x++) p.at(x, y) += n % 2 ? 0.1f : 0.0f;
+        image.fillBorder();
+        for (TemporalJudge* judge : {&whole, &left, &right}) judge->add(scene, image, {});
+    }
+    const TemporalMetrics all = whole.result(), l = left.result(), r = right.result();
+    EXPECT_TRUE(std::isinf(*l.tPsnr));
+    EXPECT_EQ(l.ghostMse.value_or(0), 0);
+    EXPECT_NEAR(*r.tPsnr, psnr(0.01 / 2), 0.01) << "half of the six frames that count";
+    EXPECT_NEAR(*all.tPsnr, psnr(0.01 / 2 * (kW - half) / kW), 0.01);
+    EXPECT_GT(*r.flickerMoving, *all.flickerMoving);
+    EXPECT_GT(*all.flickerMoving, *l.flickerMoving);
 }
 
 // An image that keeps g^age of the stale colour must be read as exactly that.

@@ -211,13 +211,4 @@ Rgb shrunk(const Rgb& encodedImage, int width, int height, const Exec& exec) {
     encode(small, {}, exec, out);
     return out;
 }
-Rgb cropped(const Rgb& image, const Window& window) {
-    Rgb out(window.width, window.height);
-    for (size_t c = 0; c < 3; c++)
-        for (int y = 0; y < window.height; y++)
-            std::copy_n(image.c[c].row(window.y + y) + window.x, window.width, out.c[c].row(y));
-    out.fillBorder();
-    return out;
-}
-
 }  // namespace aa

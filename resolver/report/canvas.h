@@ -4,9 +4,9 @@
 #include <memory>
 #include <string>
 
+#include "image/colour_map.h"
 #include "image/io.h"
 #include "image/plane.h"
-#include "report/colour_map.h"
 #include "report/gallery.h"
 
 namespace aa {
@@ -42,6 +42,5 @@ class Canvas {
 // Area-averaged in linear light to width x height (each at most the image's own).
 Rgb shrunk(const Rgb& encoded, int width, int height, const Exec& exec);
 PlaneF shrunk(const PlaneF& plane, int width, int height);
-Rgb cropped(const Rgb& image, const Window& window);
 
 }  // namespace aa

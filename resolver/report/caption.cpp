@@ -23,6 +23,10 @@ std::string joined(const std::vector<std::string>& parts) {
     for (size_t i = 0; i < parts.size(); i++) all += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
     return all;
 }
+// What the errors are errors of.
+std::string truth(const RunResults& run) {
+    return run.protocol.reference.empty() ? "the truth" : run.protocol.reference;
+}
 std::string gain(const MethodResult& m) { return signedDecibelNumber(*m.pooled->gainDb) + " dB"; }
 
 // Methods with figures, best first.
@@ -41,7 +45,9 @@ std::string bestSentence(const RunResults& run, const std::vector<size_t>& order
     std::vector<std::string> peers;
     for (size_t i = 1; i < order.size(); i++)
         if (!resolved(run, order[0], order[i])) peers.push_back(run.methods[order[i]].text);
-    std::string s = best.text + " is nearest to the ground truth: PSNR " + decibels(best.pooled->mean.psnr);
+    std::string s = best.text + " is nearest to " +
+                    (run.protocol.reference.empty() ? "the ground truth" : run.protocol.reference) + ": PSNR " +
+                    decibels(best.pooled->mean.psnr);
     if (best.pooled->gainDb && best.id != "noaa") s += ", " + gain(best) + " over no anti-aliasing";
     if (!peers.empty()) s += "; " + joined(peers) + " cannot be told apart from it";
     return s + ".";
@@ -67,8 +73,8 @@ std::string harmSentence(const RunResults& run, const std::vector<size_t>& order
         if (i != noaa && *run.methods[i].pooled->gainDb < 0 && resolved(run, i, noaa))
             worse.push_back(run.methods[i].text + " (" + gain(run.methods[i]) + ")");
     if (worse.empty()) return {};
-    return joined(worse) + (worse.size() == 1 ? " is" : " are") +
-           " farther from the truth than no anti-aliasing at all.";
+    return joined(worse) + (worse.size() == 1 ? " is" : " are") + " farther from " + truth(run) +
+           " than no anti-aliasing at all.";
 }
 
 // Two forms of one method that differ in sharpening only: X and XNorm or XNoSharpen, or one parameter named sharpen*.
@@ -179,7 +185,14 @@ std::string truthSentence(const RunResults& run, const std::vector<size_t>& orde
 std::vector<std::string> captions(const RunResults& run) {
     const auto order = ranking(run);
     if (order.empty()) return {"This run has no ground truth: only times and pictures can be compared."};
-    std::vector<std::string> all = {bestSentence(run, order)};
+    std::vector<std::string> all;
+    if (const std::string& method = run.protocol.reference; !method.empty())
+        all.push_back("The figures hold every method against " + method +
+                      ", another method of this run, and not against the truth: what " + method +
+                      " gets wrong counts as right here.");
+    if (run.protocol.region)
+        all.push_back("The figures are of the region of " + inWords(*run.protocol.region) + " alone.");
+    all.push_back(bestSentence(run, order));
     const auto add = [&](std::string sentence) {
         if (!sentence.empty()) all.push_back(std::move(sentence));
     };

@@ -5,7 +5,7 @@
 
 #include "image/error.h"
 #include "image/io.h"
-#include "report/colour_map.h"
+#include "metrics/maps.h"
 
 namespace aa {
 namespace fs = std::filesystem;
@@ -58,11 +58,6 @@ class SummedArea {
     std::vector<double> sum_;
 };
 
-double squaredDistance(const Rgb& a, const Rgb& b, int x, int y) {
-    double sum = 0;
-    for (size_t c = 0; c < 3; c++) sum += std::pow(double(a.c[c].at(x, y)) - double(b.c[c].at(x, y)), 2);
-    return sum / 3;
-}
 double variance(const std::vector<double>& v) {
     double mean = 0, sum = 0;
     for (const double x : v) mean += x / double(v.size());
@@ -78,12 +73,12 @@ class Interest {
         errors_ = !p.truth.empty();
         if (errors_) {
             for (const Rgb& m : p.methods)
-                sums_.emplace_back(w, h, [&](int x, int y) { return squaredDistance(m, p.truth, x, y); });
+                sums_.emplace_back(w, h, [&](int x, int y) { return squaredDifference(m, p.truth, x, y); });
         } else {
             sums_.emplace_back(w, h, [&](int x, int y) {
                 double sum = 0;
                 for (size_t i = 0; i < p.methods.size(); i++)
-                    for (size_t k = 0; k < i; k++) sum += squaredDistance(p.methods[i], p.methods[k], x, y);
+                    for (size_t k = 0; k < i; k++) sum += squaredDifference(p.methods[i], p.methods[k], x, y);
                 return sum;
             });
         }
@@ -114,6 +109,7 @@ std::vector<int> framesWithPictures(const RunResults& run) {
 Pictures loadPictures(const RunResults& run, const fs::path& folder, int frame, const Exec& exec) {
     Pictures p;
     p.frame = frame;
+    p.region = run.protocol.region;
     for (const auto& m : run.methods) {
         const FrameResult* f = find(m, frame);
         if (!f)
@@ -127,8 +123,9 @@ Pictures loadPictures(const RunResults& run, const fs::path& folder, int frame, 
 }
 
 std::vector<Window> mostTellingWindows(const Pictures& pictures, int width, int height, int count) {
-    const int w = pictures.methods[0].width(), h = pictures.methods[0].height();
-    width = std::min(width, w), height = std::min(height, h);
+    const Window within =
+        pictures.region.value_or(Window{0, 0, pictures.methods[0].width(), pictures.methods[0].height()});
+    width = std::min(width, within.width), height = std::min(height, within.height);
     const Interest interest(pictures);
     struct Candidate {
         double interest;
@@ -137,8 +134,8 @@ std::vector<Window> mostTellingWindows(const Pictures& pictures, int width, int 
     std::vector<Candidate> candidates;
     // A quarter of the window is a fine enough step: the window around a feature still holds all of it.
     const int stepX = std::max(1, width / 4), stepY = std::max(1, height / 4);
-    for (int y = 0; y + height <= h; y += stepY)
-        for (int x = 0; x + width <= w; x += stepX) {
+    for (int y = within.y; y + height <= within.y + within.height; y += stepY)
+        for (int x = within.x; x + width <= within.x + within.width; x += stepX) {
             const Window window{x, y, width, height};
             if (const double i = interest.of(window); i > 1e-12) candidates.push_back({i, window});
         }
@@ -153,24 +150,6 @@ std::vector<Window> mostTellingWindows(const Pictures& pictures, int width, int 
     std::sort(chosen.begin(), chosen.end(),
               [](const Window& a, const Window& b) { return std::pair(a.x, a.y) < std::pair(b.x, b.y); });
     return chosen;
-}
-
-Rgb colouredError(const PlaneF& error) {
-    Rgb image(error.width(), error.height());
-    for (int y = 0; y < error.height(); y++)
-        for (int x = 0; x < error.width(); x++) {
-            const Colour c = errorColour(double(error.at(x, y)) / kErrorScale);
-            for (size_t k = 0; k < 3; k++) image.c[k].at(x, y) = c[k];
-        }
-    return image;
-}
-
-PlaneF errorMap(const Rgb& test, const Rgb& reference) {
-    PlaneF map(test.width(), test.height());
-    for (int y = 0; y < map.height(); y++)
-        for (int x = 0; x < map.width(); x++) map.at(x, y) = float(std::sqrt(squaredDistance(test, reference, x, y)));
-    map.fillBorder();
-    return map;
 }
 
 }  // namespace aa

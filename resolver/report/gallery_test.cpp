@@ -6,6 +6,7 @@
 
 #include "image/error.h"
 #include "image/io.h"
+#include "metrics/maps.h"
 #include "report/canvas.h"
 #include "report/sheet.h"
 
@@ -41,6 +42,11 @@ TEST(Gallery, WindowsLieWhereMethodsDiffer) {
     ASSERT_EQ(found.size(), 2u);
     EXPECT_TRUE(contains(found[0], 24, 24));
     EXPECT_TRUE(contains(found[1], 154, 74));
+    // Only what the figures are of.
+    p.region = Window{100, 50, 100, 50};
+    const auto inRegion = mostTellingWindows(p, 24, 24, 3);
+    ASSERT_EQ(inRegion.size(), 1u);
+    EXPECT_TRUE(contains(inRegion[0], 154, 74));
     // No difference, no window.
     EXPECT_TRUE(mostTellingWindows({1, p.truth, {p.truth, p.truth}}, 24, 24, 3).empty());
 }

@@ -5,11 +5,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "image/colour_map.h"
 #include "image/png.h"
 #include "methods/method.h"
+#include "metrics/maps.h"
 #include "report/canvas.h"
 #include "report/caption.h"
-#include "report/colour_map.h"
 #include "report/page.h"
 #include "report/sheet.h"
 #include "report/web/web_files.h"
@@ -33,7 +34,12 @@ Window shownPart(const Pictures& p) {
     return windows.empty() ? whole : windows[0];
 }
 Pictures part(const Pictures& p, const Window& w) {
-    Pictures cut{p.frame, {}, {}};
+    Pictures cut{.frame = p.frame, .truth = {}, .methods = {}};
+    if (p.region) {
+        const int x = std::max(p.region->x, w.x), y = std::max(p.region->y, w.y);
+        cut.region = {x - w.x, y - w.y, std::min(p.region->x + p.region->width, w.x + w.width) - x,
+                      std::min(p.region->y + p.region->height, w.y + w.height) - y};
+    }
     if (!p.truth.empty()) cut.truth = cropped(p.truth, w);
     for (const Rgb& m : p.methods) cut.methods.push_back(cropped(m, w));
     return cut;
@@ -89,6 +95,8 @@ std::string reportHtml(const RunResults& run, const std::vector<Pictures>& pictu
     json data = {{"run", json::parse(toJsonText(run))}, {"order", presentationOrder(run)}, {"words", captions(run)}};
     data["protocol"] = inWords(run.protocol);
     data["space"] = spaceInWords(run.protocol);
+    data["reference"] = referenceInWords(run.protocol);
+    data["region"] = run.protocol.region ? json(inWords(*run.protocol.region)) : json(nullptr);
     for (auto& m : data["run"]["methods"]) m.erase("tileSquares");  // the page has no use for them
     data["errorScale"] = kErrorScale;
     constexpr int kColours = 256;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "metrics/maps.h"
 #include "report/canvas.h"
 #include "report/format.h"
 
@@ -50,7 +51,8 @@ Layout layoutOf(const RunResults& run, const Pictures& p) {
     }
     const int side = std::clamp(l.frameHeight, 216, 288);
     l.detailMagnification = std::max(1, (side + kDetailPx / 2) / kDetailPx);
-    l.detailSource = std::min({side / l.detailMagnification, w, h});
+    const Window judged = p.region.value_or(Window{0, 0, w, h});
+    l.detailSource = std::min({side / l.detailMagnification, judged.width, judged.height});
     l.detailMagnification = side / l.detailSource;
     l.details = mostTellingWindows(p, l.detailSource, l.detailSource, kDetails);
     l.rowHeight = std::max({l.frameHeight, l.details.empty() ? 0 : l.detailSide(), l.overTime ? 264 : 216});
@@ -91,15 +93,17 @@ class Sheet {
     void header() {
         canvas_.text(kMargin, 46, run_.shot, 30, kInk, Font::bold);
         const int after = kMargin + canvas_.textWidth(run_.shot, 30, Font::bold) + 22;
-        canvas_.text(
-            after, 46,
-            canvas_.fitted("anti-aliasing methods against ground truth", canvas_.width() - after - kMargin, 19), 19,
-            kQuiet);
+        canvas_.text(after, 46,
+                     canvas_.fitted("anti-aliasing methods against " + referenceInWords(run_.protocol),
+                                    canvas_.width() - after - kMargin, 19),
+                     19, kQuiet);
         canvas_.text(kMargin, 76, canvas_.fitted(runLine(run_), canvas_.width() - 2 * kMargin, 15), 15, kQuiet);
     }
     void columnHeads() {
         const int y = kHeader + 20;
-        const int judged = run_.methods.empty() || !run_.methods[0].pooled ? 0 : run_.methods[0].pooled->frames;
+        int judged = 0;
+        for (const auto& m : run_.methods)
+            if (m.pooled) judged = m.pooled->frames;
         head(kMargin, kLabelWidth, y, judged > 1 ? "figures over " + std::to_string(judged) + " frames" : "figures");
         std::string frame = "frame " + std::to_string(pictures_.frame);
         if (layout_.magnification > 1) frame += ", x" + std::to_string(layout_.magnification);
@@ -124,11 +128,14 @@ class Sheet {
         const int top = y + (layout_.rowHeight - layout_.frameHeight) / 2;
         canvas_.draw(full, layout_.frameX(), top, std::max(1, layout_.magnification));
         const double scale = double(layout_.frameWidth) / run_.width;
+        const auto inFrame = [&](const Window& w) {
+            return Window{layout_.frameX() + int(w.x * scale), top + int(w.y * scale),
+                          std::max(1, int(w.width * scale)), std::max(1, int(w.height * scale))};
+        };
+        if (pictures_.region) canvas_.frame(inFrame(*pictures_.region), kInk, 1);
         for (size_t i = 0; i < layout_.details.size(); i++) {
             const Window& d = layout_.details[i];
-            canvas_.frame({layout_.frameX() + int(d.x * scale), top + int(d.y * scale),
-                           std::max(1, int(d.width * scale)), std::max(1, int(d.height * scale))},
-                          kDetail[i], 1);
+            canvas_.frame(inFrame(d), kDetail[i], 1);
             const Window cell{layout_.detailX(i), y + (layout_.rowHeight - layout_.detailSide()) / 2,
                               layout_.detailSide(), layout_.detailSide()};
             canvas_.draw(cropped(image, d), cell.x, cell.y, layout_.detailMagnification);
@@ -137,16 +144,22 @@ class Sheet {
     }
     void truthRow(int y) {
         panel(y);
-        canvas_.text(kMargin + 14, y + 32, "Ground truth", 20, kInk, Font::bold);
+        const std::string& method = run_.protocol.reference;
+        canvas_.text(kMargin + 14, y + 32, method.empty() ? "Ground truth" : "Reference", 20, kInk, Font::bold);
         int line = y + 60;
         const auto put = [&](const std::string& text) {
             canvas_.text(kMargin + 14, line, canvas_.fitted(text, kLabelWidth - 24, 14), 14, kQuiet);
             line += 22;
         };
-        put(run_.truthSamplesPerHalf > 0 ? "2 x " + std::to_string(run_.truthSamplesPerHalf) + " samples per pixel"
-                                         : "exact coverage");
-        if (!run_.truthFilter.empty())
-            put(run_.truthFilter + " filter, " + shortNumber(run_.truthFilterWidthPx) + " px");
+        if (!method.empty()) {
+            put(method);
+            put("a method of this run, not the truth");
+        } else {
+            put(run_.truthSamplesPerHalf > 0 ? "2 x " + std::to_string(run_.truthSamplesPerHalf) + " samples per pixel"
+                                             : "exact coverage");
+            if (!run_.truthFilter.empty())
+                put(run_.truthFilter + " filter, " + shortNumber(run_.truthFilterWidthPx) + " px");
+        }
         if (run_.truthNoise && *run_.truthNoise > 0) {
             put("error bar of the MSE " + significant(*run_.truthNoise));
             put("(as PSNR " + decibels(psnr(*run_.truthNoise)) + ")");
@@ -203,6 +216,10 @@ class Sheet {
             canvas_.text(kMargin + 176, line, unit, 14, kQuiet);
             line += layout_.overTime ? 22 : 25;
         };
+        if (run_.isReference(m)) {
+            canvas_.text(kMargin + 14, line, "the reference of the others", 14, kNote);
+            line += 25;
+        }
         if (m.pooled) {
             figure("PSNR", decibelNumber(m.pooled->mean.psnr), "dB", kInk, 20);
             if (m.pooled->gainDb && m.id != "noaa")

@@ -39,6 +39,17 @@ std::string writeImage(const RunningMethod& m, int frame, const RunOptions& o) {
     return written;
 }
 
+void writeMaps(const RunningMethod& m, const Reference& measured, int frame, const RunOptions& o) {
+    if (o.maps.empty()) return;
+    const auto& region = o.protocol.region;
+    const Rgb part = region ? cropped(m.outEncoded, *region) : Rgb();
+    for (const MapKind* kind : o.maps) {
+        const fs::path folder = o.out / "maps" / kind->name / m.spec.folderName();
+        makeWritableFolder(folder);
+        writePng(folder / frameName(frame, ".png"), kind->draw(region ? part : m.outEncoded, measured.encoded, o.exec));
+    }
+}
+
 std::string writeTruthImage(const Reference& reference, int frame, const RunOptions& o) {
     const std::string file = (fs::path("truth") / frameName(frame, ".exr")).string();
     writeExr(o.out / file, reference.linear, o.protocol.display.transfer == Transfer::identity);

@@ -13,5 +13,7 @@ namespace aa {
 // displayed values. PNG files hold the displayed values as codes. Both return a path relative to options.out.
 std::string writeImage(const RunningMethod& method, int frame, const RunOptions& options);
 std::string writeTruthImage(const Reference& reference, int frame, const RunOptions& options);
+// What options.maps asks for, of its difference from `measured`: the reference, or its region.
+void writeMaps(const RunningMethod& method, const Reference& measured, int frame, const RunOptions& options);
 
 }  // namespace aa

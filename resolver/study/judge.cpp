@@ -10,26 +10,54 @@ Judge::Judge(const Manifest& manifest, const RunOptions& o, bool overTime)
       overTime_(overTime),
       errors_(o.methods.size()),
       scene_(manifest.isStatic),
-      overTimeOf_(o.methods.size(), TemporalJudge(temporalWarmup(o.frames.size()))) {}
+      overTimeOf_(o.methods.size(), TemporalJudge(temporalWarmup(o.frames.size()), o.protocol.region)) {}
 
-void Judge::look(const Frame& frame, const std::shared_ptr<const Truth>& truth) {
+void Judge::lookAtTruth() {
+    reference_.reset();
+    region_.reset();
+    if (!truth_) return;
+    const Protocol& p = options_.protocol;
+    reference_ = makeReference(truth_->a, truth_->b, p.display, options_.exec, p.eightBit);
+    if (p.region)
+        region_ = makeReference(cropped(truth_->a, *p.region), cropped(truth_->b, *p.region), p.display, options_.exec,
+                                p.eightBit);
+    if (p.display.transfer == Transfer::identity) {
+        if (!clipped_) clipped_.emplace();
+        clipped_->pixels += measured().clippedPixels;
+        clipped_->of += size_t(measured().encoded.width()) * size_t(measured().encoded.height());
+    }
+}
+
+// Its picture is taken as it is: no noise is known of it.
+void Judge::lookAtMethod(const RunningMethod& m) {
+    const Protocol& p = options_.protocol;
+    reference_.emplace();
+    reference_->encoded = m.outEncoded;
+    if (p.display.transfer == Transfer::identity)
+        reference_->linear = m.outEncoded;
+    else if (m.spec.outputSpace() == Space::linear)
+        reference_->linear = m.out;
+    else
+        decode(m.out, p.display, options_.exec, reference_->linear);
+    if (p.region) {
+        region_.emplace();
+        region_->linear = cropped(reference_->linear, *p.region);
+        region_->encoded = cropped(reference_->encoded, *p.region);
+    }
+}
+
+void Judge::look(const Frame& frame, const std::shared_ptr<const Truth>& truth, const RunningMethod* standIn) {
     seen_++;
     number_ = frame.number;
     reset_ = frame.reset;
-    const Protocol& protocol = options_.protocol;
-    if (truth != truth_) {
+    standIn_ = standIn;
+    if (standIn) {
+        lookAtMethod(*standIn);
+    } else if (truth != truth_) {
         truth_ = truth;
-        reference_.reset();
-        if (truth) {
-            reference_ = makeReference(truth->a, truth->b, protocol.display, options_.exec, protocol.eightBit);
-            if (protocol.display.transfer == Transfer::identity) {
-                if (!clipped_) clipped_.emplace();
-                clipped_->pixels += reference_->clippedPixels;
-                clipped_->of += size_t(manifest_.width) * size_t(manifest_.height);
-            }
-        }
+        lookAtTruth();
     }
-    if (reference_) noise_ += reference_->noise, withTruth_++;
+    if (reference_) noise_ += measured().noise, withTruth_++;
     if (overTime_) scene_.advance(frame, reference_ ? &reference_->encoded : nullptr, options_.exec);
     // A static shot is judged at its last frame, as the published protocol does: there every history is longest.
     if (manifest_.isStatic) errors_.assign(errors_.size(), {});
@@ -39,10 +67,15 @@ FrameResult Judge::judge(size_t k, const RunningMethod& method, double seconds) 
     FrameResult result;
     result.frame = number_;
     result.seconds = seconds;
+    if (&method == standIn_) return result;
     if (reference_) {
         const bool linear = method.spec.outputSpace() == Space::linear;
-        result.metrics = measure(method.outEncoded, linear ? &method.out : nullptr, *reference_, options_.measure,
-                                 options_.exec, errors_[k]);
+        const auto take = [&](const Rgb& encoded, const Rgb& out) {
+            return measure(encoded, linear ? &out : nullptr, measured(), options_.measure, options_.exec, errors_[k]);
+        };
+        const auto& region = options_.protocol.region;
+        result.metrics = region ? take(cropped(method.outEncoded, *region), cropped(method.out, *region))
+                                : take(method.outEncoded, method.out);
     }
     if (overTime_) {
         overTimeOf_[k].add(scene_, method.outEncoded, options_.exec);
@@ -59,10 +92,12 @@ void Judge::judgeRejected(const std::vector<RunningMethod>& methods, std::vector
             return m.method->rejection() && base(m) == base(methods[k]);
         });
         if (peer == methods.end()) continue;
+        if (&methods[k] == standIn_) continue;
         const PlaneF& mask = *peer->method->rejection();
+        const Window area = options_.protocol.region.value_or(Window{0, 0, mask.width(), mask.height()});
         FrameSum sum;
-        for (int y = 0; y < mask.height(); y++)
-            for (int x = 0; x < mask.width(); x++)
+        for (int y = area.y; y < area.y + area.height; y++)
+            for (int x = area.x; x < area.x + area.width; x++)
                 if (mask.at(x, y) != 0)
                     for (size_t c = 0; c < 3; c++, sum.count++) {
                         const double e =
@@ -76,8 +111,10 @@ void Judge::judgeRejected(const std::vector<RunningMethod>& methods, std::vector
 void Judge::finish(RunResults& results, bool fromReset) const {
     results.truthClipped = clipped_;
     // Of a truth with one half only (an imported render) nobody knows the noise.
-    if (withTruth_ > 0 && manifest_.truthHalves.value_or(2) != 1) results.truthNoise = noise_ / double(withTruth_);
+    if (withTruth_ > 0 && (standIn_ || manifest_.truthHalves.value_or(2) != 1))
+        results.truthNoise = noise_ / double(withTruth_);
     for (size_t k = 0; overTime_ && k < overTimeOf_.size(); k++) {
+        if (results.isReference(results.methods[k])) continue;
         results.methods[k].temporal = overTimeOf_[k].result();
         if (!fromReset) results.methods[k].temporal->convergence.reset();  // it counts from the start of the history
     }

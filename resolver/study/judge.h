@@ -1,4 +1,4 @@
-// Measures the methods of a run, frame by frame, against the truth and over time.
+// Measures the methods of a run, frame by frame, against the truth (or the method that stands in for it) and over time.
 #pragma once
 #include <memory>
 
@@ -13,11 +13,13 @@ class Judge {
   public:
     Judge(const Manifest& manifest, const RunOptions& options, bool overTime);
     // The next frame, prepared as the methods see it, and its truth or null. Frames of a static shot share one truth:
-    // encoded once.
-    void look(const Frame& frame, const std::shared_ptr<const Truth>& truth);
-    // The reference of that frame; null without truth.
+    // encoded once. `standIn`: the method, resolved for this frame, that the others are held against instead.
+    void look(const Frame& frame, const std::shared_ptr<const Truth>& truth, const RunningMethod* standIn);
+    // The reference of that frame, the whole picture; null without truth.
     const Reference* reference() const { return reference_ ? &*reference_ : nullptr; }
-    // Figures of what method `k` gave for it.
+    // What is measured of it: all, or the region. Only where there is one.
+    const Reference& measured() const { return region_ ? *region_ : *reference_; }
+    // Figures of what method `k` gave for it; of the stand-in none, which would be held against itself.
     FrameResult judge(size_t k, const RunningMethod& method, double seconds);
     // Once all methods are judged: squared error where history was rejected, of every method that keeps the mask (one
     // with a fill) and of its peers without or with another fill, which reject the same pixels.
@@ -27,11 +29,14 @@ class Judge {
     const std::vector<TileErrors>& errors() const { return errors_; }
 
   private:
+    void lookAtTruth();
+    void lookAtMethod(const RunningMethod& standIn);
     const Manifest& manifest_;
     const RunOptions& options_;
     bool overTime_;
     std::shared_ptr<const Truth> truth_;
-    std::optional<Reference> reference_;
+    std::optional<Reference> reference_, region_;  // region_: the protocol's, where it has one
+    const RunningMethod* standIn_ = nullptr;
     std::vector<TileErrors> errors_;
     TemporalScene scene_;
     std::vector<TemporalJudge> overTimeOf_;

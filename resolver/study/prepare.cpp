@@ -97,6 +97,16 @@ std::vector<std::string> applyHistory(RunOptions& o, const Manifest& manifest) {
     return without;
 }
 
+void judgeAgainst(RunOptions& o, const std::string& method) {
+    const MethodSpec reference = parseMethod(method);
+    const auto same = std::find_if(o.methods.begin(), o.methods.end(),
+                                   [&](const auto& m) { return m.folderName() == reference.folderName(); });
+    o.protocol.reference = same == o.methods.end() ? reference.text : same->text;
+    if (same == o.methods.end()) o.methods.push_back(reference);
+    if (o.methods.size() < 2)
+        throw UsageError("--reference " + method + ": no other method is there to be judged against it; add one by -m");
+}
+
 InputPlan planInput(const ShotReader& shot, const RunOptions& o) {
     InputPlan plan;
     plan.split = shot.hasCentreFrames();
@@ -120,7 +130,7 @@ std::vector<RunningMethod> startMethods(const ShotReader& shot, const RunOptions
     if (o.device && !o.timeOnly && o.debugLayers)
         throw UsageError("--debug-layers: the shaders keep none; use --device cpu");
     for (const auto& m : methods) makeWritableFolder(o.out / m.spec.folderName());
-    makeWritableFolder(o.out / "truth");
+    if (o.protocol.reference.empty()) makeWritableFolder(o.out / "truth");
     return methods;
 }
 
@@ -165,6 +175,7 @@ RunResults describeRun(const Manifest& m, const RunOptions& o) {
     r.threads =
         o.exec.parallel ? int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)) : 1;
     r.protocol = o.protocol;
+    for (const MapKind* kind : o.maps) r.maps.emplace(kind->name, kind->scale);
     std::map<std::string, int> counted;
     for (const auto& f : m.frames)
         for (const auto& [group, seconds] : f.renderSeconds) r.renderSeconds[group] += seconds, counted[group]++;

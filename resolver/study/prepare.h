@@ -20,6 +20,10 @@ void requirePasses(const ShotReader& shot, const std::vector<MethodSpec>& method
 // not given. Returns the methods that accumulate and have no ramp. Throws UsageError: a full history of a moving shot.
 std::vector<std::string> applyHistory(RunOptions& options, const Manifest& manifest);
 
+// Holds the methods against another one instead of the shot's truth; one that is not among them is added. Throws
+// UsageError.
+void judgeAgainst(RunOptions& options, const std::string& method);
+
 // Which passes are read of which frames: methods that accumulate read the jittered ones, all others the centre-sampled
 // ones where the shot has them.
 struct InputPlan {

@@ -41,12 +41,22 @@ std::string inWords(const Protocol& p) {
          : p.history == History::ramp ? ", history ramped up from the first frame"
                                       : ", history from the first frame";
     if (p.eightBit) s += ", 8-bit";
+    if (p.region) s += ", region of " + inWords(*p.region);
+    if (!p.reference.empty()) s += ", against " + referenceInWords(p);
     return s;
 }
 std::string inOneField(const Protocol& p) {
+    std::string region;
+    if (const auto& r = p.region)
+        for (const int v : {r->x, r->y, r->width, r->height})
+            region += (region.empty() ? " region=" : ",") + std::to_string(v);
     return std::string("display=") + name(p.display.transfer) + " exposure=" + number(p.display.exposure) +
            " toneMap=" + name(p.display.toneMap) + " history=" + name(p.history) +
-           " quantise=" + (p.eightBit ? "8" : "off");
+           " quantise=" + (p.eightBit ? "8" : "off") + region +
+           (p.reference.empty() ? "" : " reference=" + p.reference);
+}
+std::string referenceInWords(const Protocol& p) {
+    return p.reference.empty() ? "the ground truth" : p.reference + " (not the truth)";
 }
 
 }  // namespace aa

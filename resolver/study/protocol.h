@@ -1,9 +1,11 @@
 // How the figures of a run were made, apart from its methods: the space in which images are compared, the history that
-// methods had when they were judged, and the rounding to 8-bit codes.
+// methods had when they were judged, the rounding to 8-bit codes, the part of the picture and what it is held against.
 #pragma once
+#include <optional>
 #include <string>
 
 #include "image/colour.h"
+#include "image/window.h"
 
 namespace aa {
 
@@ -17,7 +19,9 @@ enum class History {
 struct Protocol {
     DisplayChain display;
     History history = History::first;
-    bool eightBit = false;  // images that are compared are rounded to 8-bit codes
+    bool eightBit = false;              // images that are compared are rounded to 8-bit codes
+    std::optional<Window> region = {};  // figures are of these pixels alone; methods see the whole picture
+    std::string reference = {};         // the method that the others are held against; empty: the shot's truth
 };
 
 const char* name(ToneMap map);
@@ -32,7 +36,10 @@ History historyByName(const std::string& name);
 std::string inWords(const Protocol& protocol);
 // Only the space: "sRGB-encoded values", "displayed values".
 std::string spaceInWords(const Protocol& protocol);
-// One field for tables: "display=identity exposure=0 toneMap=none history=full quantise=8".
+// One field for tables: "display=identity exposure=0 toneMap=none history=full quantise=8", then "region=X,Y,W,H" and
+// "reference=METHOD" where they are not the whole picture and the truth.
 std::string inOneField(const Protocol& protocol);
+// What figures are held against: "the ground truth", or "msaa (not the truth)".
+std::string referenceInWords(const Protocol& protocol);
 
 }  // namespace aa

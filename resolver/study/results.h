@@ -93,7 +93,7 @@ struct RunResults {
     std::string truthFilter;
     double truthFilterWidthPx = 1;
     std::optional<double> truthNoise;           // MSE(a, b) / 4, encoded, mean over the frames with truth
-    std::map<int, std::string> truthImages;     // frame -> relative path
+    std::map<int, std::string> truthImages;     // frame -> relative path; of a reference method its own images
     std::optional<ClippedPixels> truthClipped;  // only with the identity transfer
     // The run
     std::string programVersion, isa, precision, machine;
@@ -101,12 +101,15 @@ struct RunResults {
     std::optional<RunDevice> device;
     Protocol protocol;
     size_t warmUpFrames = 0;                      // that ran before the first judged one, for a full history
+    std::map<std::string, std::string> maps;      // kinds of maps that were written, and their scales
     std::map<std::string, uint64_t> sanitised;    // replaced input values by kind; empty when none
     std::map<std::string, double> renderSeconds;  // mean per frame by pass group, as the shot records them
     std::vector<MethodResult> methods;
     std::vector<PairResult> pairs;  // every pair of methods with truth
 
     bool jitterCentred() const;  // |mean| below 1e-4 px
+    // The method that the others are held against: it has time and pictures, and no figures.
+    bool isReference(const MethodResult& m) const { return m.text == protocol.reference; }
 };
 
 // Fills medians, ns/px, pooled figures, gains and pairs. `errors[m]` are the tile errors of methods[m] summed over the

@@ -36,6 +36,10 @@ json toJson(const History& v) { return name(v); }
 void fromJson(const json& j, ToneMap& v) { v = toneMapByName(j.get<std::string>()); }
 void fromJson(const json& j, Transfer& v) { v = transferByName(j.get<std::string>()); }
 void fromJson(const json& j, History& v) { v = historyByName(j.get<std::string>()); }
+json toJson(const Window& v) { return {v.x, v.y, v.width, v.height}; }
+void fromJson(const json& j, Window& v) {
+    v = {j.at(0).get<int>(), j.at(1).get<int>(), j.at(2).get<int>(), j.at(3).get<int>()};
+}
 // JSON's keys are texts.
 json toJson(const std::map<int, std::string>& images) {
     json j = json::object();
@@ -341,6 +345,9 @@ void members(V all, S& run) {
             if (bits && *bits != 8) throw std::runtime_error("quantiseBits: expected 8 or null");
             run.protocol.eightBit = bits.has_value();
         }
+        v.maybe("region", run.protocol.region);
+        v.sparse("reference", run.protocol.reference, !run.protocol.reference.empty());
+        v.sparse("maps", run.maps, !run.maps.empty());
         v.value("sanitised", run.sanitised);
     });
     all.list("methods", run.methods);
@@ -375,6 +382,8 @@ RunResults readResults(const fs::path& folder) {
         if (j.at("format") != "aaresolve-results" || j.at("version") != 1)
             throw InputError(file.string() + ": not results of this program's version; run the shot again");
         members(Reader(j), run);
+        if (run.protocol.region && !run.protocol.region->isInside(run.width, run.height))
+            throw InputError(file.string() + ": its region is not within the picture; run the shot again");
         for (const PairResult& p : run.pairs)
             if (p.first >= run.methods.size() || p.second >= run.methods.size())
                 throw InputError(file.string() + ": a pair names a method that is not there; run the shot again");

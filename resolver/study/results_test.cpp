@@ -105,7 +105,7 @@ TEST(Results, ProtocolIsKeptAndOldRunsHaveTheDefault) {
     fs::remove_all(folder);
     makeWritableFolder(folder);
     RunResults run = twoMethods();
-    run.protocol = {{0.5f, ToneMap::none, Transfer::identity}, History::full, true};
+    run.protocol = {{0.5f, ToneMap::none, Transfer::identity}, History::full, true, Window{20, 10, 30, 40}, "noaa"};
     run.warmUpFrames = 160;
     run.truthClipped = {12, 5000};
     writeResults(run, folder);
@@ -116,10 +116,18 @@ TEST(Results, ProtocolIsKeptAndOldRunsHaveTheDefault) {
     EXPECT_EQ(back.warmUpFrames, 160u);
     EXPECT_EQ(back.truthClipped->pixels, 12u);
     EXPECT_EQ(toJsonText(back), toJsonText(run));
-    EXPECT_EQ(inWords(back.protocol), "displayed values at +0.5 EV, full history, 8-bit");
+    EXPECT_EQ(back.protocol.region, (Window{20, 10, 30, 40}));
+    EXPECT_TRUE(back.isReference(back.methods[0]));
+    EXPECT_FALSE(back.isReference(back.methods[1]));
+    EXPECT_EQ(inWords(back.protocol),
+              "displayed values at +0.5 EV, full history, 8-bit, region of 30 x 40 px at 20, 10, against noaa (not the "
+              "truth)");
+    EXPECT_EQ(inOneField(back.protocol),
+              "display=identity exposure=0.5 toneMap=none history=full quantise=8 region=20,10,30,40 reference=noaa");
 
     auto old = nlohmann::json::parse(toJsonText(run));
-    for (const char* member : {"history", "warmUpFrames", "quantiseBits"}) old["run"].erase(member);
+    for (const char* member : {"history", "warmUpFrames", "quantiseBits", "region", "reference"})
+        old["run"].erase(member);
     old["run"]["display"].erase("transfer");
     old["truth"].erase("clipped");
     writeText(folder / "results.json", old.dump());
@@ -130,10 +138,14 @@ TEST(Results, ProtocolIsKeptAndOldRunsHaveTheDefault) {
     EXPECT_FALSE(before.protocol.eightBit);
     EXPECT_EQ(before.warmUpFrames, 0u);
     EXPECT_FALSE(before.truthClipped);
+    EXPECT_FALSE(before.protocol.region);
+    EXPECT_FALSE(before.isReference(before.methods[0]));
     EXPECT_EQ(inWords(Protocol{}), "sRGB-encoded values, history from the first frame");
 
-    for (const auto& [member, wrong] :
-         {std::pair<const char*, nlohmann::json>{"history", "whole"}, {"quantiseBits", 7}, {"warmUpFrames", "many"}}) {
+    for (const auto& [member, wrong] : {std::pair<const char*, nlohmann::json>{"history", "whole"},
+                                        {"quantiseBits", 7},
+                                        {"warmUpFrames", "many"},
+                                        {"region", {80, 0, 30, 10}}}) {
         auto damaged = old;
         damaged["run"][member] = wrong;
         writeText(folder / "results.json", damaged.dump());

@@ -1,5 +1,7 @@
 #include "study/run.h"
 
+#include <algorithm>
+
 #include "gpu/method.h"
 #include "metrics/temporal.h"
 #include "shot/frame_stream.h"
@@ -21,6 +23,16 @@ RunResults run(const ShotReader& shot, const RunOptions& o, const Progress& prog
     return results;
 }
 
+namespace {
+// The methods' indices: the one that the others are held against first.
+std::vector<size_t> orderOfWork(const std::vector<RunningMethod>& methods, const std::string& reference) {
+    std::vector<size_t> order(methods.size());
+    for (size_t k = 0; k < order.size(); k++) order[k] = k;
+    std::stable_partition(order.begin(), order.end(), [&](size_t k) { return methods[k].spec.text == reference; });
+    return order;
+}
+}  // namespace
+
 RunResults runMethods(const ShotReader& shot, const RunOptions& o, const Progress& progress,
                       std::vector<TileErrors>& errors) {
     const Manifest& manifest = shot.manifest();
@@ -40,7 +52,9 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, const Progres
     errors = judge.errors();
     if (progress.interrupted()) return results;
 
-    FrameStream stream(shot, o.frames, plan.jittered, /*withTruth=*/true, plan.centre);
+    const std::vector<size_t> order = orderOfWork(methods, o.protocol.reference);
+    const bool standsIn = !o.protocol.reference.empty();
+    FrameStream stream(shot, o.frames, plan.jittered, /*withTruth=*/!standsIn, plan.centre);
     const DisplayChain& display = o.protocol.display;
     Feed feed(
         stream,
@@ -54,19 +68,26 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, const Progres
         o.device.get());
     for (size_t i = 0; auto item = feed.next(); i++) {
         const auto& frame = item->frame;
-        judge.look(*frame, item->truth);
-        const Reference* reference = judge.reference();
-        const bool write = o.writeAllFrames || (reference && (!manifest.isStatic || i + 1 == o.frames.size()));
-        if (write && reference) results.truthImages[frame->number] = writeTruthImage(*reference, frame->number, o);
+        if (!standsIn) judge.look(*frame, item->truth, nullptr);
+        const auto isWritten = [&] {
+            return o.writeAllFrames || (judge.reference() && (!manifest.isStatic || i + 1 == o.frames.size()));
+        };
+        if (!standsIn && judge.reference() && isWritten())
+            results.truthImages[frame->number] = writeTruthImage(*judge.reference(), frame->number, o);
 
-        for (size_t k = 0; k < methods.size(); k++) {
+        for (const size_t k : order) {
+            const bool isReference = standsIn && k == order.front();
             const Frame& input = plan.readsCentre(methods[k].spec) ? *item->centre : *frame;
             const double seconds = methods[k].resolve(input, input.display, o.exec);
             if (!timed.empty()) timed[k]->resolve(input, o.exec, unused);
             if (o.protocol.eightBit) quantise8(methods[k].outEncoded, o.exec);
+            if (isReference) judge.look(*frame, nullptr, &methods[k]);
             FrameResult result = judge.judge(k, methods[k], o.device && !o.timeOnly ? 0 : seconds);
             if (o.device) result.deviceSeconds = (timed.empty() ? *methods[k].method : *timed[k]).deviceSeconds();
-            if (write) result.image = writeImage(methods[k], frame->number, o);
+            if (isWritten()) result.image = writeImage(methods[k], frame->number, o);
+            if (isWritten() && judge.reference() && !isReference)
+                writeMaps(methods[k], judge.measured(), frame->number, o);
+            if (isReference && !result.image.empty()) results.truthImages[frame->number] = result.image;
             MethodResult& of = results.methods[k];
             if (manifest.isStatic && !of.frames.empty()) of.frames.back().judged = false;
             of.frames.push_back(std::move(result));

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "methods/spec.h"
+#include "metrics/maps.h"
 #include "shot/reader.h"
 #include "study/progress.h"
 #include "study/results.h"
@@ -23,6 +24,7 @@ struct RunOptions {
     std::shared_ptr<gpu::Session> device;  // null: the processor
     bool timeOnly = false;                 // the methods run on the processor, and on the device for its time beside
     MeasureOptions measure;
+    std::vector<const MapKind*> maps;  // of the frames that are written: OUT/maps/KIND/METHOD/<frame>.png
     std::filesystem::path out;
     bool writeExr = true, writePng = false;
     bool writeAllFrames = false;  // otherwise: frames with ground truth of their own; of a static shot, the last

@@ -7,6 +7,8 @@
 #include <map>
 
 #include "image/error.h"
+#include "image/io.h"
+#include "image/png.h"
 #include "shot/synth/synth.h"
 #include "study/prepare.h"
 #include "study/sweep.h"
@@ -77,6 +79,84 @@ TEST(Study, FiguresThatAreAskedForAreMeasured) {
     EXPECT_GT(flipOf().value(), 0);
     EXPECT_THROW(measureOptions({"flop"}), UsageError);
 }
+// What a run wrote of a method, or of what it was held against, as it was compared.
+Rgb encodedImage(const fs::path& file) {
+    Rgb encoded;
+    encode(readImage(file).rgb, {}, {}, encoded);
+    return encoded;
+}
+TEST(Study, FiguresOfARegionAreThoseOfItsPixelsAsAPicture) {
+    RunOptions o = optionsFor("moving", {"noaa", "taaSimplest"});
+    const Window region{9, 5, 35, 20};
+    o.writeExr = true;
+    o.measure = measureOptions({"fmagMse", "flip"});
+    const RunResults whole = run(shot("moving"), o, {});
+    o.protocol.region = region;
+    const RunResults part = run(shot("moving"), o, {});
+    for (size_t k = 0; k < 2; k++) {
+        const MethodResult &m = part.methods[k], &all = whole.methods[k];
+        EXPECT_NE(m.frames[3].metrics->mse, all.frames[3].metrics->mse);
+        const Rgb test = cropped(encodedImage(o.out / m.frames[3].image), region),
+                  truth = cropped(encodedImage(o.out / part.truthImages.at(4)), region);
+        Reference reference;
+        reference.encoded = truth;
+        TileErrors tiles;
+        const FrameMetrics expected = measure(test, nullptr, reference, o.measure, {}, tiles);
+        for (const char* figure : {"mse", "psnr", "snr", "ssimLuma", "fmagMse", "flip"})
+            EXPECT_EQ(*m.frames[3].metrics->figure(figure), *expected.figure(figure)) << figure;
+        EXPECT_EQ(m.tileSquares.size(), 2u);  // 35 x 20 px in tiles of 32
+        EXPECT_NE(*m.temporal->tPsnr, *all.temporal->tPsnr);
+    }
+    o.protocol.region = Window{0, 0, 48, 32};
+    EXPECT_EQ(run(shot("moving"), o, {}).methods[1].pooled->mean.mse, whole.methods[1].pooled->mean.mse);
+}
+TEST(Study, MapsAreWrittenOfWhatIsJudged) {
+    RunOptions o = optionsFor("half_planes", {"noaa", "accum"});
+    o.out += "_maps";
+    fs::remove_all(o.out);
+    o.writeExr = true;
+    for (const MapKind& kind : mapKinds()) o.maps.push_back(&kind);
+    o.protocol.region = Window{9, 5, 35, 20};
+    const RunResults r = run(shot("half_planes"), o, {});
+    EXPECT_EQ(r.maps.size(), mapKinds().size());
+    for (const MapKind& kind : mapKinds()) {
+        EXPECT_EQ(r.maps.at(std::string(kind.name)), kind.scale);
+        const Rgb map = readImage(o.out / "maps" / kind.name / "noaa/000004.png").rgb;
+        const Rgb expected = kind.draw(cropped(encodedImage(o.out / "noaa/000004.exr"), *o.protocol.region),
+                                       cropped(encodedImage(o.out / "truth/000004.exr"), *o.protocol.region), {});
+        EXPECT_EQ(codesOf(map), codesOf(expected)) << kind.name;
+        EXPECT_TRUE(fs::exists(o.out / "maps" / kind.name / "accum/000004.png"));
+        EXPECT_FALSE(fs::exists(o.out / "maps" / kind.name / "noaa/000003.png")) << "of a static shot the last alone";
+    }
+}
+TEST(Study, AMethodStandsInForTheTruth) {
+    RunOptions o = optionsFor("half_planes", {"noaa", "taaSimplest"});
+    o.out += "_stands_in";
+    o.writeExr = true;
+    judgeAgainst(o, "accum");
+    ASSERT_EQ(o.methods.size(), 3u);
+    const RunResults r = run(shot("half_planes"), o, {});
+    const MethodResult& reference = r.methods[2];
+    EXPECT_TRUE(r.isReference(reference));
+    EXPECT_FALSE(reference.pooled);
+    EXPECT_FALSE(reference.temporal);
+    EXPECT_EQ(r.truthNoise, 0.0);
+    EXPECT_EQ(r.truthImages, (std::map<int, std::string>{{4, "accum/000004.exr"}}));
+    EXPECT_FALSE(fs::exists(o.out / "truth"));
+    for (size_t k = 0; k < 2; k++)
+        EXPECT_EQ(r.methods[k].pooled->mean.mse, squaredError(encodedImage(o.out / r.methods[k].frames[3].image),
+                                                              encodedImage(o.out / "accum/000004.exr"), {})
+                                                     .mse);
+    EXPECT_EQ(r.pairs.size(), 1u);
+    // One that is there already is not run twice, wherever it stands.
+    RunOptions first = optionsFor("half_planes", {"accum", "noaa", "taaSimplest"});
+    judgeAgainst(first, "accum");
+    ASSERT_EQ(first.methods.size(), 3u);
+    const RunResults same = run(shot("half_planes"), first, {});
+    EXPECT_EQ(same.methods[1].pooled->mean.mse, r.methods[0].pooled->mean.mse);
+    RunOptions alone = optionsFor("half_planes", {"noaa"});
+    EXPECT_THROW(judgeAgainst(alone, "noaa"), UsageError);
+}
 TEST(Study, FramesAreChosenByNumber) {
     const Manifest& m = shot("moving").manifest();
     EXPECT_EQ(selectFrames(m, ""), (std::vector<size_t>{0, 1, 2, 3}));
@@ -139,6 +219,13 @@ TEST(Sweep, EveryCombinationIsAVariantAndPartsGiveTheSameFigures) {
     ASSERT_EQ(parts.methods.size(), 5u);
     for (size_t k = 0; k < 5; k++) EXPECT_EQ(parts.methods[k].pooled->mean.mse, once.methods[k].pooled->mean.mse);
     EXPECT_EQ(parts.pairs.size(), once.pairs.size());
+    judgeAgainst(run, "taaSimplest");
+    Sweep against(shot("moving"), run, o);
+    EXPECT_EQ(against.passes(), 5u);
+    const RunResults held = against.run({});
+    ASSERT_EQ(held.methods.size(), 6u);
+    EXPECT_TRUE(held.isReference(held.methods[5]));
+    for (size_t k = 0; k < 5; k++) EXPECT_NE(held.methods[k].pooled->mean.mse, once.methods[k].pooled->mean.mse);
     o.vary = {"nMaxStatic=8,8"};
     EXPECT_THROW(variantsOf(o), UsageError);
     o.vary = {"nMaxStatic=8", "nMaxStatic=16"};

@@ -32,7 +32,8 @@ void addErrorsOverTime(RunResults& run) {
         if (rejected.count > 0) {
             const auto frames = std::count_if(m.frames.begin(), m.frames.end(), [](auto& f) { return f.rejected; });
             m.rejectedMse = rejected.sum / rejected.count;
-            m.rejectedShare = rejected.count / (3.0 * run.width * run.height * double(frames));
+            const Window area = run.protocol.region.value_or(Window{0, 0, run.width, run.height});
+            m.rejectedShare = rejected.count / (3.0 * area.width * area.height * double(frames));
         }
         if (!m.temporal) continue;
         m.temporal->ghostMseError = errorOverTime(all.back().ghost);

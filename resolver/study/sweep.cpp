@@ -96,17 +96,25 @@ std::vector<MethodSpec> variantsOf(const SweepOptions& o) {
 }
 
 Sweep::Sweep(const ShotReader& shot, const RunOptions& run, const SweepOptions& o) : shot_(shot), run_(run) {
-    const std::vector<MethodSpec>& variants = run.methods;
-    requirePasses(shot, variants);
+    requirePasses(shot, run.methods);
+    std::vector<MethodSpec> variants = run.methods;
+    const auto reference =
+        std::find_if(variants.begin(), variants.end(), [&](const auto& m) { return m.text == run.protocol.reference; });
+    if (reference != variants.end()) {
+        reference_ = {*reference};
+        variants.erase(reference);
+    }
     // Measured on the first and the last variant: where memory depends on a parameter, the values mostly ascend.
-    const auto compared =
-        size_t(std::count_if(o.with.begin(), o.with.end(), [](const auto& m) { return m != "none"; }));
-    const size_t each = std::max(bytesOf(variants[compared], shot, run), bytesOf(variants.back(), shot, run));
+    const auto compared = size_t(std::count_if(
+        o.with.begin(), o.with.end(), [&](const auto& m) { return m != "none" && m != run.protocol.reference; }));
+    const size_t each = std::max(bytesOf(variants[std::min(compared, variants.size() - 1)], shot, run),
+                                 bytesOf(variants.back(), shot, run));
     const size_t perPart =
         std::clamp<size_t>(size_t(o.memoryMb * (1 << 20)) / std::max<size_t>(each, 1), 1, variants.size());
     for (size_t first = 0; first < variants.size(); first += perPart) {
         parts_.emplace_back(variants.begin() + ptrdiff_t(first),
                             variants.begin() + ptrdiff_t(std::min(first + perPart, variants.size())));
+        parts_.back().insert(parts_.back().end(), reference_.begin(), reference_.end());
         run_.methods = parts_.back();
         steps_ += stepsOf(run_, shot.manifest());
     }
@@ -119,6 +127,7 @@ RunResults Sweep::run(const Progress& progress) {
         run_.methods = parts_[i];
         std::vector<TileErrors> some;
         RunResults part = runMethods(shot_, run_, progress, some);
+        if (!reference_.empty() && i + 1 < parts_.size()) part.methods.pop_back(), some.pop_back();  // the last has it
         if (i == 0) {
             all = std::move(part);
             errors = std::move(some);

@@ -32,6 +32,7 @@ class Sweep {
   private:
     const ShotReader& shot_;
     RunOptions run_;
+    std::vector<MethodSpec> reference_;  // none or one: the method that the others are held against, in every part
     std::vector<std::vector<MethodSpec>> parts_;
     size_t steps_ = 0;
 };

@@ -56,7 +56,10 @@ class Protocol(ProgramTest):
         return json.loads((out / "results.json").read_text())
 
     def figures(self, out: Path) -> dict[str, float]:
-        return {m["text"]: m["pooled"]["psnr"] for m in self.results(out)["methods"]}
+        return self.figures_of(self.results(out))
+
+    def figures_of(self, results: dict) -> dict[str, float]:
+        return {m["text"]: m["pooled"]["psnr"] for m in results["methods"] if m["pooled"]}
 
     def test_identity_compares_the_clamped_values(self) -> None:
         shot = self.synth("circles", "shot", "--for", "noaa,accum")
@@ -235,6 +238,90 @@ class Protocol(ProgramTest):
             {row["protocol"] for row in rows},
             {"display=identity exposure=0 toneMap=none history=full quantise=8"},
         )
+
+    def test_a_region_is_judged_as_the_picture_and_said(self) -> None:
+        shot = self.synth("circles", "shot", "--for", "noaa,accum")
+        region = "20,8,30,25"
+        out = self.run_shot(
+            shot, "noaa", "accum", options=("-q", "--region", region, "--metrics", "fmagMse")
+        )
+        self.assertEqual(self.results(out)["run"]["region"], [20, 8, 30, 25])
+        words = "region of 30 x 25 px at 20, 8"
+        self.assertIn(words, self.said.stdout)
+        self.assertIn("region=20,8,30,25", (out / "results.csv").read_text())
+        # The written pictures are whole; `compare` of their region finds the same.
+        wanted = ("psnr", "ssimLuma", "fmagMse")
+        done = self.aaresolve(
+            "compare",
+            out / f"noaa/{FRAME}.exr",
+            out / f"truth/{FRAME}.exr",
+            "--region",
+            region,
+            "--metrics",
+            ",".join(wanted),
+            "--json",
+        )
+        noaa = self.results(out)["methods"][0]
+        for figure in wanted:
+            self.assertAlmostEqual(
+                json.loads(done.stdout)["pooled"][figure], noaa["pooled"][figure], 9
+            )
+            self.assertEqual(noaa["pooled"][figure], noaa["frames"][-1]["metrics"][figure])
+        # Maps are of the region, too, and those of `compare`.
+        out = self.run_shot(
+            shot, "noaa", options=("-q", "--region", region, "--maps", "ssim,fourier")
+        )
+        for kind in ("ssim", "fourier"):
+            self.assertIn(f"maps/{kind}: ", self.said.stdout)
+            self.assertIn("black", self.results(out)["run"]["maps"][kind])
+            one = self.folder / f"{kind}.png"
+            pair = (out / f"noaa/{FRAME}.exr", out / f"truth/{FRAME}.exr")
+            self.aaresolve("compare", *pair, "--region", region, "--map", one, "--map-of", kind)
+            self.assertEqual(one.read_bytes(), (out / f"maps/{kind}/noaa/{FRAME}.png").read_bytes())
+        self.refused(2, "compare", *pair, "--map-of", "ssim", says=("--map-of", "--map FILE"))
+        self.aaresolve("sheet", out, "-o", self.folder / "region.png")
+        self.aaresolve("report", out, "-o", self.folder / "region.html")
+        self.assertIn(words, (self.folder / "region.html").read_text())
+        for wrong in ("60,0,5,5", "0,0,0,5", "1,2,3"):
+            says = ("--region", "64 x 40 px" if wrong != "1,2,3" else "X,Y,WIDTH,HEIGHT")
+            options = ("-m", "noaa", "-o", self.folder / "none", "--region", wrong)
+            self.refused(2, "run", shot, *options, says=says)
+        self.assertFalse((self.folder / "none").exists())
+
+    def test_a_method_stands_in_for_the_truth_and_is_said(self) -> None:
+        shot = self.synth(
+            "moving",
+            "shot",
+            "--subsamples",
+            "d3d8",
+            "--subsample-color",
+            "--for",
+            "noaa,msaa",
+            frames=2,
+        )
+        out = self.run_shot(
+            shot, "noaa", "fxaa311", options=("-q", "--reference", "msaa", "--write", "exr")
+        )
+        results = self.results(out)
+        self.assertEqual(results["run"]["reference"], "msaa")
+        self.assertEqual(results["truth"]["noiseMse"], 0)
+        self.assertEqual([m["text"] for m in results["methods"]], ["noaa", "fxaa311", "msaa"])
+        self.assertIsNone(results["methods"][2]["pooled"])
+        words = "reference: msaa, a method of this run and not the truth"
+        self.assertIn(words, self.said.stdout)
+        done = self.aaresolve("compare", out / "noaa", out / "msaa", "--json")
+        self.assertAlmostEqual(
+            json.loads(done.stdout)["pooled"]["psnr"], self.figures_of(results)["noaa"], 9
+        )
+        self.aaresolve("sheet", out, "-o", self.folder / "reference.png")
+        self.aaresolve("report", out, "-o", self.folder / "reference.html")
+        page = (self.folder / "reference.html").read_text()
+        self.assertIn("msaa gets wrong counts as right", page)
+        self.assertIn("against msaa (not the truth)", page)
+        plain = self.synth("circles", "plain", "--for", "noaa", frames=2)
+        out = self.folder / "none"
+        options = ("-m", "noaa", "-o", out, "--reference", "msaa")
+        self.refused(3, "run", plain, *options, says=("'msaa'", "subsamples"))
 
     def test_sheet_and_report_say_it(self) -> None:
         shot = self.synth("circles", "shot", "--for", "noaa,uncharted")

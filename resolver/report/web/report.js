@@ -1,9 +1,11 @@
 // The report's page: everything is drawn from the JSON in #data, which `aaresolve report` wrote. No network, no storage.
 "use strict";
 (() => {
-  const { run, order, words, protocol, space, pictures, errorScale, errorColours, figures, passBytes, publishedMemory: published } = JSON.parse(document.getElementById("data").textContent);
+  const { run, order, words, protocol, space, reference, region, pictures, errorScale, errorColours, figures, passBytes, publishedMemory: published } = JSON.parse(document.getElementById("data").textContent);
   const $ = (id) => document.getElementById(id);
   const methods = run.methods;
+  const standIn = run.run.reference;  // the method that the others are held against; undefined: the truth
+  const truthName = standIn ? `the reference, ${standIn}` : "ground truth";
   const measured = (m) => m.frames.filter((f) => f.metrics);
 
   // ---- numbers: JSON carries Inf and NaN as text ----
@@ -20,7 +22,7 @@
 
   // ---- header and words ----
   $("shot").textContent = run.shot.name;
-  $("subtitle").textContent = "Anti-aliasing methods against ground truth, " + run.shot.resolution.join(" × ") + ", " +
+  $("subtitle").textContent = "Anti-aliasing methods against " + reference + ", " + run.shot.resolution.join(" × ") + ", " +
     (run.shot.static ? "static" : "moving") + " shot";
   $("words").append(...words.map((w) => element("li", {}, w)));
   $("version").textContent = run.run.program;
@@ -35,7 +37,7 @@
   const onDevice = device && `ms ${device.kind === "cpu" ? "in software" : "on the GPU"} (${device.name})`;
   const deviceMs = (m) => (m.deviceSecondsMedian == null ? null : m.deviceSecondsMedian * 1000);
   const columns = [
-    { title: "PSNR, dB", better: "high", get: pooled("psnr"), show: (m) => (m.pooled ? fixed(m.pooled.psnr, 2) : "–"),
+    { title: "PSNR, dB", better: "high", get: pooled("psnr"), show: (m) => (m.pooled ? fixed(m.pooled.psnr, 2) : m.text === standIn ? "reference" : "–"),
       // What the truth's own noise takes off the MSE: the PSNR lies between the two.
       small: (m) => (m.pooled && m.pooled.mseCorrected > 0 && m.pooled.mseCorrected < value(m.pooled.mse)
         ? "to " + fixed(psnr(m.pooled.mseCorrected), 2) : null) },
@@ -96,9 +98,9 @@
     draw();
   };
   sortableTable($("figures"), order, columns);
-  const judgedFrames = methods.length && methods[0].pooled ? methods[0].pooled.frames : 0;
+  const judgedFrames = methods.find((m) => m.pooled)?.pooled.frames ?? 0;
   $("figures-note").textContent = judgedFrames
-    ? `Figures of ${space}, pooled over ${judgedFrames} frame${judgedFrames > 1 ? "s" : ""} with ground truth: the mean squared error is averaged, never the decibels. ` +
+    ? `Figures of ${space}${region ? `, of the region of ${region} alone` : ""}, pooled over ${judgedFrames} frame${judgedFrames > 1 ? "s" : ""} with ${standIn ? "images of " + reference : "ground truth"}: the mean squared error is averaged, never the decibels. ` +
       "“to” is the PSNR after the truth’s own noise is taken off. “Not resolved”: the difference is below that noise, or not consistent over the picture (95 % bootstrap over tiles of 32 × 32 px)."
     : "This run has no ground truth, so only times are known.";
 
@@ -311,14 +313,14 @@
     return errorMaps.get(key);
   };
   const urlOf = (set, source) => (source === "truth" ? set.truth : source.startsWith("error:") ? errorMap(set, Number(source.slice(6))) : set.methods[Number(source)]);
-  const nameOf = (source) => (source === "truth" ? "ground truth" : source.startsWith("error:") ? "error of " + methods[Number(source.slice(6))].text : methods[Number(source)].text);
+  const nameOf = (source) => (source === "truth" ? truthName : source.startsWith("error:") ? "error of " + methods[Number(source.slice(6))].text : methods[Number(source)].text);
 
   if (!pictures.length) {
     $("viewer").hidden = $("details").hidden = true;
   } else {
     const zooms = [1, 2, 3, 4, 6, 8];
     const options = () => [
-      pictures[0].truth ? element("option", { value: "truth" }, "Ground truth") : null,
+      pictures[0].truth ? element("option", { value: "truth" }, standIn ? "Reference: " + standIn : "Ground truth") : null,
       element("optgroup", { label: "Methods" }, ...order.map((i) => element("option", { value: i }, methods[i].text))),
       pictures[0].truth ? element("optgroup", { label: "Error maps" }, ...order.map((i) => element("option", { value: "error:" + i }, "error of " + methods[i].text))) : null,
     ].filter(Boolean);
@@ -383,7 +385,7 @@
       ? `${run.shot.jitter.sequence}, from index ${run.shot.jitter.start}, period ${run.shot.jitter.period}; mean of a block ` +
         `(${run.shot.jitter.meanPx.map((v) => v.toFixed(4)).join(", ")}) px, ${run.shot.jitter.centred ? "centred" : "not centred"}`
       : "none"],
-    ["Truth", Object.keys(run.truth.images).length || run.truth.noiseMse != null
+    ["Truth", standIn ? `not used: ${standIn}, a method of this run, stands in for it` : Object.keys(run.truth.images).length || run.truth.noiseMse != null
       ? (run.truth.samplesPerHalf > 0 ? `two halves of ${run.truth.samplesPerHalf} samples per pixel` : "exact coverage") +
         `, ${run.truth.filter} filter ${run.truth.filterWidthPx} px` +
         (run.truth.noiseMse > 0 ? `; its own noise is an MSE of ${short(run.truth.noiseMse)} (${fixed(psnr(run.truth.noiseMse), 2)} dB)` : "")

@@ -1,4 +1,4 @@
-#include "report/colour_map.h"
+#include "image/colour_map.h"
 
 #include <algorithm>
 #include <cmath>
