@@ -77,6 +77,7 @@ def settings_from(arguments: argparse.Namespace, scene: bpy.types.Scene) -> Sett
         )
     if arguments.jitter_projection == "pre":
         _check_projection(sequence, passes)
+    _check_textures(arguments, sequence)
     check_spans(vars(arguments), Settings)
     if arguments.ambient and min(arguments.ambient) < 0.0:
         raise UsageError(f"--ambient: expected three numbers >= 0, found {arguments.ambient}")
@@ -153,6 +154,18 @@ def _check_projection(sequence: str, passes: set[str]) -> None:
                 "--jitter-projection pre: distances to edges are measured from the jitter, which the samples do not "
                 f"keep; leave out the pass '{item.name}'"
             )
+
+
+def _check_textures(arguments, sequence: str) -> None:
+    """What would change nothing, or nothing that is known."""
+    if arguments.mip_bias and arguments.texture_filter != "mip":
+        raise UsageError("--mip-bias: has no effect without --texture-filter mip")
+    if arguments.unjitter_textures and sequence == "none":
+        raise UsageError("--unjitter-textures: has no effect without a jitter")
+    if arguments.unjitter_textures and arguments.jitter_projection == "pre":
+        raise UsageError(
+            "--unjitter-textures: with --jitter-projection pre the samples do not keep the jitter"
+        )
 
 
 def _pattern(

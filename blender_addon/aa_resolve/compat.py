@@ -128,6 +128,20 @@ def name_aov_output(node: bpy.types.Node, name: str) -> None:
         node.name = name
 
 
+def add_group_socket(tree: bpy.types.NodeTree, kind: str, name: str, is_output: bool) -> None:
+    """Declares an input or output of a node group, such as ("NodeSocketVector", "Vector")."""
+    if hasattr(tree, "interface"):  # since 4.0
+        tree.interface.new_socket(name, in_out="OUTPUT" if is_output else "INPUT", socket_type=kind)
+    else:
+        (tree.outputs if is_output else tree.inputs).new(kind, name)
+
+
+def set_whole_filter_width(bump: bpy.types.Node) -> None:
+    """Lets a Bump node compare heights that lie a whole pixel apart, as it always did before 5.0."""
+    if "Filter Width" in bump.inputs:
+        bump.inputs["Filter Width"].default_value = 1.0
+
+
 def strips(scene: bpy.types.Scene) -> list:
     """Strips of the sequencer."""
     editor = scene.sequence_editor

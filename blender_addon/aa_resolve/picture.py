@@ -132,6 +132,7 @@ class Pictures:
         samples = samples or plan.settings.truth_samples
         self.stage.go_to(number)
         self.stage.aim(number)
+        plan.textures.rest()
         parts = []
         watch = Stopwatch()
         with watch.of("truth"), self._lights_in_order():

@@ -12,6 +12,7 @@ from .scene.camera import Frame
 from .scene.cuts import CameraCuts
 from .scene.instances import ObjectIds
 from .scene.lighting import LightPlan
+from .scene.textures import TextureReading
 from .settings import Settings
 
 
@@ -30,6 +31,7 @@ class Plan:
     positions: list[tuple[float, float]]  # of the sub-samples, pixels from centre + jitter, y down
     light: LightPlan
     ids: ObjectIds
+    textures: TextureReading
     folder: str  # of intermediate renders
 
     @property

@@ -26,6 +26,7 @@ from .scene import (
     simulations,
     suitability,
     surfaces,
+    textures,
 )
 from .scene.cuts import CameraCuts
 from .scene.ownership import own
@@ -78,7 +79,10 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) ->
     ids = instances.ObjectIds(scene, view_layer, settings.instance_ids)
     if settings.instance_ids and not ids.tells_instances and ObjectId.name in wanted:
         left_out.append("ids of instances (nothing is instanced)")
-    notes += ownership.notes() + scripts.hold_against_handlers()
+    reading = textures.TextureReading(
+        settings.texture_filter, settings.mip_bias, settings.unjitter_textures
+    )
+    notes += reading.notes + ownership.notes() + scripts.hold_against_handlers()
     if left_out:
         notes.append("left out: " + "; ".join(left_out))
     for note in notes + light.notes + ids.notes:
@@ -96,6 +100,7 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) ->
         positions,
         light,
         ids,
+        reading,
         folder,
     )
     known = sorted(plan.passes)

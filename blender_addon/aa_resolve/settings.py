@@ -203,6 +203,29 @@ class Settings:
         ),  # pre: scene/camera.py, premultiplied_movement
         group="Jitter and sub-samples",
     )
+    texture_filter: str = option(
+        "--texture-filter",
+        "none: textures are read at a point, as Cycles does; mip: image textures are read from mip maps at the level of "
+        "the pixel's footprint, as a rasteriser does. Truth always reads them as they are (%(default)s)",
+        default="none",
+        choices=dict.fromkeys(("none", "mip"), ("", "")),
+        group="Textures",
+    )
+    mip_bias: float = option(
+        "--mip-bias",
+        "added to the mip level; below 0 sharper, -0.25 for temporal methods [Castorina 2023] (%(default)g)",
+        default=0.0,
+        metavar="LEVELS",
+        number=real_number,
+        span=(-16.0, 16.0),
+        group="Textures",
+    )
+    unjitter_textures: bool = option(
+        "--unjitter-textures",
+        "textures are read where the pixel's centre lies on the surface: the jitter moves edges only [Castorina 2023]",
+        default=False,
+        group="Textures",
+    )
     pattern: str = option(
         "--subsamples",
         f"sub-sample pattern: {_PATTERNS} or gridN, around pixel centre + jitter (default: what "

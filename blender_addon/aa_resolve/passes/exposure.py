@@ -55,6 +55,7 @@ class Exposure:
         self.instances_change = compares and stage.instances_change(number)
         stage.go_to(number)
         stage.aim(number, *plan.settings.shift_and_movement(offset))
+        plan.textures.aim(self.now.camera, plan.frame, offset)
         rendering.sample_points(plan.scene, plan.settings.samples)
         self.lit = any(item.shaded and not item.facts.per_sub_sample for item in wanted)
         self.color: np.ndarray | None = None  # H x W x 4, linear; None in a render without light
