@@ -160,9 +160,7 @@ class TextureReading:
 
 def _trees() -> Iterator[tuple[str, bpy.types.NodeTree]]:
     """Trees of materials and of the groups in them, each once, with the name of what uses it."""
-    waiting = [
-        (item.name, compat.shader_tree(item)) for item in bpy.data.materials if item.users
-    ]
+    waiting = [(item.name, compat.shader_tree(item)) for item in bpy.data.materials if item.users]
     seen = set()
     while waiting:
         title, tree = waiting.pop(0)
