@@ -301,6 +301,35 @@ def test_what_is_left_is_said() -> None:
         assert any(reason in note for note in shot["notes"]), (kind, shot["notes"])
 
 
+def test_every_material_and_group() -> None:
+    """Textures of several materials and of a group within one are all read; a group that two materials share once."""
+    scene = t.new_scene(32, 32)
+    orthographic(scene, 2.0)
+    image = image_of(noise())
+    for half, place in ((0.5, -0.5), (0.5, 0.5)):
+        item = plane(scene, half=half)
+        item.location.x = place
+        emitting(item, show_image(image))
+    inner = bpy.data.node_groups.new("Inner", "ShaderNodeTree")
+    t.add_group_socket(inner, "NodeSocketColor", "Color", True)
+    end = inner.nodes.new("NodeGroupOutput")
+    inner.links.new(show_image(image)(inner), end.inputs[0])
+
+    def grouped(tree):
+        node = tree.nodes.new("ShaderNodeGroup")
+        node.node_tree = inner
+        return node.outputs[0]
+
+    for place in (-2.0, 2.0):
+        item = plane(scene, half=0.5)
+        item.location.z = place
+        emitting(item, grouped)
+    out = os.path.join(t.temporary_folder(), "shot")
+    options = "--frames 1 --truth-frames none --for noaa --jitter none --texture-filter mip"
+    shot = t.export(out, *options.split())
+    assert any("3 filtered by mip maps" in note for note in shot["notes"]), shot["notes"]
+
+
 def test_misuse() -> None:
     shifted_scene("image")
     for options, says in (
@@ -326,5 +355,6 @@ if __name__ == "__main__":
         test_truth_is_untouched,
         test_alpha_and_curves,
         test_what_is_left_is_said,
+        test_every_material_and_group,
         test_misuse,
     )

@@ -161,13 +161,13 @@ class TextureReading:
 def _trees() -> Iterator[tuple[str, bpy.types.NodeTree]]:
     """Trees of materials and of the groups in them, each once, with the name of what uses it."""
     waiting = [(item.name, compat.shader_tree(item)) for item in bpy.data.materials if item.users]
-    seen = set()
+    seen: set[int] = set()  # by address: the trees of all materials have one name
     while waiting:
         title, tree = waiting.pop(0)
-        if tree is None or tree.name_full in seen:
+        if tree is None or tree.as_pointer() in seen:
             continue
-        seen.add(tree.name_full)
-        inner = [n.node_tree for n in tree.nodes if n.bl_idname == "ShaderNodeGroup"]
+        seen.add(tree.as_pointer())
+        inner = [node.node_tree for node in tree.nodes if node.bl_idname == "ShaderNodeGroup"]
         waiting += [(group.name, group) for group in inner if group]
         yield title, tree
 
