@@ -3,9 +3,9 @@
 
 After the moment of collision in the chart of the RSAA talk: methods that rebuild a pixel from few surfaces lose their
 quality where many small ones that have nothing to do with each other share it. Until frame 40 the shards, triangles of
-about two pixels at 480 x 270, lie edge to edge on two spheres. There they touch; from then on every shard flies and
-turns on its own, and the two clouds pass through each other. What follows is sub-pixel geometry without order, densest
-just after the burst; towards frame 100 the shards are few again.
+two to three pixels at 480 x 270, lie edge to edge on two striped balls. There these touch; from then on every shard
+flies and turns on its own, and the two clouds pass through each other. What follows is sub-pixel geometry without
+order, densest just after the burst; towards frame 100 most shards have left the view.
 
 usage: blender -b --python-exit-code 9 -P scenes/collision.py -- --out build/scenes/collision.blend
 """
@@ -25,7 +25,7 @@ TOUCH = 40  # frame
 RADIUS = 1.25  # metres; a pixel is 0.025 m wide there
 HEIGHT = 2.3  # of the balls' centres
 START = 4.6  # distance of a centre from the middle at frame 1
-ROWS = 72  # of shards from pole to pole
+ROWS = 60  # of shards from pole to pole
 
 
 def shards_of_sphere() -> list[tuple[c.Vector, c.Vector, c.Vector]]:
@@ -58,11 +58,18 @@ def burst(corners, towards: float, chance: random.Random) -> list[c.Vector]:
     centre = sum(corners, c.Vector()) / 3.0
     out = centre.normalized()
     # On from the flight, aside from the hit, and each a little differently.
-    speed = c.Vector((1.9 * towards, 0.0, 0.35)) + 2.6 * out
-    speed += 1.2 * c.Vector([chance.uniform(-1.0, 1.0) for _ in range(3)])
+    speed = c.Vector((3.2 * towards, 0.0, 0.6)) + 6.5 * out
+    speed += 2.0 * c.Vector([chance.uniform(-1.0, 1.0) for _ in range(3)])
     axis = c.Vector([chance.gauss(0.0, 1.0) for _ in range(3)])
     turn = c.Matrix.Rotation(chance.uniform(0.5, 2.4), 3, axis)
     return [centre + speed + turn @ (corner - centre) for corner in corners]
+
+
+def stripe_of(corners, count: int) -> int:
+    """Which of ``count`` surfaces a shard of the whole ball shows: six stripes from pole to pole, askew."""
+    centre = sum(corners, c.Vector()).normalized()
+    height = centre.dot(c.Vector((0.48, -0.36, 0.8)))
+    return int(3.0 * (height + 1.0)) % count
 
 
 def add_ball(name: str, towards: float, surfaces, seed: int) -> None:
@@ -74,8 +81,8 @@ def add_ball(name: str, towards: float, surfaces, seed: int) -> None:
     ball = c.add_mesh(name, vertices, faces, surfaces[0])
     for surface in surfaces[1:]:
         ball.data.materials.append(surface)
-    for polygon in ball.data.polygons:
-        polygon.material_index = chance.randrange(len(surfaces))
+    for polygon, corners in zip(ball.data.polygons, shards):
+        polygon.material_index = stripe_of(corners, len(surfaces))
     ball.shape_key_add(name="Whole")
     key = ball.shape_key_add(name="Burst")
     places = [place for corners in shards for place in burst(corners, towards, chance)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The large scenes, atrium and village: what is in them, how the sphere flies, and that they are built the same twice."""
+"""The large scenes, atrium, village and collision: what is in them, how it moves, and that each is built the same twice."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from mathutils import Vector  # noqa: E402
 
 sys.path.insert(0, os.path.join(ROOT, "scenes"))
 import atrium  # noqa: E402
+import collision  # noqa: E402
 import village  # noqa: E402
 
 
@@ -113,6 +114,29 @@ def test_village_has_its_parts_and_moves():
         assert at_frame(scene, 1, name) != at_frame(scene, 2, name), name
 
 
+def test_balls_meet_and_burst():
+    """Whole until they touch, as the spheres' own shards; afterwards apart, and each cloud in the other's place."""
+    scene = build(collision)
+    places = {}
+    for frame in (1, collision.TOUCH, 48, collision.FRAMES):
+        scene.frame_set(frame)
+        graph = bpy.context.evaluated_depsgraph_get()
+        for name in ("Left Ball", "Right Ball"):
+            ball = scene.objects[name].evaluated_get(graph)
+            points = [ball.matrix_world @ vertex.co for vertex in ball.data.vertices]
+            places[name, frame] = points
+    for name, side in (("Left Ball", -1.0), ("Right Ball", 1.0)):
+        for frame, apart in ((1, collision.START), (collision.TOUCH, collision.RADIUS)):
+            centre = Vector((side * apart, 0.0, collision.HEIGHT))
+            for point in places[name, frame]:
+                assert abs((point - centre).length - collision.RADIUS) < 1e-3, (name, frame)
+    left, right = places["Left Ball", 48], places["Right Ball", 48]
+    assert max(point.x for point in left) > 0.5 and min(point.x for point in right) < -0.5
+    ends = places["Left Ball", collision.FRAMES]
+    away = sum((point - Vector((0.0, 0.0, collision.HEIGHT))).length > 5.0 for point in ends)
+    assert away > 0.6 * len(ends), away / len(ends)
+
+
 def test_every_view_is_another():
     places = set()
     for view in village.VIEWS:
@@ -122,7 +146,11 @@ def test_every_view_is_another():
 
 
 def test_builds_are_the_same_twice():
-    for module, wishes in ((atrium, {"flying": True}), (village, {"view": "wires"})):
+    for module, wishes in (
+        (atrium, {"flying": True}),
+        (village, {"view": "wires"}),
+        (collision, {}),
+    ):
         first, second = (mesh_digest(build(module, **wishes)) for _ in range(2))
         assert first == second, module.__name__
 
@@ -132,6 +160,7 @@ if __name__ == "__main__":
         test_atrium_has_its_parts_and_rests,
         test_the_sphere_covers_the_view_once,
         test_village_has_its_parts_and_moves,
+        test_balls_meet_and_burst,
         test_every_view_is_another,
         test_builds_are_the_same_twice,
     )

@@ -273,6 +273,31 @@ ROWS: tuple[Feature, ...] = (
         "switched off",
         _REFUSE,
     ),
+    Feature(
+        "file",
+        "picture as a texture",
+        SHOWN,
+        "read at a point, as Cycles does. With --texture-filter mip frames read mip maps, by the longer step of the "
+        "coordinates from pixel to pixel, with --mip-bias; truth never. Noted and left: movies, tiles, Closest, "
+        "projections other than Flat, colour spaces other than sRGB and linear",
+        "textures:TextureReading",
+    ),
+    Feature(
+        "file",
+        "texture made by nodes (Noise, Brick, ...)",
+        SHOWN,
+        "read at a point: Blender has no mip maps of it",
+        "textures:TextureReading",
+    ),
+    Feature(
+        "file",
+        "coordinates of textures with --unjitter-textures",
+        HANDLED,
+        "those of the pixel's centre. Noted and left: textures from which bump or displacement is made, whose "
+        "coordinates another texture displaces or a node group gives, and materials in linked libraries; never: "
+        "environments and light",
+        "textures:TextureReading",
+    ),
     Feature("file", "more than 32767 objects", REFUSED, "Cycles tells no more apart", _REFUSE),
     Feature("file", "Eevee or another engine", NOTED, "Cycles renders", _REFUSE),
 )
