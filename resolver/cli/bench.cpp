@@ -11,6 +11,7 @@
 
 #include "image/error.h"
 #include "methods/driver.h"
+#include "shot/pass_table.h"
 
 namespace aa {
 namespace {
@@ -19,7 +20,7 @@ using Options = BenchOptions;
 struct Row {
     std::string text;
     double nsMedian = 0, nsMin = 0, nsPerEdgePixel = 0, maxError = NAN, rmsError = NAN;
-    size_t stateBytes = 0;
+    size_t inputBytes = 0, targetBytes = 0, stateBytes = 0;
 };
 
 // Seconds of this thread's processor, which other programs on the machine cannot lengthen; with several threads only
@@ -49,6 +50,8 @@ Row time(const MethodSpec& spec, const Frames& all, const Exec& exec, int repeat
             if (r > 0 && (i > 0 || !spec.method->temporal || frames.size() == 1)) ns.push_back(took * 1e9 / pixels);
         }
     row.stateBytes = method->stateBytes();
+    row.inputBytes = bytesOf(spec.passes(), frames[0], all.info.subSamplePositionsPx.size());
+    row.targetBytes = bytesOfTarget(all.info.width, all.info.height);
     std::sort(ns.begin(), ns.end());
     row.nsMedian = ns[ns.size() / 2];
     row.nsMin = ns.front();
@@ -99,10 +102,11 @@ void printHead(const Options& o, const Frames& f, const Exec& exec) {
         return;
     }
     std::printf(
-        "%s, %dx%d, %zu frames, %.1f %% edge pixels, %s, threads %d, %s\n%-32s %9s %9s %9s %9s %9s %7s %12s %12s\n",
+        "%s, %dx%d, %zu frames, %.1f %% edge pixels, %s, threads %d, %s\n%-32s %9s %9s %9s %9s %9s %9s %9s %7s %12s "
+        "%12s\n",
         (o.shot.empty() ? f.scene : o.shot).c_str(), f.info.width, f.info.height, count, 100 * f.edgeShare,
         std::string(name(exec.isa)).c_str(), o.work.threads, exec.parallel ? "wall clock" : "processor time", "method",
-        "ns/px", "min", "ns/edge", "ms", "state MB", "planes", "max error", "rms error");
+        "ns/px", "min", "ns/edge", "ms", "input MB", "target MB", "state MB", "planes", "max error", "rms error");
 }
 void printRow(const Options& o, const Row& row, const ShotInfo& info) {
     if (o.json) return;
@@ -110,8 +114,9 @@ void printRow(const Options& o, const Row& row, const ShotInfo& info) {
     if (o.markdown)
         std::printf("| `%s` | %.1f | %.2g | %.2g |\n", row.text.c_str(), planes, row.maxError, row.rmsError);
     else
-        std::printf("%-32s %9.2f %9.2f %9.1f %9.3f %9.2f %7.1f %12.3g %12.3g\n", row.text.c_str(), row.nsMedian,
-                    row.nsMin, row.nsPerEdgePixel, ms, double(row.stateBytes) / (1 << 20), planes, row.maxError,
+        std::printf("%-32s %9.2f %9.2f %9.1f %9.3f %9.2f %9.2f %9.2f %7.1f %12.3g %12.3g\n", row.text.c_str(),
+                    row.nsMedian, row.nsMin, row.nsPerEdgePixel, ms, double(row.inputBytes) / (1 << 20),
+                    double(row.targetBytes) / (1 << 20), double(row.stateBytes) / (1 << 20), planes, row.maxError,
                     row.rmsError);
     std::fflush(stdout);
 }
@@ -153,6 +158,8 @@ void execute(const Options& o) {
                            {"nsPerPixelMin", row.nsMin},
                            {"nsPerEdgePixel", row.nsPerEdgePixel},
                            {"edgeShare", frames->edgeShare},
+                           {"inputBytes", row.inputBytes},
+                           {"targetBytes", row.targetBytes},
                            {"stateBytes", row.stateBytes},
                            {"maxError", row.maxError},
                            {"rmsError", row.rmsError}});

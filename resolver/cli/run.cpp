@@ -7,6 +7,7 @@
 #include "cli/cli.h"
 #include "cli/run_arguments.h"
 #include "image/error.h"
+#include "report/format.h"
 
 namespace aa {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 struct Options {
     RunArguments run;
     std::vector<std::string> methods;
-    bool debugLayers = false;
+    bool debugLayers = false, overFrames = false;
 };
 }  // namespace
 
@@ -26,8 +27,8 @@ void printTable(const RunResults& r) {
     });
     size_t width = 6;
     for (const auto* m : rows) width = std::max(width, m->text.size());
-    std::printf("%-*s %10s %9s %9s %9s %10s%s\n", int(width), "method", "PSNR dB", "gain dB", "SSIM", "ns/px",
-                "state MB", r.device ? "  device ms" : "");
+    std::printf("%-*s %10s %9s %9s %9s %10s %10s%s\n", int(width), "method", "PSNR dB", "gain dB", "SSIM", "ns/px",
+                "input MB", "state MB", r.device ? "  device ms" : "");
     for (const auto* m : rows) {
         std::printf("%-*s", int(width), m->text.c_str());
         if (r.isReference(*m)) {
@@ -46,7 +47,7 @@ void printTable(const RunResults& r) {
             std::printf(" %9.2f", m->nsPerPixel);
         else
             std::printf(" %9s", "-");
-        std::printf(" %10.2f", double(m->stateBytes) / (1 << 20));
+        std::printf(" %10.2f %10.2f", double(m->inputBytes) / (1 << 20), double(m->stateBytes) / (1 << 20));
         if (m->deviceSecondsMedian) std::printf(" %10.4f", 1e3 * *m->deviceSecondsMedian);
         std::puts("");
     }
@@ -109,6 +110,31 @@ void printTemporal(const RunResults& r) {
         }
 }
 
+// Every figure frame by frame in the published form; PSNR alone unless all are asked for.
+void printOverFrames(const RunResults& r, bool all) {
+    const auto judged = [](const MethodResult& m) { return m.pooled ? m.pooled->frames : 0; };
+    if (std::none_of(r.methods.begin(), r.methods.end(), [&](const auto& m) { return judged(m) > 1; })) return;
+    size_t width = 6;
+    for (const auto& m : r.methods) width = std::max(width, m.text.size());
+    std::printf("over frames: best / worst / average (frame of the best, of the worst)\n");
+    bool infinite = false;
+    for (const Figure* f : figuresIn(r)) {
+        if (!all && f->name != "psnr") continue;
+        for (const auto& m : r.methods) {
+            const auto range = judged(m) > 1 ? rangeOverFrames(m, *f) : std::nullopt;
+            if (!range) continue;
+            infinite = infinite || std::isinf(range->mean);
+            std::printf("%-*s  %s %s / %s / %s (%d, %d), pooled %s\n", int(width), m.text.c_str(),
+                        std::string(f->name).c_str(), shown(*f, range->best).c_str(), shown(*f, range->worst).c_str(),
+                        shown(*f, range->mean).c_str(), range->bestFrame, range->worstFrame,
+                        shown(*f, m.pooled->mean.figure(f->name).value()).c_str());
+        }
+    }
+    if (infinite)
+        std::printf(
+            "a frame that is identical has an infinite PSNR, and then the average has; the pooled one has not\n");
+}
+
 void execute(const Options& o, Context& context) {
     RunOptions run;
     std::set<std::string> folders;
@@ -128,7 +154,7 @@ void execute(const Options& o, Context& context) {
     if (o.run.json)
         std::cout << toJsonText(results) << "\n";
     else
-        printTable(results), printTemporal(results);
+        printTable(results), printTemporal(results), printOverFrames(results, o.overFrames);
     if (!o.run.json) std::printf("results: %s\n", (run.out / "results.json").c_str());
 }
 
@@ -141,6 +167,8 @@ void addRun(CommandLine& line, Context& context) {
         .required()
         .oneEach();
     addRunArguments(c, o->run);
+    c.flag("--over-frames", o->overFrames,
+           "print best, worst and average over the frames of every figure, not of PSNR alone");
     c.flag("--debug-layers", o->debugLayers, "also write each method's intermediate images");
     c.run([o, &context] { execute(*o, context); });
 }

@@ -38,7 +38,8 @@ TEST(Maps, EqualPicturesShowTheLowEndOfEveryScale) {
         ASSERT_EQ(map.width(), 32);
         ASSERT_EQ(map.height(), 24);
         const Colour expected = kind.name == "ssim" ? Colour{1, 1, 1} : errorColour(0);
-        for (const auto& [x, y] : {std::pair{0, 0}, {16, 12}, {31, 23}}) EXPECT_EQ(at(map, x, y), expected) << kind.name;
+        for (const auto& [x, y] : {std::pair{0, 0}, {16, 12}, {31, 23}})
+            EXPECT_EQ(at(map, x, y), expected) << kind.name;
     }
 }
 TEST(Maps, ShowWhatTheMetricsFind) {
@@ -80,7 +81,8 @@ TEST(Maps, TheRootMeanSquareOfTheSpectrumIsThatOfThePicture) {
         for (int x = 0; x < 32; x++) sum += double(map.at(x, y)) * double(map.at(x, y));
     EXPECT_NEAR(sum / (32 * 24), squaredError(test, reference, {}).mse, 1e-7);
     for (const MapKind& kind : mapKinds())
-        EXPECT_TRUE(kind.draw(test, reference, {.parallel = true}).samePixels(kind.draw(test, reference, {.parallel = false})))
+        EXPECT_TRUE(
+            kind.draw(test, reference, {.parallel = true}).samePixels(kind.draw(test, reference, {.parallel = false})))
             << kind.name;
 }
 TEST(Maps, UnknownKindsAreNamedWithThoseThatThereAre) {
@@ -88,7 +90,8 @@ TEST(Maps, UnknownKindsAreNamedWithThoseThatThereAre) {
         mapKindByName("ssmi");
         FAIL();
     } catch (const UsageError& e) {
-        EXPECT_NE(std::string(e.what()).find("expected one of error, ssim, flip, fourier"), std::string::npos) << e.what();
+        EXPECT_NE(std::string(e.what()).find("expected one of error, ssim, flip, fourier"), std::string::npos)
+            << e.what();
     }
 }
 

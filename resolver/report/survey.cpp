@@ -320,6 +320,9 @@ class Maker {
             return std::find(methods.begin(), methods.end(), m.text) == methods.end();
         });
         const bool withTruth = few.methods.size() < methods.size();
+        if (const auto& reference = run.results.protocol.reference; withTruth && !reference.empty())
+            throw InputError(run.folder.string() + ": judged against " + reference +
+                             ", so it has no images of the truth; run the shot without --reference");
         if (few.methods.empty()) throw UsageError("expected a method beside truth");
         std::vector<ShownFigures> figures(few.methods.size());
         std::vector<std::vector<std::string>> files(methods.size());  // by method and frame, data URIs

@@ -91,6 +91,12 @@ int PassInfo::bytesPerPixel() const {
     return bytes;
 }
 
+size_t bytesOf(PassSet passes, const Frame& frame, size_t subSamples) {
+    const double pixels = double(frame.width) * frame.height;
+    const size_t segments = passes.has(Pass::segments) ? frame.segments.size() * kSegmentChannels.size() * 4 : 0;
+    return size_t(pixels * bytesPerPixel(passes, subSamples)) + segments;
+}
+
 double bytesPerPixel(PassSet passes, size_t subSamples) {
     double bytes = 0;
     for (const auto& p : allPasses())

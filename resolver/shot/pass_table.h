@@ -36,5 +36,9 @@ struct PassInfo {
 const std::vector<PassInfo>& allPasses();
 // Bytes per pixel in memory of everything that the passes hold.
 double bytesPerPixel(PassSet passes, size_t subSamples);
+// Of a frame that holds them: the pixels without borders, lists by their length.
+size_t bytesOf(PassSet passes, const Frame& frame, size_t subSamples);
+// Of a picture that a method writes.
+inline size_t bytesOfTarget(int width, int height) { return size_t(width) * size_t(height) * 3 * sizeof(float); }
 
 }  // namespace aa

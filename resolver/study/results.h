@@ -45,7 +45,10 @@ struct MethodResult {
     std::map<std::string, std::string, std::less<>> parameters;
     std::vector<std::string> passes;
     std::vector<FrameResult> frames;
-    size_t stateBytes = 0;  // history and scratch kept between frames
+    // Memory in the program's own formats (conventions 13.7): the passes that it reads, sub-samples counted; the
+    // picture that it writes; its history and scratch.
+    size_t inputBytes = 0, targetBytes = 0, stateBytes = 0;
+    size_t bytes() const { return inputBytes + targetBytes + stateBytes; }
     // Filled by finish():
     // Per frame, on the processor; ns/px from the median. 0: the method did not run there.
     double secondsMedian = 0, secondsMin = 0, nsPerPixel = 0;
@@ -56,6 +59,15 @@ struct MethodResult {
     // Over the frames that have FrameResult::rejected; absent when no history was rejected.
     std::optional<double> rejectedMse, rejectedShare;
 };
+
+// A figure over the judged frames, as [Oliveros 2018, 5.9] prints it: the frames are those where the best and the worst
+// first occur. The mean of an infinite PSNR is infinite, which is why the pooled figure stands beside it.
+struct FigureRange {
+    double best = 0, worst = 0, mean = 0;
+    int bestFrame = 0, worstFrame = 0;
+};
+// Nothing where it was not measured.
+std::optional<FigureRange> rangeOverFrames(const MethodResult& method, const Figure& figure);
 
 // A pair of methods, as indices into RunResults::methods.
 struct PairResult {

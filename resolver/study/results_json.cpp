@@ -251,6 +251,14 @@ void members(V v, S& f) {
     v.maybeObject("temporal", f.temporal);
     v.maybeObject("rejected", f.rejected);
 }
+template <class V, Is<FigureRange> S>
+void members(V v, S& r) {
+    v.value("best", r.best);
+    v.value("worst", r.worst);
+    v.value("mean", r.mean);
+    v.value("bestFrame", r.bestFrame);
+    v.value("worstFrame", r.worstFrame);
+}
 template <class V, Is<MethodResult> S>
 void members(V v, S& m) {
     v.value("id", m.id);
@@ -262,6 +270,8 @@ void members(V v, S& m) {
     v.value("sampling", m.sampling);
     v.value("parameters", m.parameters);
     v.value("passes", m.passes);
+    v.sparse("inputBytes", m.inputBytes, true);
+    v.sparse("targetBytes", m.targetBytes, true);
     v.value("stateBytes", m.stateBytes);
     v.value("secondsMedian", m.secondsMedian);
     v.value("secondsMin", m.secondsMin);
@@ -269,6 +279,12 @@ void members(V v, S& m) {
     v.maybe("deviceSecondsMedian", m.deviceSecondsMedian);
     v.maybe("deviceSecondsMin", m.deviceSecondsMin);
     v.objectOrNull("pooled", m.pooled);
+    if constexpr (!kReads<V>)  // follows from the frames
+        v.groupIf(m.pooled && m.pooled->frames > 1, "overFrames", [&](auto figures) {
+            for (const Metric& metric : metrics())
+                for (const Figure& f : metric.figures)
+                    figures.maybeObject(std::string(f.name).c_str(), rangeOverFrames(m, f));
+        });
     v.list("frames", m.frames);
     v.maybeObject("temporal", m.temporal);
     v.sparse("tileSquares", m.tileSquares, !m.tileSquares.empty());

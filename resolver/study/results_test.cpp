@@ -68,6 +68,42 @@ TEST(Results, PoolsMseNotDecibels) {
     EXPECT_DOUBLE_EQ(*other.mean.figure("flip"), 0.125);
     EXPECT_DOUBLE_EQ(*noaa.gainDb, 0);
 }
+TEST(Results, RangesOverFramesNameTheFirstBestAndWorst) {
+    RunResults run = twoMethods();
+    run.methods[0].frames = {frame(7, 0.02, 1, 0.7),
+                             frame(8, 0.01, 1, 0.9),
+                             frame(9, 0.04, 1, 0.5),
+                             frame(10, 0.01, 1, 0.9),
+                             {11, 1, {}, true, ""}};
+    finish(run, {});
+    const auto range = [&](size_t k, const char* name) {
+        return *rangeOverFrames(run.methods[k], *figureByName(name));
+    };
+    const FigureRange mse = range(0, "mse"), similarity = range(0, "ssimLuma"), noise = range(0, "psnr");
+    EXPECT_EQ(mse.best, 0.01);
+    EXPECT_EQ(mse.worst, 0.04);
+    EXPECT_DOUBLE_EQ(mse.mean, 0.02);
+    EXPECT_EQ(mse.bestFrame, 8);
+    EXPECT_EQ(mse.worstFrame, 9);
+    EXPECT_EQ(similarity.best, 0.9);
+    EXPECT_EQ(similarity.worstFrame, 9);
+    EXPECT_EQ(noise.best, psnr(0.01));
+    EXPECT_EQ(noise.bestFrame, 8);
+    EXPECT_FALSE(rangeOverFrames(run.methods[0], *figureByName("flip")));
+    // An identical frame: the average of its PSNR is infinite, the pooled one is not.
+    const FigureRange identical = range(1, "psnr");
+    EXPECT_EQ(identical.best, kInf);
+    EXPECT_EQ(identical.bestFrame, 1);
+    EXPECT_EQ(identical.worst, psnr(0.008));
+    EXPECT_EQ(identical.mean, kInf);
+    const auto j = nlohmann::json::parse(toJsonText(run));
+    EXPECT_EQ(j["methods"][1]["overFrames"]["psnr"]["mean"], "Inf");
+    EXPECT_EQ(j["methods"][0]["overFrames"]["ssimLuma"]["worstFrame"], 9);
+    EXPECT_FALSE(j["methods"][0]["overFrames"].contains("flip"));
+    run.methods[0].frames.resize(1);
+    finish(run, {});
+    EXPECT_FALSE(nlohmann::json::parse(toJsonText(run))["methods"][0].contains("overFrames")) << "a single frame";
+}
 TEST(Results, UnjudgedFramesAreLeftOut) {
     RunResults run = twoMethods();
     run.methods[0].frames[0].judged = false;

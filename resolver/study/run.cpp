@@ -5,6 +5,7 @@
 #include "gpu/method.h"
 #include "metrics/temporal.h"
 #include "shot/frame_stream.h"
+#include "shot/pass_table.h"
 #include "study/feed.h"
 #include "study/images.h"
 #include "study/judge.h"
@@ -91,6 +92,9 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, const Progres
             MethodResult& of = results.methods[k];
             if (manifest.isStatic && !of.frames.empty()) of.frames.back().judged = false;
             of.frames.push_back(std::move(result));
+            of.inputBytes =
+                std::max(of.inputBytes, bytesOf(methods[k].spec.passes(), input, manifest.subsamplePositionsPx.size()));
+            of.targetBytes = bytesOfTarget(input.width, input.height);
             of.stateBytes = std::max(of.stateBytes, methods[k].method->stateBytes());
         }
         judge.judgeRejected(methods, results.methods);

@@ -157,6 +157,29 @@ TEST(Study, AMethodStandsInForTheTruth) {
     RunOptions alone = optionsFor("half_planes", {"noaa"});
     EXPECT_THROW(judgeAgainst(alone, "noaa"), UsageError);
 }
+// By hand from the pass table (conventions 13.7): 4 bytes a channel, 8 sub-samples.
+TEST(Study, MemoryCountsPassesTargetAndState) {
+    SynthOptions o;
+    o.scene = "moving", o.width = 40, o.height = 24, o.frames = 2, o.period = 4;
+    o.subsamples = "d3d8", o.subsampleColor = true;
+    const fs::path folder = fs::temp_directory_path() / ("aaresolve_study_memory_" + std::to_string(::getpid()));
+    writeSynth(o, folder);
+    const ShotReader shot(folder);
+    RunOptions r;
+    for (const char* m : {"noaa", "taaSimplest", "msaa"}) r.methods.push_back(parseMethod(m));
+    r.frames = {0, 1}, r.out = folder / "out", r.writeExr = false;
+    const RunResults results = run(shot, r, {});
+    const size_t pixels = 40 * 24;
+    for (const auto& m : results.methods) EXPECT_EQ(m.targetBytes, pixels * 12);
+    EXPECT_EQ(results.methods[0].inputBytes, pixels * 12);
+    EXPECT_EQ(results.methods[0].stateBytes, 0u);
+    EXPECT_EQ(results.methods[1].inputBytes, pixels * (12 + 8)) << "colour and motion";
+    EXPECT_GT(results.methods[1].stateBytes, 0u);
+    EXPECT_EQ(results.methods[2].inputBytes, pixels * (12 + 4 + 12 + 4 + 8 * 20 + 4 + 8 * 12))
+        << "colour, depth, normal, object; of each sub-sample depth, normal, id and colour; the mask";
+    EXPECT_EQ(results.methods[2].bytes(), results.methods[2].inputBytes + pixels * 12 + results.methods[2].stateBytes);
+    fs::remove_all(folder);
+}
 TEST(Study, FramesAreChosenByNumber) {
     const Manifest& m = shot("moving").manifest();
     EXPECT_EQ(selectFrames(m, ""), (std::vector<size_t>{0, 1, 2, 3}));

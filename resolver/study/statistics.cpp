@@ -101,6 +101,23 @@ double median(std::vector<double> v) {
 }
 }  // namespace
 
+std::optional<FigureRange> rangeOverFrames(const MethodResult& method, const Figure& figure) {
+    const auto better = [&](double a, double b) { return figure.higherIsBetter ? a > b : a < b; };
+    std::optional<FigureRange> range;
+    double sum = 0, count = 0;
+    for (const FrameResult& f : method.frames) {
+        if (!f.judged || !f.metrics) continue;
+        const std::optional<double> v = f.metrics->figure(figure.name);
+        if (!v) return {};
+        if (!range) range = {*v, *v, 0, f.frame, f.frame};
+        if (better(*v, range->best)) range->best = *v, range->bestFrame = f.frame;
+        if (better(range->worst, *v)) range->worst = *v, range->worstFrame = f.frame;
+        sum += *v, count++;
+    }
+    if (range) range->mean = sum / count;
+    return range;
+}
+
 bool RunResults::jitterCentred() const { return std::abs(jitterMeanPx[0]) < 1e-4 && std::abs(jitterMeanPx[1]) < 1e-4; }
 
 void finish(RunResults& run, const std::vector<TileErrors>& errors) {

@@ -323,6 +323,35 @@ class Protocol(ProgramTest):
         options = ("-m", "noaa", "-o", out, "--reference", "msaa")
         self.refused(3, "run", plain, *options, says=("'msaa'", "subsamples"))
 
+    def test_best_worst_and_average_over_frames(self) -> None:
+        shot = self.synth("moving", "shot", "--for", "noaa,fxaa311", frames=5)
+        out = self.run_shot(shot, "noaa", "fxaa311", options=("-q", "--over-frames"))
+        for method in self.results(out)["methods"]:
+            for figure in ("mse", "psnr", "ssimLuma"):
+                values = {f["frame"]: f["metrics"][figure] for f in method["frames"]}
+                best, worst = sorted(values, key=values.get, reverse=figure != "mse")[
+                    :: len(values) - 1
+                ]
+                found = method["overFrames"][figure]
+                self.assertEqual((found["bestFrame"], found["worstFrame"]), (best, worst))
+                self.assertEqual((found["best"], found["worst"]), (values[best], values[worst]))
+                self.assertAlmostEqual(found["mean"], sum(values.values()) / 5, 12)
+            psnr_of = method["overFrames"]["psnr"]
+            words = (
+                "psnr {best:.2f} dB / {worst:.2f} dB / {mean:.2f} dB ({bestFrame}, {worstFrame})"
+            )
+            self.assertIn(words.format(**psnr_of), self.said.stdout)
+            self.assertIn("ssimLuma", self.said.stdout)
+
+    def test_memory_counts_what_is_read_and_written(self) -> None:
+        done = self.aaresolve(
+            "bench", "-m", "noaa", "-m", "gbaa", "--size", "64x36", "--frames", 1, "--json"
+        )
+        noaa, gbaa = json.loads(done.stdout)
+        self.assertEqual(noaa["inputBytes"], 64 * 36 * 12)
+        self.assertEqual(gbaa["inputBytes"] - noaa["inputBytes"], 64 * 36 * 8, "the edges pass")
+        self.assertEqual(gbaa["targetBytes"], 64 * 36 * 12)
+
     def test_sheet_and_report_say_it(self) -> None:
         shot = self.synth("circles", "shot", "--for", "noaa,uncharted")
         out = self.run_shot(

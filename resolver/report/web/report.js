@@ -175,6 +175,9 @@
   const megabytes1080 = (bytesPerPixel) => bytesPerPixel * 1920 * 1080 / 1048576;
   const stateOf = (m) => megabytes1080(m.stateBytes / (run.shot.resolution[0] * run.shot.resolution[1]));
   const passMemory = (m) => megabytes1080(m.passes.reduce((sum, p) => sum + (passBytes[p] || 0), 0));
+  // Inputs, written picture and state, beyond those of a method that hands the picture on.
+  const bytesOf = (m) => (m.inputBytes ?? 0) + (m.targetBytes ?? 0) + m.stateBytes;
+  const beyondNoaa = (m) => megabytes1080((bytesOf(m) - bytesOf(methods[noaa])) / (run.shot.resolution[0] * run.shot.resolution[1]));
   const publishedMemory = (m) => published[m.id]?.megabytes ?? null;
   sortableTable($("price-figures"), order, [
     { title: "Passes, s per frame", better: "low", get: (m, i) => priceOf(i)?.render ?? null, small: (m) => m.passes.join(", ") },
@@ -182,10 +185,11 @@
     device && { title: "Method, " + onDevice, better: "low", get: deviceMs },
     { title: "Kept, MB at 1080p", better: "low", get: (m) => stateOf(m), show: (m) => stateOf(m).toFixed(1) },
     { title: "Passes, MB at 1080p", better: "low", get: (m) => passMemory(m), show: (m) => passMemory(m).toFixed(1) },
+    noaa >= 0 && { title: "All beyond noaa, MB at 1080p", better: "low", get: beyondNoaa, show: (m) => beyondNoaa(m).toFixed(1) },
     { title: "Published extra, MB", better: "low", get: publishedMemory, show: (m) => (publishedMemory(m) == null ? "–" : publishedMemory(m).toFixed(1)) },
   ].filter(Boolean));
   $("price-note").textContent = "Kept: history and working memory of the method, scaled from this picture's size. Passes: what it reads beside colour, in 32-bit floats" +
-    (S ? ` with ${S} sub-samples per pixel` : "") + ". Published: extra memory of a GPU implementation" +
+    (S ? ` with ${S} sub-samples per pixel` : "") + ". All beyond noaa: passes with colour, the written picture and what is kept, less those of noaa. Published: extra memory of a GPU implementation" +
     (Object.keys(published).length ? " (" + [...new Set(Object.values(published).map((p) => p.source))].join(", ") + ")" : "") + ", which packs its buffers more tightly and counts its render targets.";
 
   // ---- charts ----
