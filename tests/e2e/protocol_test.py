@@ -318,6 +318,9 @@ class Protocol(ProgramTest):
         page = (self.folder / "reference.html").read_text()
         self.assertIn("msaa gets wrong counts as right", page)
         self.assertIn("against msaa (not the truth)", page)
+        words = ("judged against msaa", "no images of the truth")
+        question = ("-o", self.folder / "survey.html", "-q", "pair noaa truth")
+        self.refused(3, "survey", "make", out, *question, says=words)
         plain = self.synth("circles", "plain", "--for", "noaa", frames=2)
         out = self.folder / "none"
         options = ("-m", "noaa", "-o", out, "--reference", "msaa")
