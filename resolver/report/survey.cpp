@@ -1,7 +1,6 @@
 #include "report/survey.h"
 
 #include <algorithm>
-#include <charconv>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <sstream>
@@ -11,6 +10,7 @@
 #include "report/canvas.h"
 #include "report/html.h"
 #include "report/page.h"
+#include "report/survey_questions.h"
 #include "report/web/web_files.h"
 
 namespace aa {
@@ -18,93 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using json = nlohmann::ordered_json;
 
-constexpr const char* kTruth = "truth";
-constexpr double kFramesPerSecond = 24;
 constexpr size_t kLargePage = 50'000'000;  // bytes, beyond what goes by mail
-
-struct Run {
-    std::string name;  // of its folder
-    fs::path folder;
-    RunResults results;
-    std::vector<int> frames;  // of which every method has a picture
-};
-// A question as it was asked for.
-struct Wish {
-    std::string kind = "rank", run, text;
-    std::vector<std::string> methods;
-    std::string frame, frames, region;
-    int zoom = 1;
-    double framesPerSecond = kFramesPerSecond;
-};
-
-std::string joined(const std::vector<std::string>& texts) {
-    std::string all;
-    for (const auto& t : texts) all += (all.empty() ? "" : ", ") + t;
-    return all;
-}
-// Of "4,8,15,16" or "1-9", split at `separator`; nothing unless they are `count` whole numbers.
-std::optional<std::vector<int>> numbersOf(std::string_view text, char separator, size_t count) {
-    std::vector<int> numbers;
-    const char *at = text.data(), *end = at + text.size();
-    while (true) {
-        int v = 0;
-        const auto [next, error] = std::from_chars(at, end, v);
-        if (error != std::errc()) return {};
-        numbers.push_back(v);
-        if (next == end) break;
-        if (*next != separator) return {};
-        at = next + 1;
-    }
-    return numbers.size() == count ? std::optional(numbers) : std::nullopt;
-}
-
-Wish wishOf(const std::string& text) {
-    Wish wish;
-    std::istringstream in(text);
-    constexpr std::string_view kKinds[] = {"rank", "pair", "pairs", "rating"};
-    in >> wish.kind;
-    if (std::find(std::begin(kKinds), std::end(kKinds), wish.kind) == std::end(kKinds)) {
-        const std::string near = suggestion(wish.kind, {std::begin(kKinds), std::end(kKinds)});
-        throw UsageError("expected rank, pair, pairs or rating first, found '" + wish.kind + "'" +
-                         (near.empty() ? "" : "; did you mean '" + near + "'?"));
-    }
-    std::string word;
-    while (in >> word) {
-        const size_t equals = word.find('=');
-        const std::string name = word.substr(0, equals),
-                          value = equals == std::string::npos ? "" : word.substr(equals + 1);
-        if (equals == std::string::npos || name.find_first_of(":+") != std::string::npos) {
-            wish.methods.push_back(word);
-        } else if (name == "text") {
-            std::getline(in, wish.text);
-            wish.text = value + wish.text;
-        } else if (name == "run") {
-            wish.run = value;
-        } else if (name == "frame") {
-            wish.frame = value;
-        } else if (name == "frames") {
-            wish.frames = value;
-        } else if (name == "region") {
-            wish.region = value;
-        } else if (name == "zoom") {
-            const auto zoom = numbersOf(value, ',', 1);
-            constexpr int kMost = 16;
-            if (!zoom || (*zoom)[0] < 1 || (*zoom)[0] > kMost)
-                throw UsageError("zoom: expected a whole number from 1 to 16, found '" + value + "'");
-            wish.zoom = (*zoom)[0];
-        } else if (name == "fps") {
-            char* end = nullptr;
-            wish.framesPerSecond = std::strtod(value.c_str(), &end);
-            if (value.empty() || *end || !(wish.framesPerSecond >= 0.1 && wish.framesPerSecond <= 240))
-                throw UsageError("fps: expected 0.1 to 240, found '" + value + "'");
-        } else {
-            const std::string near = suggestion(name, {"run", "frame", "frames", "fps", "region", "zoom", "text"});
-            throw UsageError("unknown '" + name + "='" + (near.empty() ? "" : "; did you mean '" + near + "='?"));
-        }
-    }
-    if (!wish.frame.empty() && !wish.frames.empty()) throw UsageError("frame= and frames= exclude each other");
-    return wish;
-}
 
 void mustBeUtf8(const std::string& text, const std::string& what) {
     try {
@@ -112,97 +26,6 @@ void mustBeUtf8(const std::string& text, const std::string& what) {
     } catch (const json::exception&) {
         throw UsageError(what + ": expected UTF-8, found other bytes");
     }
-}
-
-// What a question asks of one run, with everything settled but the pictures themselves.
-std::vector<int> framesOf(const Wish& wish, const Run& run) {
-    if (run.frames.empty())
-        throw InputError(run.folder.string() +
-                         ": no frame of which every method has an image; run again with --write exr");
-    if (!wish.frame.empty()) {
-        const auto one = numbersOf(wish.frame, ',', 1);
-        if (!one) throw UsageError("frame: expected a whole number, found '" + wish.frame + "'");
-        if (std::find(run.frames.begin(), run.frames.end(), (*one)[0]) == run.frames.end())
-            throw UsageError("frame: expected one of " + std::to_string(run.frames.front()) + " to " +
-                             std::to_string(run.frames.back()) + " with images in " + run.name + ", found " +
-                             wish.frame);
-        return *one;
-    }
-    if (wish.frames.empty()) return {run.frames.back()};
-    std::vector<int> range = {run.frames.front(), run.frames.back()};
-    if (wish.frames != "all") {
-        const auto given = numbersOf(wish.frames, '-', 2);
-        if (!given) throw UsageError("frames: expected A-B or all, found '" + wish.frames + "'");
-        range = *given;
-    }
-    std::vector<int> frames;
-    for (const int f : run.frames)
-        if (f >= range[0] && f <= range[1]) frames.push_back(f);
-    if (frames.size() < 2)
-        throw UsageError("frames: expected two or more with images, found " + std::to_string(frames.size()) + " in " +
-                         run.name + " (write them all: run --write exr --write-frames all)");
-    return frames;
-}
-std::vector<std::string> methodsOf(const Wish& wish, const Run& run, const std::vector<std::string>& standing) {
-    std::vector<std::string> methods = wish.methods.empty() ? standing : wish.methods;
-    std::vector<std::string_view> known = {kTruth};
-    for (const auto& m : run.results.methods) known.push_back(m.text);
-    if (methods.empty())
-        for (const auto& m : run.results.methods) methods.push_back(m.text);
-    for (size_t i = 0; i < methods.size(); i++) {
-        if (std::find(known.begin(), known.end(), methods[i]) == known.end()) {
-            const std::string near = suggestion(methods[i], known);
-            throw UsageError("no method '" + methods[i] + "' in " + run.name +
-                             (near.empty() ? "" : "; did you mean '" + near + "'?"));
-        }
-        if (std::find(methods.begin(), methods.begin() + long(i), methods[i]) != methods.begin() + long(i))
-            throw UsageError("method '" + methods[i] + "' is named twice");
-    }
-    return methods;
-}
-// The methods of one question each: see kQuestionForm.
-std::vector<std::vector<std::string>> shared(const std::vector<std::string>& methods, const std::string& kind) {
-    const size_t n = methods.size();
-    if (kind != "rating" && n < 2)
-        throw UsageError(kind + ": expected two methods or more, found " + std::to_string(n));
-    if (kind == "pair" && n != 2) throw UsageError("pair: expected two methods, found " + joined(methods));
-    if (kind == "rating" || (kind == "rank" && n <= size_t(kMostRanked)) || kind == "pair") return {methods};
-    std::vector<std::vector<std::string>> all;
-    if (kind == "pairs") {
-        for (size_t a = 0; a < n; a++)
-            for (size_t b = a + 1; b < n; b++) all.push_back({methods[a], methods[b]});
-        return all;
-    }
-    const size_t others = n - 1, most = size_t(kMostRanked) - 1, count = (others + most - 1) / most;
-    for (size_t k = 0; k < count; k++) {
-        all.push_back({methods[0]});
-        for (size_t i = k * others / count; i < (k + 1) * others / count; i++) all.back().push_back(methods[i + 1]);
-    }
-    return all;
-}
-Window regionOf(const std::string& text, const Pictures& p) {
-    const int w = p.methods[0].width(), h = p.methods[0].height();
-    if (text.empty()) return {0, 0, w, h};
-    if (text.starts_with("auto")) {
-        Window size{0, 0, std::min(w, 480), std::min(h, 270)};
-        if (text != "auto") {
-            const auto given =
-                text.starts_with("auto:") ? numbersOf(std::string_view(text).substr(5), 'x', 2) : std::nullopt;
-            if (!given || (*given)[0] < 1 || (*given)[1] < 1)
-                throw UsageError("region: expected X,Y,W,H, auto or auto:WxH, found '" + text + "'");
-            size.width = std::min(w, (*given)[0]), size.height = std::min(h, (*given)[1]);
-        }
-        const auto windows = mostTellingWindows(p, size.width, size.height, 1);
-        return windows.empty() ? size : windows[0];
-    }
-    const auto given = numbersOf(text, ',', 4);
-    if (!given) throw UsageError("region: expected X,Y,W,H, auto or auto:WxH, found '" + text + "'");
-    const Window window{(*given)[0], (*given)[1], (*given)[2], (*given)[3]};
-    if (window.x < 0 || window.y < 0 || window.width < 1 || window.height < 1 || window.width > w - window.x ||
-        window.height > h - window.y)
-        throw UsageError("region: expected a part of " + std::to_string(w) + "x" + std::to_string(h) + ", found " +
-                         text);
-    return window;
 }
 
 // ---- figures ----
@@ -280,7 +103,8 @@ class Maker {
             if (name.empty() || name == ".") name = fs::weakly_canonical(folder).filename().string();
             if (name.empty()) name = fs::weakly_canonical(folder).parent_path().filename().string();
             // Two folders of one name are told apart by what was given.
-            if (std::any_of(runs_.begin(), runs_.end(), [&](const Run& r) { return r.name == name; })) name = folder;
+            if (std::any_of(runs_.begin(), runs_.end(), [&](const SurveyRun& r) { return r.name == name; }))
+                name = folder;
             auto frames = framesWithPictures(results);
             runs_.push_back({name, folder, std::move(results), std::move(frames)});
         }
@@ -300,17 +124,17 @@ class Maker {
     }
 
   private:
-    void ask(const Wish& wish) {
+    void ask(const QuestionWish& wish) {
         bool asked = false;
         for (size_t r = 0; r < runs_.size(); r++)
             if (wish.run.empty() || wish.run == runs_[r].name || wish.run == std::to_string(r + 1))
                 askOf(wish, runs_[r]), asked = true;
         if (asked) return;
         std::vector<std::string> names;
-        for (const Run& r : runs_) names.push_back(r.name);
+        for (const SurveyRun& r : runs_) names.push_back(r.name);
         throw UsageError("run: expected one of " + joined(names) + " or its number, found '" + wish.run + "'");
     }
-    void askOf(const Wish& wish, const Run& run) {
+    void askOf(const QuestionWish& wish, const SurveyRun& run) {
         const auto methods = methodsOf(wish, run, options_.methods);
         const auto groups = shared(methods, wish.kind);
         const auto frames = framesOf(wish, run);
@@ -370,8 +194,8 @@ class Maker {
         }
     }
     // The same pictures of two questions are kept once.
-    std::string codeOf(const Run& run, const std::string& method, const std::vector<int>& frames, const Window& region,
-                       const std::vector<std::string>& files) {
+    std::string codeOf(const SurveyRun& run, const std::string& method, const std::vector<int>& frames,
+                       const Window& region, const std::vector<std::string>& files) {
         const std::string what =
             json({run.folder.string(), method, frames, {region.x, region.y, region.width, region.height}}).dump();
         auto& code = known_[what];
@@ -396,7 +220,7 @@ class Maker {
         std::istringstream in(text);
         for (std::string word; in >> word;) {
             while (!word.empty() && !std::isalnum(static_cast<unsigned char>(word.back()))) word.pop_back();
-            for (const Run& run : runs_)
+            for (const SurveyRun& run : runs_)
                 for (const auto& m : run.results.methods)
                     if (word == m.text || word == m.id) {
                         survey_.notes.push_back(where + ": its text names the method " + word +
@@ -445,7 +269,7 @@ class Maker {
     const SurveyOptions& options_;
     const Exec& exec_;
     Codes codes_;
-    std::vector<Run> runs_;
+    std::vector<SurveyRun> runs_;
     Survey survey_;
     std::map<std::string, std::string> known_;                // what it shows -> code
     std::map<std::string, std::vector<std::string>> images_;  // code -> data URIs

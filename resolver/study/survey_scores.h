@@ -16,18 +16,11 @@
 #include <optional>
 
 #include "study/survey.h"
+#include "study/survey_statistics.h"
 
 namespace aa {
 
-inline constexpr size_t kFewestForIntervals = 6;
 inline constexpr size_t kFewestObservers = 15;  // [ITU 2019] asks for at least so many
-
-struct Estimate {
-    double value = 0;
-    std::optional<double> low, high;
-};
-// Wilson's 95 % interval of a share of `of`; absent below kFewestForIntervals.
-Estimate wilsonShare(double wins, size_t of);
 
 struct ScoredPicture {
     const SurveyPicture* picture = nullptr;
@@ -74,8 +67,6 @@ struct SurveyScores {
     std::vector<std::string> notes;  // what was counted once, and whether the participants are too few
 };
 SurveyScores scoreSurvey(const SurveyKey& key, const Answers& answers);
-// Bradley and Terry's scores from wins[a][b], how often a beat b; see above.
-std::vector<double> bradleyTerry(const std::vector<std::vector<double>>& wins);
 
 std::string toJsonText(const SurveyScores& scores);
 std::string toCsvText(const SurveyScores& scores);  // one line per set and picture

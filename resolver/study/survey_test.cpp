@@ -140,6 +140,23 @@ TEST(SurveyScores, OfThePublishedShares) {
         EXPECT_TRUE(scores.notes.empty());
     }
 }
+// The thesis finds that its MSE and its viewers do not agree in scene 1 [Stejmar n.d., 6.1]: table 5.1 beside
+// question 1.
+TEST(SurveyScores, AgreementOfThePublishedFirstQuestion) {
+    const Published& q = kPublished[0];
+    auto asked = question("q1", QuestionKind::rank, q.methods);
+    const double mse[] = {0.5796, 0.4204, 1.8214, 1.6349, 0.3212};
+    for (size_t m = 0; m < q.methods.size(); m++) asked.pictures[m].run["fmagMse"] = mse[m];
+    const SurveyKey key = keyOf({asked});
+    const SurveyScores scores = scoreSurvey(key, answersOf(rankingsOf(q)));
+    const Agreement& a = scores.sets[0].agreements.at(0);
+    // Viewers: FXAA, T2MSAA, FXAA CS, GBAA, No AA; MSE: T2MSAA, GBAA, No AA, FXAA CS, FXAA. Four pairs of ten agree.
+    EXPECT_NEAR(a.kendall->value, (4.0 - 6) / 10, 1e-12);
+    // Places differ by 4, -1, 1, -2, -2: rho = 1 - 6 * 26 / 120.
+    EXPECT_NEAR(a.spearman->value, -0.3, 1e-12);
+    EXPECT_LT(*a.kendall->low, 0);
+    EXPECT_LT(*a.kendall->high, 0.01);
+}
 TEST(SurveyScores, OfThePublishedVotes) {  // questions 5 and 6: 65 of 66 and 63 of 66 for T2MSAA
     const SurveyKey key = keyOf({question("q5", QuestionKind::pair, {"T2MSAA", "2x"})});
     std::vector<std::vector<int>> votes(65, {1, 0});

@@ -11,6 +11,7 @@ Each case is made from (seed, number) alone, so it is the same on every machine.
 from __future__ import annotations
 
 import argparse
+import json
 import random
 import resource
 import shutil
@@ -100,6 +101,30 @@ class Corpus:
                 {"Frame": str(frame), "cycles.ViewLayer.samples": "1"},
             )
         shutil.copy(folder / "shot/shot.json", folder / "notes.json")
+        self._survey(folder / "survey")
+
+    def _survey(self, folder: Path) -> None:
+        """A survey's page, key and answers."""
+        questions = [w for kind in ("rank", "pair", "rating") for w in ("-q", kind)]
+        self._call("survey", "make", self.folder / "run", "-o", folder, *questions)
+        key = json.loads((folder / "survey.key.json").read_text())
+        codes = [p["code"] for p in key["questions"][0]["pictures"]]
+        given = [
+            {"ranks": {c: r + 1 for r, c in enumerate(codes)}},
+            {"better": codes[0]},
+            {"ratings": dict.fromkeys(codes, 4)},
+        ]
+        answers = {
+            "format": "aaresolve-survey-answers",
+            "version": 1,
+            "survey": key["survey"],
+            "participant": "p",
+            "answers": [
+                {"question": q["id"], "shown": codes, "seconds": 1.5, **own}
+                for q, own in zip(key["questions"], given)
+            ],
+        }
+        (folder / "answers.json").write_text(json.dumps(answers, indent=1))
 
     def _call(self, *arguments) -> None:
         subprocess.run([self.program, *map(str, arguments)], check=True, stdout=subprocess.DEVNULL)
@@ -125,6 +150,7 @@ class Case:
             self.native,
         ]
         kinds += [self.notes, self.results, self.method, self.compare]
+        kinds += [self.answers, self.question]
         kinds[number % len(kinds)]()
 
     def _copy(self, name: str) -> Path:
@@ -252,6 +278,23 @@ class Case:
             "-o",
             str(self.folder / f"out.{'html' if command == 'report' else 'png'}"),
         ]
+
+    def answers(self) -> None:
+        survey = self._copy("survey")
+        path = survey / self.rng.choice(["answers.json", "answers.json", "survey.key.json"])
+        path.write_text(
+            mutate.mutate_json(self.rng, path.read_text()),
+            encoding="utf-8",
+            errors="surrogateescape",
+        )
+        self.arguments = ["survey", "score", str(survey / "answers.json")]
+        self.arguments += ["--survey", str(survey / "survey.html"), "-o", str(survey / "scores")]
+
+    def question(self) -> None:
+        good = "rank noaa taaSimplest frames=1-2 fps=8 region=2,3,16,8 zoom=2 text=Look here."
+        asked = mutate.mutate_text(self.rng, good).replace("\0", "")
+        self.arguments = ["survey", "make", str(self.corpus.folder / "run"), "-q", asked]
+        self.arguments += ["-o", str(self.folder / "survey"), "-j", "1"]
 
     def method(self) -> None:
         self.arguments = [

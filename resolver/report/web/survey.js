@@ -241,6 +241,7 @@
     $("views").hidden = panes.length < 2;
     document.querySelector(`#views input[value="${wide() ? "all" : "one"}"]`).checked = true;
     $("answer").replaceChildren(...form());
+    $("pictures").style.setProperty("--rows", $("answer").querySelectorAll(".row").length);
     $("next").textContent = state.at + 1 < count ? "Next" : "Finish";
     const most = q.kind === "rank" ? panes.length : q.kind === "pair" ? 2 : bestRating;
     const keys = [panes.length > 1 && ["A – " + letterOf(panes.length - 1), "show this picture"],
