@@ -110,7 +110,8 @@ std::vector<int> framesOf(const QuestionWish& wish, const SurveyRun& run) {
                          run.name + " (write them all: run --write exr --write-frames all)");
     return frames;
 }
-std::vector<std::string> methodsOf(const QuestionWish& wish, const SurveyRun& run, const std::vector<std::string>& standing) {
+std::vector<std::string> methodsOf(const QuestionWish& wish, const SurveyRun& run,
+                                   const std::vector<std::string>& standing) {
     std::vector<std::string> methods = wish.methods.empty() ? standing : wish.methods;
     std::vector<std::string_view> known = {kTruth};
     for (const auto& m : run.results.methods) known.push_back(m.text);

@@ -1,5 +1,5 @@
-// The questions of a survey as they are written, and what each asks of a run. Everything throws UsageError with what was
-// expected and found.
+// The questions of a survey as they are written, and what each asks of a run. Everything throws UsageError with what
+// was expected and found.
 #pragma once
 #include <filesystem>
 #include <string>

@@ -16,8 +16,8 @@ struct Estimate {
 // The interval of [Wilson 1927] of a share of `of`; absent below kFewestForIntervals.
 Estimate wilsonShare(double wins, size_t of);
 
-// Scores of the model of [Bradley 1952] from wins[a][b], how often a beat b: P(a beats b) = 1 / (1 + exp(s_b - s_a)), sum
-// 0, fitted as in [Hunter 2004] with half a win added on either side of every pair that was asked.
+// Scores of the model of [Bradley 1952] from wins[a][b], how often a beat b: P(a beats b) = 1 / (1 + exp(s_b - s_a)),
+// sum 0, fitted as in [Hunter 2004] with half a win added on either side of every pair that was asked.
 std::vector<double> bradleyTerry(const std::vector<std::vector<double>>& wins);
 
 // Kendall's tau b and Spearman's rho as sums, which add up over sets: tau then counts pairs within sets, rho correlates

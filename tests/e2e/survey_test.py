@@ -46,13 +46,17 @@ class Survey(ProgramTest):
         self.assertEqual(set(shown), {"psnr", "ssimLuma", "flip", "fmagMse"})
         pooled = results["methods"][0]["pooled"]["psnr"]
         self.assertAlmostEqual(key["questions"][0]["pictures"][0]["run"]["psnr"], pooled)
-        key, _ = self.made(run, "-m", "smaa1x", "-m", "noaa", "-q", "pairs", "-q", "rating frames=2-3")
+        key, _ = self.made(
+            run, "-m", "smaa1x", "-m", "noaa", "-q", "pairs", "-q", "rating frames=2-3"
+        )
         self.assertEqual(self.methods_of(key), [["smaa1x", "noaa"]] * 2)
         self.assertEqual([q["kind"] for q in key["questions"]], ["pair", "rating"])
         self.assertEqual(key["questions"][1]["frames"], [2, 3])
         self.assertEqual(key["questions"][1]["framesPerSecond"], 24)
         # A region changes what was seen, so also its figures; the same picture keeps its code.
-        key, _ = self.made(run, "-q", "rank region=1,2,30,20", "-q", "pair noaa smaa1x region=1,2,30,20")
+        key, _ = self.made(
+            run, "-q", "rank region=1,2,30,20", "-q", "pair noaa smaa1x region=1,2,30,20"
+        )
         self.assertNotEqual(key["questions"][0]["pictures"][0]["shown"]["psnr"], shown["psnr"])
         code = [{p["method"]: p["code"] for p in q["pictures"]} for q in key["questions"]]
         self.assertEqual(code[0]["smaa1x"], code[1]["smaa1x"])
@@ -78,9 +82,7 @@ class Survey(ProgramTest):
         # Seven to rank: two questions, the first method in each.
         seven = [word for m in names[1:8] for word in ("-m", m)]
         key, _ = self.made(run, *seven)
-        self.assertEqual(
-            self.methods_of(key), [[names[1], *names[2:5]], [names[1], *names[5:8]]]
-        )
+        self.assertEqual(self.methods_of(key), [[names[1], *names[2:5]], [names[1], *names[5:8]]])
         key, _ = self.made(run)  # nine: five and five
         self.assertEqual([len(group) for group in self.methods_of(key)], [5, 5])
 
@@ -157,7 +159,12 @@ class Survey(ProgramTest):
             "survey": key["survey"],
             "participant": "p",
             "answers": [
-                {"question": "q1", "shown": codes, "ranks": {codes[0]: 2, codes[1]: 1}, "seconds": 1},
+                {
+                    "question": "q1",
+                    "shown": codes,
+                    "ranks": {codes[0]: 2, codes[1]: 1},
+                    "seconds": 1,
+                },
                 {"question": "q2", "shown": codes, "better": codes[1], "seconds": 1},
             ],
         }
@@ -175,7 +182,15 @@ class Survey(ProgramTest):
         refused(json.dumps({**good, "answers": good["answers"][:1]}), "none to q2")
         good["answers"][1]["better"] = codes[0]
         refused(json.dumps(good), "of the same participant (p)", "keep one of the two files")
-        self.refused(3, "survey", "score", self.folder / "none.json", "--survey", page, says=("no such file",))
+        self.refused(
+            3,
+            "survey",
+            "score",
+            self.folder / "none.json",
+            "--survey",
+            page,
+            says=("no such file",),
+        )
         (self.folder / "survey/survey.key.json").unlink()
         self.refused(3, *score, says=("survey.key.json: no such file", "the key"))
 

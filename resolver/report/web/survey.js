@@ -103,6 +103,8 @@
     $("tabs").hidden = panes.length < 2;
   };
   const select = (k) => {
+    const { port, figure } = panes[current];
+    if (!figure.hidden) scroll = [port.scrollLeft, port.scrollTop]; // its event may still be on its way
     current = k;
     draw();
     if (!isOneAtATime()) panes[k].figure.scrollIntoView({ block: "nearest", inline: "nearest" });
