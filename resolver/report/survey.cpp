@@ -164,7 +164,8 @@ class Maker {
                                                 [&](const MethodResult& r) { return r.text == methods[m]; });
                 const auto i = size_t(found - few.methods.begin());
                 const Rgb shown = found == few.methods.end() ? truth : cropped(p.methods[i], region);
-                if (found != few.methods.end() && !truth.empty()) figures[i].add(shown, truth, exec_);
+                if (found != few.methods.end() && !truth.empty() && !few.isReference(*found))
+                    figures[i].add(shown, truth, exec_);
                 files[m].push_back("data:image/png;base64," + base64(pngBytes(shown)));
             }
         }

@@ -30,7 +30,8 @@ inline constexpr const char* kQuestionForm =
     "\n  run=      a run by its folder's name or its number, from 1; without: of every run"
     "\n  frame=    one frame, default the last with pictures; frames=A-B or frames=all plays them"
     "\n  fps=      of played frames, default 24"
-    "\n  region=   the part that is shown; auto or auto:WxH = where these methods differ most"
+    "\n  region=   the part that is shown, default all that the run measured; auto or auto:WxH ="
+    "\n            where these methods differ most"
     "\n  zoom=     screen pixels per pixel, 1 to 16, default 1"
     "\n  text=     what to look at; all that follows";
 

@@ -113,7 +113,9 @@ std::vector<int> framesOf(const QuestionWish& wish, const SurveyRun& run) {
 std::vector<std::string> methodsOf(const QuestionWish& wish, const SurveyRun& run,
                                    const std::vector<std::string>& standing) {
     std::vector<std::string> methods = wish.methods.empty() ? standing : wish.methods;
-    std::vector<std::string_view> known = {kTruth};
+    std::vector<std::string_view> known;
+    // A run against one of its methods has no pictures of the truth.
+    if (run.results.protocol.reference.empty()) known.push_back(kTruth);
     for (const auto& m : run.results.methods) known.push_back(m.text);
     if (methods.empty())
         for (const auto& m : run.results.methods) methods.push_back(m.text);
@@ -149,27 +151,21 @@ std::vector<std::vector<std::string>> shared(const std::vector<std::string>& met
 }
 Window regionOf(const std::string& text, const Pictures& p) {
     const int w = p.methods[0].width(), h = p.methods[0].height();
-    if (text.empty()) return {0, 0, w, h};
+    const Window all = p.region.value_or(Window{0, 0, w, h});
+    if (text.empty()) return all;
     if (text.starts_with("auto")) {
-        Window size{0, 0, std::min(w, 480), std::min(h, 270)};
+        Window size{all.x, all.y, std::min(all.width, 480), std::min(all.height, 270)};
         if (text != "auto") {
             const auto given =
                 text.starts_with("auto:") ? numbersOf(std::string_view(text).substr(5), 'x', 2) : std::nullopt;
             if (!given || (*given)[0] < 1 || (*given)[1] < 1)
                 throw UsageError("region: expected X,Y,W,H, auto or auto:WxH, found '" + text + "'");
-            size.width = std::min(w, (*given)[0]), size.height = std::min(h, (*given)[1]);
+            size.width = std::min(all.width, (*given)[0]), size.height = std::min(all.height, (*given)[1]);
         }
         const auto windows = mostTellingWindows(p, size.width, size.height, 1);
         return windows.empty() ? size : windows[0];
     }
-    const auto given = numbersOf(text, ',', 4);
-    if (!given) throw UsageError("region: expected X,Y,W,H, auto or auto:WxH, found '" + text + "'");
-    const Window window{(*given)[0], (*given)[1], (*given)[2], (*given)[3]};
-    if (window.x < 0 || window.y < 0 || window.width < 1 || window.height < 1 || window.width > w - window.x ||
-        window.height > h - window.y)
-        throw UsageError("region: expected a part of " + std::to_string(w) + "x" + std::to_string(h) + ", found " +
-                         text);
-    return window;
+    return windowFrom(text, "region", "the run", w, h);
 }
 
 }  // namespace aa

@@ -33,7 +33,7 @@ std::vector<std::string> methodsOf(const QuestionWish& wish, const SurveyRun& ru
                                    const std::vector<std::string>& standing);
 // The methods of one question each: every two of `pairs`; more than five to rank in groups, the first in each.
 std::vector<std::vector<std::string>> shared(const std::vector<std::string>& methods, const std::string& kind);
-// Of "", "X,Y,W,H", "auto", "auto:WxH".
+// Of "" (all that the run measured), "X,Y,W,H", "auto", "auto:WxH".
 Window regionOf(const std::string& text, const Pictures& pictures);
 // "a, b, c"
 std::string joined(const std::vector<std::string>& texts);

@@ -61,6 +61,20 @@ class Survey(ProgramTest):
         code = [{p["method"]: p["code"] for p in q["pictures"]} for q in key["questions"]]
         self.assertEqual(code[0]["smaa1x"], code[1]["smaa1x"])
 
+    def test_of_a_run_of_a_region_against_a_method(self) -> None:
+        self.run_of(METHODS[:2])
+        run = self.folder / "against"
+        methods = [word for m in METHODS[:3] for word in ("-m", m)]
+        against = ("--reference", "fxaa311", "--region", "8,4,40,32")
+        self.aaresolve("run", self.folder / "shot", *methods, *against, "-o", run, "-q")
+        key, _ = self.made(run)
+        self.assertEqual(key["questions"][0]["region"], [8, 4, 40, 32])
+        shown = {p["method"]: p["shown"] for p in key["questions"][0]["pictures"]}
+        self.assertEqual(shown["fxaa311"], {})  # what the others are held against
+        self.assertIn("psnr", shown["noaa"])
+        again = ("survey", "make", run, "-o", self.folder / "t", "-q", "rank noaa truth")
+        self.refused(2, *again, says=("no method 'truth' in against",))
+
     def test_of_every_run_or_of_one(self) -> None:
         one = self.run_of(METHODS[:2])
         two = self.folder / "other"
@@ -133,7 +147,7 @@ class Survey(ProgramTest):
         refused("rank zoon=2", "did you mean 'zoom='?")
         refused("rank zoom=0", "zoom: expected a whole number from 1 to 16")
         refused("rank fps=fast", "fps: expected 0.1 to 240")
-        refused("rank region=200,0,100,100", "a part of 240x160")
+        refused("rank region=200,0,100,100", "not all within the picture", "240 x 160")
         refused("rank region=auto:9", "auto or auto:WxH")
         refused("rank frame=9", "one of 1 to 4")
         refused("rank frames=4-4", "two or more")
