@@ -113,9 +113,7 @@ std::vector<int> framesOf(const QuestionWish& wish, const SurveyRun& run) {
 std::vector<std::string> methodsOf(const QuestionWish& wish, const SurveyRun& run,
                                    const std::vector<std::string>& standing) {
     std::vector<std::string> methods = wish.methods.empty() ? standing : wish.methods;
-    std::vector<std::string_view> known;
-    // A run against one of its methods has no pictures of the truth.
-    if (run.results.protocol.reference.empty()) known.push_back(kTruth);
+    std::vector<std::string_view> known = {kTruth};
     for (const auto& m : run.results.methods) known.push_back(m.text);
     if (methods.empty())
         for (const auto& m : run.results.methods) methods.push_back(m.text);
