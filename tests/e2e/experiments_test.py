@@ -187,6 +187,34 @@ class Outcomes(ProgramTest):
         page = "\n".join(tables.source_page("T", [o], {}, {}).lines)
         self.assertIn(f"3, 4 / {at_best}, {at_worst}", page)
 
+    def test_series(self) -> None:
+        claims = [
+            Claim("a", "dips", "Uncharted", {"by": -100.0}),
+            Claim("b", "above_in_moment", ["Master", "Uncharted"], {}),
+        ]
+        o = self.outcome("moving", "series", {}, claims, moment=(3, 5))
+        psnr = {
+            t: [f["metrics"]["psnr"] for f in o.run.methods[t]["frames"]]
+            for t in ("noaa", "master", "uncharted")
+        }
+        gains = outcomes.gains_over_time(o, "Master")
+        self.assertEqual(list(gains), list(range(1, 9)))
+        self.assertAlmostEqual(gains[4], psnr["master"][3] - psnr["noaa"][3])
+        inside, outside = outcomes._moment(o, "Master")
+        self.assertEqual((len(inside), len(outside)), (3, 5))
+        ahead = [a - b for a, b in zip(psnr["master"][2:5], psnr["uncharted"][2:5])]
+        answer = (
+            "holds" if min(ahead) > 0 else "does not hold" if sum(ahead) < 0 else "holds on some"
+        )
+        self.assertEqual([v.answer for v in o.verdicts], ["holds", answer])
+        self.assertIn("in frames 3 to 5", "\n".join(tables.source_page("T", [o], {}, {}).lines))
+
+    def test_rates(self) -> None:
+        o = self.outcome("moving", "rates", {}, [])
+        self.assertEqual(o.by_name["No AA"]["color"], 1)
+        self.assertEqual(o.by_name["No AA"]["bytes"], 12, "three floats")
+        self.assertEqual(o.by_name["Master"]["history"], 1)
+
     def test_estimate_and_cache(self) -> None:
         shot = replace(SHOTS["synth_moving"], size=(64, 36), quick_frames=4)
         shop = Workshop(PROGRAM, "no blender", self.folder, "quick", {"noaa"})
