@@ -85,7 +85,7 @@ class BadExperiment(Exception):
 TESTS = (
     "better", "near", "best", "between", "less_than_half", "more_flicker", "less_ghost", "exact_at_best",
     "changes_below", "changes_more", "better_than_in", "worse_than_still", "costs", "cheapest", "above_by",
-    "dips", "above_in_moment",
+    "dips", "above_in_moment", "reaches",
 )  # fmt: skip
 _SHOT_FIELDS = {f.name for f in fields(Shot)} - {"name", "methods", "serves"}
 _KEYS = {

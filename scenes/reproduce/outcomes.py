@@ -390,6 +390,14 @@ def _above_by(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
     return answer, f"{d}; asked is {low:g} to {high:g} dB", []
 
 
+def _reaches(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
+    own, least = o.by_name[claim.of], {
+        k: v for k, v in claim.options.items() if k in o.by_name[claim.of]
+    }
+    words = ", ".join(f"{k} {own[k]:.4g} (asked: {v:g})" for k, v in least.items())
+    return (HOLDS if all(own[k] >= v for k, v in least.items()) else FAILS), words, []
+
+
 def _moment(o: Outcome, name: str) -> tuple[list[float], list[float]]:
     """Gains inside and outside of the moment."""
     first, last = o.experiment.moment
@@ -439,7 +447,7 @@ _TESTS = {
     "better": _better, "near": _near, "best": _best, "between": _between, "less_than_half": _less_than_half,
     "more_flicker": _more_flicker, "less_ghost": _less_ghost, "exact_at_best": _exact_at_best,
     "changes_below": _changes_below, "changes_more": _changes_more, "better_than_in": _better_than_in,
-    "dips": _dips, "above_in_moment": _above_in_moment, "worse_than_still": _worse_than_still, "costs": _costs, "cheapest": _cheapest, "above_by": _above_by,
+    "dips": _dips, "reaches": _reaches, "above_in_moment": _above_in_moment, "worse_than_still": _worse_than_still, "costs": _costs, "cheapest": _cheapest, "above_by": _above_by,
 }  # fmt: skip
 
 # What `master` gains when one of its parts is switched off, or read otherwise.
