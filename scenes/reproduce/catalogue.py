@@ -99,7 +99,7 @@ SHOTS = _shots(
         jitter="thesis",
     ),
     Shot(
-        "flowers", "flowers", f"{SPATIAL} {TEMPORAL} msaa rsaa accum:samples=16", pattern="d3d8",
+        "flowers_close", "flowers", f"{SPATIAL} {TEMPORAL} msaa rsaa accum:samples=16", variant=("--close",), pattern="d3d8",
         jitter="thesis",
     ),
     Shot("moving_sphere", "moving_sphere", frames=32, quick_frames=16, **MOVING),

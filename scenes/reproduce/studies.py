@@ -110,7 +110,7 @@ def headlines(study: Study) -> list[str]:
         )
         if n in runs
     ]
-    static = [n for n in ("hard_edges", "hairball", "hairball_unlit", "flowers") if n in runs]
+    static = [n for n in ("hard_edges", "hairball", "hairball_unlit", "flowers_close") if n in runs]
     sampled = [n for n in ("hard_edges", "hairball") if n in runs]
     ghost = lambda a, b: lambda r: r.over_time(a, b, "ghost")  # noqa: E731
     gain = lambda a, b: lambda r: r.gain(a, b)  # noqa: E731
@@ -647,7 +647,7 @@ def scenes_page(runs: dict[str, Run]) -> Page:
     page.say(
         "Sorted by PSNR. `from the row above`: whether the difference exceeds the truth's noise and a bootstrap over tiles."
     )
-    for name in ("hard_edges", "hairball", "hairball_unlit", "flowers"):
+    for name in ("hard_edges", "hairball", "hairball_unlit", "flowers_close"):
         if name not in runs:
             continue
         page.heading(name)
