@@ -60,6 +60,17 @@ std::optional<bool> MeanOf::bright(size_t direction, size_t share, dvec2 placePx
     return beyond > 0;
 }
 
+double MeanOf::borneOut(const EdgeVotes& votes, dvec2 placePx) const {
+    size_t shown = 0, all = 0;
+    for (size_t direction = 0; direction < EdgeVotes::kDirections; direction++)
+        for (size_t share = 0; share < EdgeVotes::kShares; share++)
+            if (const auto foretold = bright(direction, share, placePx)) {
+                shown += votes.count(direction, share, *foretold);
+                all += votes.count(direction, share, false) + votes.count(direction, share, true);
+            }
+    return all ? double(shown) / double(all) : 0;
+}
+
 void Contest::add(const EdgeVotes& votes, const MeanOf& stated, dvec2 statedPx, const MeanOf& rival, dvec2 rivalPx) {
     for (size_t direction = 0; direction < EdgeVotes::kDirections; direction++)
         for (size_t share = 0; share < EdgeVotes::kShares; share++) {

@@ -38,6 +38,9 @@ class MeanOf {
     explicit MeanOf(std::span<const glm::dvec2> positionsPx);
     // Whether a sample at `placePx` shows the bright side of such an edge; nothing where it lies too near to say.
     std::optional<bool> bright(size_t direction, size_t share, glm::dvec2 placePx) const;
+    // Share of the edge pixels that show what a sample at `placePx` foretells, of those for which it foretells
+    // anything.
+    double borneOut(const EdgeVotes& votes, glm::dvec2 placePx) const;
 
   private:
     std::array<std::vector<double>, EdgeVotes::kDirections> sorted_;  // along each direction's normal
