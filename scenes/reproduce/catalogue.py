@@ -140,7 +140,7 @@ DISPLAYED = {
 # estimate, until the machine's own times are known.
 COSTS = {
     "hard_edges": (0.15, 0.12), "moving_sphere": (0.2, 0.1), "hairball": (0.3, 0.1), "flowers": (0.3, 0.18),
-    "wires": (0.2, 0.09), "atrium": (0.6, 0.3), "village": (0.6, 0.26), "synth:moving": (0.02, 0.0),
+    "wires": (0.2, 0.09), "atrium": (0.6, 0.3), "village": (0.6, 0.26), "collision": (0.5, 0.2), "synth:moving": (0.02, 0.0),
     "synth:thin_motion": (0.02, 0.0),
 }  # fmt: skip
 OTHER_COSTS = (0.2, 0.1)

@@ -120,7 +120,7 @@ def estimate(names: list[str], shop: Workshop) -> str:
 
 def _is_static(shot: Shot) -> bool:
     moves = {"--rotating", "--flying", "--sway"} & set(shot.variant)
-    return not moves and shot.scene not in ("moving_sphere", "wires", "village")
+    return not moves and shot.scene not in ("moving_sphere", "wires", "village", "collision")
 
 
 def run_experiments(
