@@ -25,10 +25,15 @@ class Files(ProgramTest):
         self.known = experiments.load(self.catalogue)
 
     def test_every_file_is_whole(self) -> None:
-        listed = {m.split(":")[0] for m in self.aaresolve("list").stdout.split()}
         for key, e in self.known.items():
-            for text in e.methods.values():
-                self.assertIn(text.split(":")[0], listed, key)
+            texts = [
+                *e.methods.values(),
+                *e.protocol.beside,
+                *(o[k] for o in e.options for k in ("with", "without")),
+            ]
+            self.aaresolve(
+                "plan", *dict.fromkeys(texts)
+            )  # names, parameters, values; none without effect
             columns = e.published.get("columns")
             for name, row in e.published.items():
                 if columns and name != "columns":
