@@ -37,6 +37,9 @@ class Outcome:
     by_name: dict[str, dict[str, float]] = field(default_factory=dict)  # name -> figure -> ours
     other: dict[str, dict[str, float]] = field(default_factory=dict)  # the same, against the truth
     parts: dict[str, Run] = field(default_factory=dict)  # further runs: regions, headroom, shots
+    spectra: dict[str, Path] = field(
+        default_factory=dict
+    )  # name -> picture of its difference in the Fourier domain
     verdicts: list[Verdict] = field(default_factory=list)
     taus: dict[str, float] = field(default_factory=dict)  # figure -> Kendall's tau of the order
 
@@ -139,7 +142,11 @@ def _fourier(o: Outcome, _catalogue: dict[str, Shot], shop: Workshop) -> None:
     for name in [*o.named(), e.protocol.reference]:
         for against, found in ((reference, o.by_name), (truth, o.other)):
             if pictures[name] != against:
-                found[name] = compared(pictures[name], against, e.key, shop)
+                spectrum = None
+                if against == reference:
+                    spectrum = o.run.folder / f"fourier.{name.replace(' ', '_')}.png"
+                    o.spectra[name] = spectrum
+                found[name] = compared(pictures[name], against, e.key, shop, spectrum)
     _rank(o, "fmagMse")
     o.taus["fmagMse, against the truth"] = _tau(o, "fmagMse", o.other)
 

@@ -58,6 +58,41 @@ def picture(
     return f"{name}.jpg"
 
 
+def mosaic(name: str, pictures: dict[str, Path], docs: Path, shop: Workshop) -> str:
+    """Small pictures with their names in rows of four, as one JPEG. Returns the file's name."""
+    docs.mkdir(parents=True, exist_ok=True)
+    words = [w for label, path in pictures.items() for w in (label, path)]
+    shop.run(f"mosaic.{name}", ["/usr/bin/python3", "-c", _MOSAIC, docs / f"{name}.jpg", *words])
+    return f"{name}.jpg"
+
+
+_MOSAIC = """
+import os, sys
+import OpenImageIO as oiio
+labels, paths = sys.argv[2::2], sys.argv[3::2]
+width = 310
+small = []
+for path in paths:
+    whole = oiio.ImageBuf(path)
+    roi = oiio.ROI(0, width, 0, whole.spec().height * width // whole.spec().width, 0, 1, 0, 3)
+    small.append(oiio.ImageBufAlgo.resize(whole, "box", 0, roi))
+height = max(s.spec().height for s in small)
+columns = min(4, len(small))
+rows = -(-len(small) // columns)
+sheet = oiio.ImageBuf(oiio.ImageSpec(columns * (width + 6), rows * (height + 26), 3, "uint8"))
+oiio.ImageBufAlgo.fill(sheet, (0.12, 0.12, 0.12))
+for n, (label, picture) in enumerate(zip(labels, small)):
+    x, y = n % columns * (width + 6), n // columns * (height + 26)
+    oiio.ImageBufAlgo.paste(sheet, x, y + 22, 0, 0, picture)
+    oiio.ImageBufAlgo.render_text(sheet, x + 4, y + 17, label, 15, "DejaVuSans", (0.9, 0.9, 0.9))
+for quality in range(90, 20, -5):
+    sheet.specmod().attribute("Compression", f"jpeg:{quality}")
+    sheet.write(sys.argv[1], "uint8")
+    if os.path.getsize(sys.argv[1]) < 280_000:
+        break
+"""
+
+
 # Shrinks to 1280 px wide and takes the best quality below 280 kB.
 _JPEG = """
 import os, sys

@@ -78,8 +78,13 @@ def bench(folder: Path, texts: list[str], shop: Workshop) -> dict[str, dict]:
     return {row["method"]: row for row in json.loads((out / "bench.json").read_text())}
 
 
-def compared(picture: Path, reference: Path, what: str, shop: Workshop) -> dict[str, float]:
-    """Figures of one picture against another, both as 8-bit codes for the display."""
+def compared(
+    picture: Path, reference: Path, what: str, shop: Workshop, spectrum: Path | None = None
+) -> dict[str, float]:
+    """Figures of one picture against another, both as 8-bit codes for the display; `spectrum`: where the picture of
+    their difference in the Fourier domain is written."""
     command: list[object] = [shop.program, "compare", picture, reference, "--json", "--q8"]
+    if spectrum:
+        command += ["--map", spectrum, "--map-of", "fourier"]
     said = shop.run(f"compare.{what}", [*command, "--metrics", "fmagMse,mse,psnr,ssimLuma"])
     return {k: number(v) for k, v in json.loads(said)["pooled"].items()}

@@ -36,7 +36,12 @@ def source_page(
             page.picture(pictures[e.key], f"{e.title}: {', '.join(o.named() or e.methods)}")
         _BODY[e.kind](page, o)
         if e.key in charts:
-            page.picture(charts[e.key], f"{e.title}: over the frames")
+            what = (
+                "differences to the reference in the Fourier domain"
+                if e.kind == "fourier"
+                else "over the frames"
+            )
+            page.picture(charts[e.key], f"{e.title}: {what}")
         if o.taus and len(o.named()) > 1:
             page.say(
                 "Kendall's τ of the order: "
@@ -244,6 +249,10 @@ def _fourier(page: Page, o: Outcome) -> None:
             "PSNR against the truth",
         ],
         rows,
+    )
+    page.say(
+        "In the pictures of the Fourier domain frequency 0 is in the centre; from dark to bright the difference's magnitude grows from",
+        "10⁻⁴ to 1, logarithmically.",
     )
 
 

@@ -142,7 +142,9 @@ TEST(JitterCheck, AnOffsetThatExplainsLittleIsNoRival) {
         CheckReport report;
         check.judge(report);
         EXPECT_EQ(report.findings.size(), explained > 0.9 ? 1u : 0u) << area.borneOut(found.votes, fitted);
-        if (explained < 0.9) EXPECT_THAT(testing::PrintToString(report.notChecked), HasSubstr("tangled"));
+        if (explained < 0.9) {
+            EXPECT_THAT(testing::PrintToString(report.notChecked), HasSubstr("tangled"));
+        }
     }
 }
 
