@@ -44,18 +44,28 @@ def methods_of(shot: Shot, shop: Workshop) -> list[str]:
     return [m for m in shot.methods.split() if shop.serves(m)]
 
 
+_made: dict[tuple, str] = {}  # files of contact sheets
+
+
 def picture(
     name: str, folder: Path, texts: list[str], docs: Path, shop: Workshop, flags: tuple[str, ...] = (), frame: int = 0
 ) -> str:  # fmt: skip
     """A contact sheet as a small JPEG beside the pages; OpenImageIO's Python writes it, which Blender needs anyway.
     Of a long shot the frames up to `frame`. Returns the file's name."""
+    if (
+        folder,
+        *texts,
+        *flags,
+        frame,
+    ) in _made:  # another table's: the same shot, methods and protocol
+        return _made[(folder, *texts, *flags, frame)]
     some = ("--frames", f"{max(1, frame - 15)}-{frame}") if frame else ()
     run = run_methods(folder, f"sheet.{name}", texts, shop, (*flags, *some), write="exr")
     sheet = run.folder / "sheet.png"
     shop.run(f"sheet.{name}", [shop.program, "sheet", run.folder, "-o", sheet])
     docs.mkdir(parents=True, exist_ok=True)
     shop.run(f"sheet.{name}", ["/usr/bin/python3", "-c", _JPEG, sheet, docs / f"{name}.jpg"])
-    return f"{name}.jpg"
+    return _made.setdefault((folder, *texts, *flags, frame), f"{name}.jpg")
 
 
 def mosaic(name: str, pictures: dict[str, Path], docs: Path, shop: Workshop) -> str:
