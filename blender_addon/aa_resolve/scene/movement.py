@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Union
 
 import bpy
+from idprop.types import IDPropertyArray
 import numpy as np
 
 from . import camera as cam
@@ -185,7 +186,7 @@ def _appearance(item: bpy.types.Object) -> bytes:
     for holder in filter(None, (item, item.data)):
         for name in sorted(holder.keys()):
             value = holder[name]
-            if hasattr(value, "to_list"):
+            if isinstance(value, IDPropertyArray):
                 value = value.to_list()
             if isinstance(value, (bool, int, float, str, list)):
                 own.append((name, value))
