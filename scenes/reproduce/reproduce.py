@@ -223,6 +223,7 @@ def run_experiments(
             pictures[key] = picture(
                 key, o.folders["main"], list(dict.fromkeys(main)), docs, shop, flags
             )
+            charts[key] = mosaic(f"{key}.fourier", o.spectra, docs, shop)
         print(
             f"  table {key}: {len(o.verdicts)} claims ({time.monotonic() - started:.0f} s)",
             flush=True,
