@@ -249,7 +249,14 @@ def _last_picture(method: dict) -> str:
 
 
 def _rank(o: Outcome, figure: str) -> None:
-    o.taus[figure] = _tau(o, figure, o.by_name)
+    """Of the published order; a table of gains is one of PSNR, less that of no anti-aliasing."""
+    if len(o.named()) < 2:
+        return
+    if figure == "psnr" and "gain" in o.experiment.published["columns"]:
+        theirs = [o.published(n, "gain") for n in o.named()]
+        o.taus["gain"] = kendall_tau(theirs, [o.gain(n).db for n in o.named()])
+    else:
+        o.taus[figure] = _tau(o, figure, o.by_name)
 
 
 def _tau(o: Outcome, figure: str, ours: dict[str, dict[str, float]]) -> float:

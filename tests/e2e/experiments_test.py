@@ -176,6 +176,15 @@ class Outcomes(ProgramTest):
         self.assertIn("2 claims **holds**", agreement)
         self.assertIn("(t.md#1-test)", agreement)
 
+    def test_table_of_gains(self) -> None:
+        """As a talk gives them; of one method or none there is no order."""
+        two = {"columns": ["gain"], "SMAA": [1.0], "Master": [2.0]}
+        o = self.outcome("half_planes", "table", two, [])
+        self.assertEqual(o.taus["gain"], 1.0 if o.gain("Master").db > o.gain("SMAA").db else -1.0)
+        page = "\n".join(tables.source_page("T", [o], {}, {}).lines)
+        self.assertIn("| SMAA (`smaa1x:preset=ULTRA`) | +1.00 | ", page)
+        self.assertEqual(self.outcome("half_planes", "table", {"columns": ["gain"]}, []).taus, {})
+
     def test_ghosts(self) -> None:
         row = {k: [1.0, 2.0, 1.5, 3, 4] for k in ("mse", "psnr", "snr", "ssimLuma")}
         o = self.outcome("moving", "ghosts", {"Uncharted": row, "Master": row}, [])
