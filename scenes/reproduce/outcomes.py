@@ -54,7 +54,11 @@ class Outcome:
         """The truth's own error over the smallest error that is ranked, in percent; None without such a ranking."""
         if self.run is None or not self.run.noise > 0:
             return None
-        ranked = [self.run.mse(self.text(n)) for n in self.named() if self.text(n) in self.run]
+        if self.other:  # pictures of several shots, held against one truth
+            ranked = [self.other[n]["mse"] for n in self.named()]
+        else:
+            names = self.named() or list(self.experiment.methods)
+            ranked = [self.run.mse(self.text(n)) for n in names if self.text(n) in self.run]
         return 100.0 * self.run.noise / min(ranked) if min(ranked) > 0 else None
 
     def named(self) -> list[str]:
