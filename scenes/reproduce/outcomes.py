@@ -80,7 +80,7 @@ def of(
     }
     outcome = Outcome(experiment, folders)
     _FILL[experiment.kind](outcome, catalogue, shop)
-    outcome.verdicts = [_verdict(outcome, claim, before) for claim in experiment.claims]
+    outcome.verdicts += [_verdict(outcome, claim, before) for claim in experiment.claims]
     for verdict in outcome.verdicts:
         if verdict.answer != HOLDS and "else" in verdict.claim.options:
             verdict.reasons.append(verdict.claim.options["else"])
@@ -425,9 +425,13 @@ def _moment(o: Outcome, name: str) -> tuple[list[float], list[float]]:
 
 
 def _dips(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
-    inside, outside = (sum(g) / len(g) for g in _moment(o, claim.of))
-    words = f"its gain is {signed(outside)} dB before and after, {signed(inside)} dB in the moment"
-    return (HOLDS if outside - inside > claim.options["by"] else FAILS), words, []
+    first, last = o.experiment.moment
+    gains = gains_over_time(o, claim.of)
+    mean = lambda values: sum(values) / len(values)  # noqa: E731
+    before = mean([g for f, g in gains.items() if f < first])
+    inside = mean([g for f, g in gains.items() if first <= f <= last])
+    words = f"its gain is {signed(before)} dB before, {signed(inside)} dB in the moment"
+    return (HOLDS if before - inside > claim.options["by"] else FAILS), words, []
 
 
 def _above_in_moment(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
