@@ -188,14 +188,14 @@ def _series(o: Outcome, _catalogue: dict[str, Shot], shop: Workshop) -> None:
         o.by_name[name] = _pooled(o.run, o.text(name), e.protocol.codes)
 
 
-def gains_over_time(o: Outcome, name: str) -> dict[int, float]:
-    """PSNR over no anti-aliasing in every frame that has truth, dB, by the frame's number."""
+def gains_over_time(o: Outcome, name: str, over: str = "No AA") -> dict[int, float]:
+    """PSNR over that of another method in every frame that has truth, dB, by the frame's number."""
     values = lambda text: {  # noqa: E731
         f["frame"]: number(f["metrics"]["psnr"])
         for f in o.run.methods[text]["frames"]
         if f.get("metrics")
     }
-    base, own = values("noaa"), values(o.text(name))
+    base, own = values(o.text(over)), values(o.text(name))
     return {frame: own[frame] - base[frame] for frame in own}
 
 
@@ -426,11 +426,12 @@ def _moment(o: Outcome, name: str) -> tuple[list[float], list[float]]:
 
 def _dips(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
     first, last = o.experiment.moment
-    gains = gains_over_time(o, claim.of)
+    over = claim.options["over"]
+    gains = gains_over_time(o, claim.of, over)
     mean = lambda values: sum(values) / len(values)  # noqa: E731
     before = mean([g for f, g in gains.items() if f < first])
     inside = mean([g for f, g in gains.items() if first <= f <= last])
-    words = f"its gain is {signed(before)} dB before, {signed(inside)} dB in the moment"
+    words = f"over {over} {signed(before)} dB before, {signed(inside)} dB in the moment"
     return (HOLDS if before - inside > claim.options["by"] else FAILS), words, []
 
 

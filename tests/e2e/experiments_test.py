@@ -203,7 +203,7 @@ class Outcomes(ProgramTest):
 
     def test_series(self) -> None:
         claims = [
-            Claim("a", "dips", "Uncharted", {"by": -100.0}),
+            Claim("a", "dips", "Uncharted", {"by": -100.0, "over": "No AA"}),
             Claim("b", "above_in_moment", ["Master", "Uncharted"], {}),
         ]
         o = self.outcome("moving", "series", {}, claims, moment=(3, 5))
