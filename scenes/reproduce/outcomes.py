@@ -39,7 +39,7 @@ class Outcome:
     parts: dict[str, Run] = field(default_factory=dict)  # further runs: regions, headroom, shots
     spectra: dict[str, Path] = field(
         default_factory=dict
-    )  # name -> picture of its difference in the Fourier domain
+    )  # pictures of differences in the Fourier domain
     verdicts: list[Verdict] = field(default_factory=list)
     taus: dict[str, float] = field(default_factory=dict)  # figure -> Kendall's tau of the order
 
@@ -90,11 +90,17 @@ def of(
 # --- the kinds ---
 
 
+def _run_main(o: Outcome, shop: Workshop, names: list[str]) -> None:
+    """All methods on the main shot, in the protocol, and our figures of these names."""
+    e = o.experiment
+    o.run = run_methods(o.folders["main"], e.key, e.texts(), shop, e.protocol.flags)
+    for name in names:
+        o.by_name[name] = pooled(o.run, o.text(name), e.protocol.codes)
+
+
 def _table(o: Outcome, _catalogue: dict[str, Shot], shop: Workshop) -> None:
     e, folder = o.experiment, o.folders["main"]
-    o.run = run_methods(folder, e.key, e.texts(), shop, e.protocol.flags)
-    for name in o.named():
-        o.by_name[name] = _pooled(o.run, o.text(name), e.protocol.codes)
+    _run_main(o, shop, o.named())
     for region, share in e.regions.items():
         width, height = o.run.data["shot"]["resolution"]
         box = [round(v * s) for v, s in zip(share, (width, height, width, height))]
@@ -106,11 +112,8 @@ def _table(o: Outcome, _catalogue: dict[str, Shot], shop: Workshop) -> None:
 
 
 def _ghosts(o: Outcome, catalogue: dict[str, Shot], shop: Workshop) -> None:
-    e = o.experiment
-    o.run = run_methods(o.folders["main"], e.key, e.texts(), shop, e.protocol.flags)
-    for name in o.named():
-        o.by_name[name] = _pooled(o.run, o.text(name), e.protocol.codes)
-    means = [e.published[n]["mse"][2] for n in o.named()]
+    _run_main(o, shop, o.named())
+    means = [o.experiment.published[n]["mse"][2] for n in o.named()]
     o.taus["mse"] = kendall_tau(means, [o.by_name[n]["mse"] for n in o.named()])
 
 
@@ -121,7 +124,7 @@ def _reference_size(o: Outcome, _catalogue: dict[str, Shot], shop: Workshop) -> 
         o.by_name[own] = {
             f"{figure} {name}": value
             for name, text in e.methods.items()
-            for figure, value in _pooled(o.parts[own], text, e.protocol.codes).items()
+            for figure, value in pooled(o.parts[own], text, e.protocol.codes).items()
         }
 
 
@@ -144,13 +147,10 @@ def _fourier(o: Outcome, _catalogue: dict[str, Shot], shop: Workshop) -> None:
             )
     reference = pictures[e.protocol.reference]
     for name in [*o.named(), e.protocol.reference]:
-        for against, found in ((reference, o.by_name), (truth, o.other)):
-            if pictures[name] != against:
-                spectrum = None
-                if against == reference:
-                    spectrum = o.run.folder / f"fourier.{name.replace(' ', '_')}.png"
-                    o.spectra[name] = spectrum
-                found[name] = compared(pictures[name], against, e.key, shop, spectrum)
+        o.other[name] = compared(pictures[name], truth, e.key, shop)
+        if pictures[name] != reference:
+            o.spectra[name] = o.run.folder / f"fourier.{name.replace(' ', '_')}.png"
+            o.by_name[name] = compared(pictures[name], reference, e.key, shop, o.spectra[name])
     _rank(o, "fmagMse")
     o.taus["fmagMse, against the truth"] = _tau(o, "fmagMse", o.other)
 
@@ -176,16 +176,13 @@ def _options(o: Outcome, catalogue: dict[str, Shot], shop: Workshop) -> None:
         o.parts[name] = run_methods(folder, e.key, texts, shop, e.protocol.flags)
     for option in e.options:
         claim = Claim(option["says"], "option", option, option)
-        found = {name: _of_option(run, option) for name, run in o.parts.items()}
+        found = {name: of_option(run, option) for name, run in o.parts.items()}
         words = "; ".join(f"{name} {d}" for name, d in found.items() if d)
         o.verdicts.append(Verdict(claim, _over_all([d for d in found.values() if d]), words))
 
 
 def _series(o: Outcome, _catalogue: dict[str, Shot], shop: Workshop) -> None:
-    e = o.experiment
-    o.run = run_methods(o.folders["main"], e.key, e.texts(), shop, e.protocol.flags)
-    for name in e.methods:
-        o.by_name[name] = _pooled(o.run, o.text(name), e.protocol.codes)
+    _run_main(o, shop, list(o.experiment.methods))
 
 
 def gains_over_time(o: Outcome, name: str, over: str = "No AA") -> dict[int, float]:
@@ -223,7 +220,7 @@ _FILL = {
 }  # fmt: skip
 
 
-def _of_option(run: Run, option: dict) -> Difference | None:
+def of_option(run: Run, option: dict) -> Difference | None:
     a, b = option["with"], option["without"]
     return run.gain(a, b) if option["figure"] == "gain" else run.over_time(a, b, option["figure"])
 
@@ -236,16 +233,11 @@ def _over_all(found: list[Difference]) -> str:
     return HOLDS if all(clear) else FAILS if not any(clear) else "holds on some"
 
 
-def _pooled(run: Run, text: str, codes: float) -> dict[str, float]:
-    pooled = run.methods[text]["pooled"]
-    found = {k: number(pooled[k]) for k in ("mse", "psnr", "snr", "ssimLuma")}
-    return scaled(found, codes)
-
-
-def scaled(figures: dict[str, float], codes: float) -> dict[str, float]:
-    """Squared error in the unit of the protocol, and its root."""
-    mse = figures["mse"] * codes * codes
-    return {**figures, "mse": mse, "rmse": math.sqrt(mse)}
+def pooled(run: Run, text: str, codes: float) -> dict[str, float]:
+    """Figures over the judged frames, squared error in the unit of the protocol."""
+    found = {k: number(run.methods[text]["pooled"][k]) for k in ("mse", "psnr", "snr", "ssimLuma")}
+    mse = found["mse"] * codes * codes
+    return {**found, "mse": mse, "rmse": math.sqrt(mse)}
 
 
 def _last_picture(method: dict) -> str:
@@ -416,7 +408,7 @@ def _reaches(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
     return (HOLDS if all(own[k] >= v for k, v in least.items()) else FAILS), words, []
 
 
-def _moment(o: Outcome, name: str) -> tuple[list[float], list[float]]:
+def moment(o: Outcome, name: str) -> tuple[list[float], list[float]]:
     """Gains inside and outside of the moment."""
     first, last = o.experiment.moment
     gains = gains_over_time(o, name)
@@ -436,7 +428,7 @@ def _dips(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
 
 
 def _above_in_moment(o: Outcome, claim: Claim, _before) -> tuple[str, str, list[str]]:
-    (a, _), (b, _) = (_moment(o, n) for n in claim.of)
+    (a, _), (b, _) = (moment(o, n) for n in claim.of)
     worst = min(x - y for x, y in zip(a, b))
     mean = sum(a) / len(a) - sum(b) / len(b)
     answer = HOLDS if worst > 0 else FAILS if mean < 0 else "holds on some"
@@ -503,12 +495,9 @@ def why_master_falls_behind(run: Run) -> str:
 
 def extremes(o: Outcome, name: str, figure: str) -> tuple[float, float, float, int, int]:
     """Best, worst and mean of a figure over the frames, and which frames, counted from 0."""
-    values = []
-    for frame in o.run.methods[o.text(name)]["frames"]:
-        if frame.get("metrics"):
-            found = {k: number(v) for k, v in frame["metrics"].items()}
-            values.append(scaled(found, o.experiment.protocol.codes)[figure])
-    mean = sum(values) / len(values)
-    pick = (min, max) if figure in ("mse", "rmse") else (max, min)
-    best, worst = (p(values) for p in pick)
-    return best, worst, mean, values.index(best), values.index(worst)
+    method = o.run.methods[o.text(name)]
+    found = method["overFrames"][figure]
+    unit = o.experiment.protocol.codes**2 if figure == "mse" else 1.0
+    values = [number(found[k]) * unit for k in ("best", "worst", "mean")]
+    first = method["frames"][0]["frame"]
+    return (*values, *(found[k] - first for k in ("bestFrame", "worstFrame")))

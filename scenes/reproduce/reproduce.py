@@ -52,33 +52,45 @@ def picture(
 ) -> str:  # fmt: skip
     """A contact sheet as a small JPEG beside the pages; OpenImageIO's Python writes it, which Blender needs anyway.
     Of a long shot the frames up to `frame`. Returns the file's name."""
-    if (
-        folder,
-        *texts,
-        *flags,
-        frame,
-    ) in _made:  # another table's: the same shot, methods and protocol
-        return _made[(folder, *texts, *flags, frame)]
+    key = (folder, *texts, *flags, frame)
+    if key in _made:  # another table's: the same shot, methods and protocol
+        return _made[key]
     some = ("--frames", f"{max(1, frame - 15)}-{frame}") if frame else ()
     run = run_methods(folder, f"sheet.{name}", texts, shop, (*flags, *some), write="exr")
     sheet = run.folder / "sheet.png"
     shop.run(f"sheet.{name}", [shop.program, "sheet", run.folder, "-o", sheet])
     docs.mkdir(parents=True, exist_ok=True)
-    shop.run(f"sheet.{name}", ["/usr/bin/python3", "-c", _JPEG, sheet, docs / f"{name}.jpg"])
-    return _made.setdefault((folder, *texts, *flags, frame), f"{name}.jpg")
+    shop.run(
+        f"sheet.{name}",
+        ["/usr/bin/python3", "-c", _JPEG_WRITER + _JPEG, sheet, docs / f"{name}.jpg"],
+    )
+    return _made.setdefault(key, f"{name}.jpg")
 
 
 def mosaic(name: str, pictures: dict[str, Path], docs: Path, shop: Workshop) -> str:
     """Small pictures with their names in rows of four, as one JPEG. Returns the file's name."""
     docs.mkdir(parents=True, exist_ok=True)
     words = [w for label, path in pictures.items() for w in (label, path)]
-    shop.run(f"mosaic.{name}", ["/usr/bin/python3", "-c", _MOSAIC, docs / f"{name}.jpg", *words])
+    shop.run(
+        f"mosaic.{name}",
+        ["/usr/bin/python3", "-c", _JPEG_WRITER + _MOSAIC, docs / f"{name}.jpg", *words],
+    )
     return f"{name}.jpg"
 
 
-_MOSAIC = """
+# For Blender's Python: `save` takes the best quality below 280 kB.
+_JPEG_WRITER = """
 import os, sys
 import OpenImageIO as oiio
+def save(picture, path):
+    for quality in range(90, 20, -5):
+        picture.specmod().attribute("Compression", f"jpeg:{quality}")
+        picture.write(path, "uint8")
+        if os.path.getsize(path) < 280_000:
+            break
+"""
+
+_MOSAIC = """
 labels, paths = sys.argv[2::2], sys.argv[3::2]
 width = 310
 small = []
@@ -95,27 +107,17 @@ for n, (label, picture) in enumerate(zip(labels, small)):
     x, y = n % columns * (width + 6), n // columns * (height + 26)
     oiio.ImageBufAlgo.paste(sheet, x, y + 22, 0, 0, picture)
     oiio.ImageBufAlgo.render_text(sheet, x + 4, y + 17, label, 15, "DejaVuSans", (0.9, 0.9, 0.9))
-for quality in range(90, 20, -5):
-    sheet.specmod().attribute("Compression", f"jpeg:{quality}")
-    sheet.write(sys.argv[1], "uint8")
-    if os.path.getsize(sys.argv[1]) < 280_000:
-        break
+save(sheet, sys.argv[1])
 """
 
 
-# Shrinks to 1280 px wide and takes the best quality below 280 kB.
+# Shrinks to 1280 px wide.
 _JPEG = """
-import os, sys
-import OpenImageIO as oiio
 sheet = oiio.ImageBuf(sys.argv[1])
 spec = sheet.spec()
 width = min(spec.width, 1280)
 small = oiio.ImageBufAlgo.resize(sheet, "lanczos3", 0, oiio.ROI(0, width, 0, spec.height * width // spec.width, 0, 1, 0, 3))
-for quality in range(90, 20, -5):
-    small.specmod().attribute("Compression", f"jpeg:{quality}")
-    small.write(sys.argv[2], "uint8")
-    if os.path.getsize(sys.argv[2]) < 280_000:
-        break
+save(small, sys.argv[2])
 """
 
 
@@ -376,27 +378,19 @@ def displayed(
 ) -> tuple[dict[str, Run], dict[str, Run], dict[str, Run]]:
     """Runs in the protocol of [Oliveros 2018]: by shot; hard_edges step by step; one stop darker."""
     thesis, headroom, steps = {}, {}, {}
-    protocol = next(
-        (o.experiment.protocol for o in found.values() if o.experiment.protocol.flags), None
-    )
     for o in found.values():
         if "headroom" in o.parts:
             name = o.experiment.shots["main"]
             thesis[name], headroom[name] = o.run, o.parts["headroom"]
     if "hard_edges" in thesis:
+        of = lambda shot, what, texts, flags: run_methods(  # noqa: E731
+            shop.folder(SHOTS[shot]), what, texts.split(), shop, flags
+        )
         for name, texts in DISPLAYED.items():
-            if protocol and (shop.folder(SHOTS[name]) / "shot.json").exists():
-                thesis[name] = run_methods(
-                    shop.folder(SHOTS[name]),
-                    "thesis",
-                    texts.split(),
-                    shop,
-                    STEPS["the same as 8-bit images"],
-                )
+            if (shop.folder(SHOTS[name]) / "shot.json").exists():
+                thesis[name] = of(name, "thesis", texts, STEPS["the same as 8-bit images"])
         for i, (what, flags) in enumerate(STEPS.items()):
-            steps[what] = run_methods(
-                shop.folder(SHOTS["hard_edges"]), f"step{i}", STEP_METHODS.split(), shop, flags
-            )
+            steps[what] = of("hard_edges", f"step{i}", STEP_METHODS, flags)
     return thesis, steps, headroom
 
 

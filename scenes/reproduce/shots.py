@@ -107,13 +107,12 @@ class Workshop:
 
 def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
     """Exports what is not there yet; returns the shot's folder."""
-    shot = shot.in_form(shop.form)
     started = time.monotonic()
     folder = shop.folder(shot)
-    stamp = shop.out / "stamps" / f"{folder.parent.name}.{shot.name}"
-    wish = _identity(shot, shop)
-    if is_ready(shots[shot.name], shop):
+    if is_ready(shot, shop):
         return folder
+    shot = shot.in_form(shop.form)
+    wish = _identity(shot, shop)
     size = "{}x{}".format(*shot.size)
     if shot.scene.startswith("synth:"):
         command = [shop.program, "synth", shot.scene.split(":")[1], "-o", folder, "-q"]
@@ -121,7 +120,7 @@ def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
         command += ["--jitter", shot.jitter, "--period", shot.period]
         command += ["--subsamples", shot.pattern] if shot.pattern else []
         shop.run(f"synth.{shot.name}", command)
-        return _ready(shop, shot, stamp, wish, started, "exact truth", folder)
+        return _ready(shop, shot, wish, started, "exact truth", folder)
     blend = (
         shop.out
         / "scenes"
@@ -159,12 +158,11 @@ def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
     if shot.truth_of:
         _lend_truth(make_folder(shop, shots[shot.truth_of]), folder)
     done = [line.split(": ", 1)[-1] for line in said.splitlines() if "pictures in" in line]
-    return _ready(shop, shot, stamp, wish, started, done[-1] if done else "ready", folder)
+    return _ready(shop, shot, wish, started, done[-1] if done else "ready", folder)
 
 
-def _ready(
-    shop: Workshop, shot: Shot, stamp: Path, wish: str, started: float, what: str, folder: Path
-) -> Path:
+def _ready(shop: Workshop, shot: Shot, wish: str, started: float, what: str, folder: Path) -> Path:
+    stamp = _stamp(shot, shop)
     stamp.parent.mkdir(exist_ok=True)
     stamp.write_text(wish)
     seconds = time.monotonic() - started
@@ -201,10 +199,15 @@ def spent_before(shop: Workshop) -> dict[str, float]:
 
 def is_ready(shot: Shot, shop: Workshop) -> bool:
     """Whether the shot is there as it is described now."""
-    folder = shop.folder(shot)
-    stamp = shop.out / "stamps" / f"{shop.form}.{shot.name}"
-    wish = _identity(shot.in_form(shop.form), shop)
-    return stamp.exists() and stamp.read_text() == wish and (folder / "shot.json").exists()
+    stamp = _stamp(shot, shop)
+    if not stamp.exists() or not (shop.folder(shot) / "shot.json").exists():
+        return False
+    return stamp.read_text() == _identity(shot.in_form(shop.form), shop)
+
+
+def _stamp(shot: Shot, shop: Workshop) -> Path:
+    """The file that says of what the shot was made."""
+    return shop.out / "stamps" / f"{shop.form}.{shot.name}"
 
 
 def _identity(shot: Shot, shop: Workshop) -> str:

@@ -134,7 +134,7 @@ def _table(page: Page, o: Outcome) -> None:
     for text in ("unchartedNorm", "unchartedNoSharpen", "master:unjitter=off"):
         if text in o.run and text not in e.methods.values():
             gain = o.run.gain(text)
-            ours = outcomes._pooled(o.run, text, e.protocol.codes)
+            ours = outcomes.pooled(o.run, text, e.protocol.codes)
             rows.append([code(text), *(_cell(None, ours[c], _DIGITS[c]) for c in columns), "–", signed(gain.db),
                          f"{signed(gain.low)} to {signed(gain.high)}"])  # fmt: skip
     page.table(
@@ -191,7 +191,7 @@ def _ghosts(page: Page, o: Outcome) -> None:
         ("", "master:sharpen=none"),
     ]:
         if text in o.run:
-            pooled = outcomes._pooled(o.run, text, e.protocol.codes)
+            pooled = outcomes.pooled(o.run, text, e.protocol.codes)
             rows.append(
                 [
                     f"{label} ({code(text)})" if label else code(text),
@@ -274,7 +274,7 @@ def _options(page: Page, o: Outcome) -> None:
         ["claim", "with", "without", *o.parts],
         [
             [v.claim.says, code(v.claim.of["with"]), code(v.claim.of["without"]),
-             *(_short(outcomes._of_option(run, v.claim.of)) for run in o.parts.values())]
+             *(_short(outcomes.of_option(run, v.claim.of)) for run in o.parts.values())]
             for v in o.verdicts
         ],
     )  # fmt: skip
@@ -291,7 +291,7 @@ def _series(page: Page, o: Outcome) -> None:
     for name, text in o.experiment.methods.items():
         if text == "noaa":
             continue
-        inside, outside = outcomes._moment(o, name)
+        inside, outside = outcomes.moment(o, name)
         mean = lambda values: signed(sum(values) / len(values))  # noqa: E731
         rows.append([f"{name} ({code(text)})", mean(outside), mean(inside), signed(min(inside))])
     page.table(

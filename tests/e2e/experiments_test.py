@@ -214,7 +214,7 @@ class Outcomes(ProgramTest):
         gains = outcomes.gains_over_time(o, "Master")
         self.assertEqual(list(gains), list(range(1, 9)))
         self.assertAlmostEqual(gains[4], psnr["master"][3] - psnr["noaa"][3])
-        inside, outside = outcomes._moment(o, "Master")
+        inside, outside = outcomes.moment(o, "Master")
         self.assertEqual((len(inside), len(outside)), (3, 5))
         ahead = [a - b for a, b in zip(psnr["master"][2:5], psnr["uncharted"][2:5])]
         answer = (
