@@ -22,7 +22,7 @@ PICTURE_WIDTH = 9.6  # metres at the window
 def build(arguments) -> None:
     """Makes the scene in the open (empty) file."""
     scene = c.new_scene(arguments.resolution)
-    c.add_sky(scene, horizon=(0.62, 0.74, 0.90), zenith=(0.16, 0.34, 0.70))
+    f.add_daylight(scene)
     c.add_box(
         "Facade", (-9.0, 0.0, -6.0), (9.0, 0.4, 9.0), c.material("Plaster", (0.62, 0.47, 0.33))
     )
@@ -32,7 +32,6 @@ def build(arguments) -> None:
         c.material("Window Blue", f.BLUE),
         c.material("Dark Inside", f.DARK),
     )
-    c.add_sun(scene, azimuth_degrees=-118.0, height_degrees=42.0)
     c.add_camera(
         scene, location=(-2.4, -26.5, 3.4), target=(0.0, 0.0, 2.5), lens_mm=100.0, roll_degrees=1.5
     )

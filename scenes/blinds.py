@@ -22,7 +22,7 @@ PICTURE_WIDTH = 6.9  # metres at the window
 def build(arguments) -> None:
     """Makes the scene in the open (empty) file."""
     scene = c.new_scene(arguments.resolution)
-    c.add_sky(scene, horizon=(0.62, 0.74, 0.90), zenith=(0.16, 0.34, 0.70))
+    f.add_daylight(scene)
     c.add_box(
         "Facade", (-9.0, 0.0, -6.0), (9.0, 0.4, 6.0), c.material("Plaster", (0.62, 0.47, 0.33))
     )
@@ -34,7 +34,6 @@ def build(arguments) -> None:
         c.material("Dark Inside", f.DARK),
         c.material("White", f.WHITE),
     )
-    c.add_sun(scene, azimuth_degrees=-118.0, height_degrees=42.0)
     c.add_camera(
         scene, location=(-1.6, -19.0, 0.8), target=(0.0, 0.0, 0.0), lens_mm=100.0, roll_degrees=1.5
     )

@@ -21,6 +21,12 @@ INK = 0.012
 Line = tuple[str, float, float]  # text, height of its middle over the wall's, size: metres
 
 
+def add_daylight(scene) -> None:
+    """The sky and the sun before which they all stand."""
+    c.add_sky(scene, horizon=(0.62, 0.74, 0.90), zenith=(0.16, 0.34, 0.70))
+    c.add_sun(scene, azimuth_degrees=-118.0, height_degrees=42.0)
+
+
 def add_blinds_window(low: c.Point2, high: c.Point2, slit: float, blue, dark, white) -> None:
     """Frame between two corners (x, z) with 24 closed slats; the slits between them are dark."""
     (x0, z0), (x1, z1) = low, high

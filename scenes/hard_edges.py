@@ -31,7 +31,7 @@ LINES = (  # text, height of its middle over the wall's, size: metres
 def build(arguments) -> None:
     """Makes the scene in the open (empty) file."""
     scene = c.new_scene(arguments.resolution)
-    c.add_sky(scene, horizon=(0.62, 0.74, 0.90), zenith=(0.16, 0.34, 0.70))
+    f.add_daylight(scene)
     blue = c.material("Window Blue", f.BLUE)
     dark = c.material("Dark Inside", f.DARK)
     white = c.material("White", f.WHITE)
@@ -72,7 +72,6 @@ def build(arguments) -> None:
     c.add_cylinder("Wire Upper", (-9.47, -0.8, 7.0), (-3.0, 0.2, 6.36), 0.014, 6, wire)
     c.add_cylinder("Wire Lower", (-9.5, -0.8, 6.6), (-6.0, 0.2, 6.34), 0.014, 6, wire)
 
-    c.add_sun(scene, azimuth_degrees=-118.0, height_degrees=42.0)
     c.add_camera(
         scene,
         location=(-9.5, -45.0, 5.6),

@@ -37,9 +37,8 @@ LINES = (  # text, centre's height and size in metres
 def build(arguments) -> None:
     """Makes the scene in the open (empty) file."""
     scene = c.new_scene(arguments.resolution)
-    c.add_sky(scene, horizon=(0.62, 0.74, 0.90), zenith=(0.16, 0.34, 0.70))
+    f.add_daylight(scene)
     f.add_text_wall((0.0, 0.0, 0.0), HALF_WIDTH, HALF_HEIGHT, LINES, TEXELS_PER_METRE)
-    c.add_sun(scene, azimuth_degrees=-118.0, height_degrees=42.0)
     c.add_camera(
         scene, location=(-3.4, -17.0, 1.2), target=(0.0, 0.0, 0.0), lens_mm=96.0, roll_degrees=2.0
     )
