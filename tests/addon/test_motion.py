@@ -36,6 +36,13 @@ def placements(scene, frame: int) -> tuple[dict[str, np.ndarray], object]:
     return matrices, projection
 
 
+def exported(out: str, frames: str, *options: str) -> dict:
+    """A shot of the open scene that a method with history could use, without truth; returns shot.json."""
+    return t.export(
+        out, "--frames", frames, "--for", "taaSimplest", "--truth-frames", "none", *options
+    )
+
+
 def check(scene, label: str, moves=None, minimum: float = 0.3, limit: float = LIMIT_PX) -> dict:
     """Exports frame 5 after 4 and compares.
 
@@ -44,10 +51,7 @@ def check(scene, label: str, moves=None, minimum: float = 0.3, limit: float = LI
     before, projection_before = placements(scene, FRAME - 1)
     now, projection_now = placements(scene, FRAME)
     out = os.path.join(t.temporary_folder(), "shot")
-    shot = t.export(
-        out, "--frames", f"{FRAME - 1}-{FRAME}", "--for", "taaSimplest",
-        "--passes", "object,depth", "--truth-frames", "none",
-    )  # fmt: skip
+    shot = exported(out, f"{FRAME - 1}-{FRAME}", "--passes", "object,depth")
     entry = shot["frames"][1]
     path = os.path.join(out, entry["file"])
     motion = t.stacked(t.read_part(path, "motion"), "motion.X motion.Y").astype(np.float64)
@@ -185,7 +189,7 @@ def test_border() -> None:
 
     def motion_of(scene):
         out = os.path.join(t.temporary_folder(), "shot")
-        shot = t.export(out, "--frames", "4-5", "--for", "taaSimplest", "--truth-frames", "none")
+        shot = exported(out, "4-5")
         path = os.path.join(out, shot["frames"][1]["file"])
         return t.stacked(t.read_part(path, "motion"), "motion.X motion.Y"), shot
 
@@ -513,17 +517,7 @@ def test_hidden_before_is_invalid() -> None:
     item.hide_render = False
     item.keyframe_insert("hide_render", frame=FRAME)
     out = os.path.join(t.temporary_folder(), "shot")
-    shot = t.export(
-        out,
-        "--frames",
-        "4-6",
-        "--for",
-        "taaSimplest",
-        "--passes",
-        "object",
-        "--truth-frames",
-        "none",
-    )
+    shot = exported(out, "4-6", "--passes", "object")
     entry = shot["frames"][1]
     identity = {name: int(key) for key, name in shot["objects"].items()}["Appears"]
     path = os.path.join(out, entry["file"])
@@ -611,17 +605,7 @@ def test_changing_topology_is_invalid() -> None:
         scene, _ = stage()
         make(scene)
         out = os.path.join(t.temporary_folder(), "shot")
-        shot = t.export(
-            out,
-            "--frames",
-            "4-5",
-            "--for",
-            "taaSimplest",
-            "--passes",
-            "object",
-            "--truth-frames",
-            "none",
-        )
+        shot = exported(out, "4-5", "--passes", "object")
         entry = shot["frames"][1]
         assert "motion_invalid" in entry, make.__name__
         names = entry["motion_invalid"]["objects"]
@@ -643,7 +627,7 @@ def test_cuts() -> None:
     for name, frame, bound in (("A", 1, camera), ("B", 5, other)):
         scene.timeline_markers.new(name, frame=frame).camera = bound
     out = os.path.join(t.temporary_folder(), "shot")
-    shot = t.export(out, "--frames", "3-6", "--for", "taaSimplest", "--truth-frames", "none")
+    shot = exported(out, "3-6")
     assert [entry["reset"] for entry in shot["frames"]] == [True, False, True, False]
     assert shot["frames"][1]["camera"]["view"] != shot["frames"][2]["camera"]["view"]
     scene, camera = stage()
@@ -684,7 +668,7 @@ def resets(make, frames: str = "3-6") -> list[bool]:
     scene, camera = stage()
     make(scene, camera)
     out = os.path.join(t.temporary_folder(), "s")
-    shot = t.export(out, "--frames", frames, "--for", "taaSimplest", "--truth-frames", "none")
+    shot = exported(out, frames)
     return [entry["reset"] for entry in shot["frames"]]
 
 
@@ -733,10 +717,7 @@ def test_new_instances_are_invalid() -> None:
     born = numbers[FRAME] - numbers[FRAME - 1]
     assert born and numbers[FRAME - 1], numbers
     out = os.path.join(t.temporary_folder(), "shot")
-    shot = t.export(
-        out, "--frames", f"{FRAME - 1}-{FRAME}", "--for", "taaSimplest", "--passes", "object",
-        "--truth-frames", "none",
-    )  # fmt: skip
+    shot = exported(out, f"{FRAME - 1}-{FRAME}", "--passes", "object")
     entry = shot["frames"][1]
     path = os.path.join(out, entry["file"])
     ids, motion = t.read_part(path, "object")["id"], t.read_part(path, "motion")["motion.X"]
