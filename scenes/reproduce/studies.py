@@ -446,7 +446,7 @@ def geometry_page(runs: dict[str, Run], talk: dict[str, float] | None = None) ->
                 "Contact sheet of the hairball: MLAA, RSAA, MSAA and methods with history",
             )
         methods = sorted({m for r in by_s.values() for m in r.methods if m.split(":")[0] in
-                          {"msaa", "csaa", "dmsaa", "sraa", "sbaa", "rsaa", "deaa"}}, key=lambda m: -run.psnr(m) if m in run else 0)  # fmt: skip
+                          {"msaa", "csaa", "dmsaa", "sraa", "sbaa", "rsaa", "deaa"}}, key=lambda m: (-run.psnr(m) if m in run else 0, m))  # fmt: skip
         page.say("PSNR gain over `noaa`, dB, by sub-samples per pixel:")
         page.table(
             ["method", *(f"S = {s}" for s in sorted(by_s))],

@@ -63,6 +63,17 @@ class Reproduce(ProgramTest):
         runs = {"hard_edges": self.run_of("two_planes", methods, *options, "d3d8")}
         page = "\n".join(studies.geometry_page(runs).lines)
         self.assertIn(verdict(runs["hard_edges"].gain("rsaa", "msaa")), page)
+        # What ran on another shot alone has no error here to be placed by: by name, the same in every run.
+        more = [
+            f"msaa:filter={f}"
+            for f in ("tent", "gaussian", "tent,diameter=1.5", "bspline", "mitchell", "cubic")
+        ]
+        runs["hard_edges.s4"] = self.run_of(
+            "half_planes", " ".join(["noaa", "msaa", *more]), *options, "d3d4"
+        )
+        page = "\n".join(studies.geometry_page(runs).lines)
+        places = [page.index(f"| `{m}` |") for m in sorted(more)]
+        self.assertEqual(places, sorted(places))
 
     def test_sources_of_a_scene(self) -> None:
         """A building block that changes renders anew what it builds, and nothing else."""
