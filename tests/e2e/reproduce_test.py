@@ -69,7 +69,7 @@ class Reproduce(ProgramTest):
             for f in ("tent", "gaussian", "tent,diameter=1.5", "bspline", "mitchell", "cubic")
         ]
         runs["hard_edges.s4"] = self.run_of(
-            "half_planes", " ".join(["noaa", "msaa", *more]), *options, "d3d4"
+            "half_planes", " ".join(["noaa", "msaa", "rsaa", *more]), *options, "d3d4"
         )
         page = "\n".join(studies.geometry_page(runs).lines)
         places = [page.index(f"| `{m}` |") for m in sorted(more)]
