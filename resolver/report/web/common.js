@@ -7,7 +7,26 @@ const element = (name, attributes = {}, ...children) => {
   return e;
 };
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-const hues = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#b8a800"]; // [Okabe 2008]
+// ---- one method, one look in every page: it follows from the method's id alone, never from its rank ----
+// Twelve hues in two lightnesses of OKLCH (0.55 and 0.68), each at least 2.7:1 against the light and the dark ground.
+const methodColours = ["#bb3a6d", "#e86494", "#c13e2e", "#ef6856", "#a55d0c", "#dc7d12", "#8a6e08", "#b99313", "#687c02", "#8ca507", "#05893e", "#2eb45c",
+  "#158374", "#16b09b", "#018090", "#13abbf", "#0479b2", "#04a2ed", "#4c66d3", "#7190fd", "#8254c4", "#a97cf0", "#a644a0", "#d16cc9"];
+const methodMarkers = ["circle", "rect", "triangle", "rectRot", "star", "crossRot", "rectRounded"]; // Chart.js's names
+// FNV-1a with a last mix. The start is the one of 60,000 by which the methods share colours least: all 24 are used, none
+// by more than three methods, and no two methods have both colour and marker in common.
+const hashOf = (id) => {
+  let v = 4694;
+  for (const c of new TextEncoder().encode(id)) v = Math.imul(v ^ c, 16777619) >>> 0;
+  v = Math.imul(v ^ (v >>> 15), 0x2c1b3c6d) >>> 0;
+  return (v ^ (v >>> 12)) >>> 0;
+};
+// `id` is a method's id; "truth" is ink and noaa is grey, as nothing else is.
+const methodColour = (id) => (id === "truth" ? css("--ink") : id === "noaa" ? "#7f7f7f" : methodColours[hashOf(id) % methodColours.length]);
+// `nth`: the how-manieth row of this id in the run (other parameters); its colour is the same, marker and dash are not.
+const methodMarker = (id, nth = 0) => methodMarkers[((hashOf(id) >>> 8) + nth) % methodMarkers.length];
+// The id in a method's text: smaa1x:preset=HIGH+sharpen=xu.
+const methodIn = (text) => text.split(/[:+]/)[0];
+const methodDash = (nth = 0) => [[], [6, 3], [2, 2], [8, 3, 2, 3]][nth % 4];
 
 // ---- charts, on pages that have Chart.js ----
 const dressCharts = () => {

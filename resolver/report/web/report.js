@@ -193,10 +193,10 @@
     (Object.keys(published).length ? " (" + [...new Set(Object.values(published).map((p) => p.source))].join(", ") + ")" : "") + ", which packs its buffers more tightly and counts its render targets.";
 
   // ---- charts ----
-  const markers = ["circle", "rect", "triangle", "rectRot", "star", "crossRot", "rectRounded", "cross"];
-  const colourOf = (i) => hues[order.indexOf(i) % hues.length];
-  const markerOf = (i) => markers[(order.indexOf(i) + Math.floor(order.indexOf(i) / hues.length)) % markers.length];
-  const dashOf = (i) => [[], [6, 3], [2, 2]][Math.floor(order.indexOf(i) / hues.length) % 3];
+  const nth = methods.map((m, i) => methods.slice(0, i).filter((o) => o.id === m.id).length);
+  const colourOf = (i) => methodColour(methods[i].id);
+  const markerOf = (i) => methodMarker(methods[i].id, nth[i]);
+  const dashOf = (i) => methodDash(nth[i]);
   let charts = [];
   const drawCharts = () => {
     charts.forEach((c) => c.destroy());
