@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import dataclasses
+import json
+
 from .options import options_of
 from .settings import Settings
 
@@ -24,13 +27,24 @@ def _called(key: str) -> str:
 
 
 def difference(old: dict, new: dict) -> str | None:
-    """First difference of two fingerprints in words, or None."""
+    """First difference of two fingerprints in words, or None.
+
+    An option that one of them does not name is younger than the shot (or, of a shot made by a newer add-on, not known
+    here): its default is what the shot was made with."""
+    usual = _defaults()
     for key in sorted(set(old) | set(new)):
-        if old.get(key) != new.get(key):
+        before, now = (known.get(key, usual.get(key)) for known in (old, new))
+        if before != now:
             if key in ("source", "linked"):
                 return f"{_called(key)} has changed"
-            return f"{_called(key)} was {_shown(old.get(key))} and now is {_shown(new.get(key))}"
+            return f"{_called(key)} was {_shown(before)} and now is {_shown(now)}"
     return None
+
+
+def _defaults() -> dict:
+    """Every option's default by its field's name, as a fingerprint holds it."""
+    known = {item.name: item.default for item, _ in options_of(Settings)}
+    return json.loads(json.dumps({k: v for k, v in known.items() if v is not dataclasses.MISSING}))
 
 
 def _shown(value) -> str:

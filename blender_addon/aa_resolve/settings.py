@@ -208,7 +208,16 @@ class Settings:
         "none: textures are read at a point, as Cycles does; mip: image textures are read from mip maps at the level of "
         "the pixel's footprint, as a rasteriser does. Truth always reads them as they are (%(default)s)",
         default="none",
-        choices=dict.fromkeys(("none", "mip"), ("", "")),
+        choices={
+            "none": ("At a Point", "Textures are read at a point, as Cycles does"),
+            "mip": (
+                "Mip Maps",
+                "Image textures are read from mip maps at the level of the pixel's footprint, as a rasteriser does",
+            ),
+        },
+        panel=(
+            Widget("Textures", "How jittered frames read textures; truth reads them as they are"),
+        ),
         group="Textures",
     )
     mip_bias: float = option(
@@ -218,12 +227,27 @@ class Settings:
         metavar="LEVELS",
         number=real_number,
         span=(-16.0, 16.0),
+        panel=(
+            Widget(
+                "Mip Bias",
+                "Added to the mip level; below 0 sharper, -0.25 for methods that accumulate frames",
+            ),
+        ),
+        words=lambda panel: [f"{panel.mip_bias:.6g}"],
+        applies=lambda panel: panel.texture_filter == "mip",
         group="Textures",
     )
     unjitter_textures: bool = option(
         "--unjitter-textures",
         "textures are read where the pixel's centre lies on the surface: the jitter moves edges only [Castorina 2023]",
         default=False,
+        panel=(
+            Widget(
+                "Un-jittered Textures",
+                "Textures are read where the pixel's centre lies on the surface: the jitter moves edges only",
+            ),
+        ),
+        applies=lambda panel: panel.reads_jittered_frames() and panel.jitter != "none",
         group="Textures",
     )
     pattern: str = option(

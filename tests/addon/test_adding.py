@@ -417,6 +417,25 @@ def test_what_makes_other_pictures_is_refused() -> None:
     assert files(out) == before
 
 
+def test_an_option_younger_than_the_shot_is_at_its_default() -> None:
+    """A shot begun before an option existed is resumed where the option keeps its default, and refused elsewhere."""
+    out = os.path.join(FOLDER, "older")
+    wish = ("--frames", "1", "--for", "taaSimplest", "--truth-frames", "none")
+    exported(out, *wish)
+    path = os.path.join(out, ".aa", "settings.json")
+    with open(path, encoding="utf-8") as file:
+        stored = json.load(file)
+    for young in ("texture_filter", "mip_bias", "unjitter_textures"):
+        del stored["content"][young]
+    storing.write_json(path, stored)
+    before = files(out)
+    assert lacking(out, *wish).changed is None
+    exported(out, "--frames", "1-2", *wish[2:])
+    assert files(out).keys() > before.keys() and before.items() <= files(out).items()
+    changed = lacking(out, *wish, "--texture-filter", "mip").changed or ""
+    assert changed == "--texture-filter was none and now is mip", changed
+
+
 if __name__ == "__main__":
     t.main(
         test_added_step_by_step_is_exported_at_once,
@@ -429,4 +448,5 @@ if __name__ == "__main__":
         test_two_processes_add,
         test_a_static_shot_is_added_to,
         test_what_makes_other_pictures_is_refused,
+        test_an_option_younger_than_the_shot_is_at_its_default,
     )

@@ -129,6 +129,15 @@ def test_the_panel_says_what_it_shows() -> None:
     for flag in ("--ambient", "--subsamples", "--jitter", "--period"):
         assert flag not in words, words
     assert "--color-type" in words and said().lighting == "as-is"
+    assert (plain.texture_filter, plain.mip_bias, plain.unjitter_textures) == ("none", 0.0, False)
+    shown.mip_bias, shown.unjitter_textures = -0.3, True
+    words = shown.options("/out")
+    assert "--mip-bias" not in words and "--unjitter-textures" not in words, words
+    shown.texture_filter, shown.method_taaSimplest = "mip", True
+    full = said()
+    assert (full.texture_filter, full.mip_bias, full.unjitter_textures) == ("mip", -0.3, True)
+    shown.jitter = "none"
+    assert not said().unjitter_textures, "without jitter there is none to take back"
 
 
 def test_parameters_are_edited_and_said() -> None:

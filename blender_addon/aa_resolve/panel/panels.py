@@ -273,6 +273,12 @@ class AA_RESOLVE_PT_quality(_Panel, bpy.types.Panel):
         column.enabled = settings.applies("jitter")
         column.prop(settings, "jitter")
         column.prop(settings, "period")
+        layout.prop(settings, "texture_filter", text="Textures")
+        if settings.applies("mip_bias"):
+            layout.prop(settings, "mip_bias", text="Mip Bias")
+        column = layout.column(heading="Jitter of")
+        column.enabled = settings.applies("unjitter_textures")
+        column.prop(settings, "unjitter_textures", text="Edges Only")
         layout.prop(settings, "lighting")
         if settings.applies("ambient"):
             layout.column(heading="Ambient").prop(settings, "use_ambient", text="Own")

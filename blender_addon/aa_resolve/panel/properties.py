@@ -9,6 +9,7 @@ import bpy
 from bpy.props import (
     BoolProperty,
     EnumProperty,
+    FloatProperty,
     FloatVectorProperty,
     IntProperty,
     IntVectorProperty,
@@ -64,6 +65,8 @@ def _property(widget: Widget, default, option: Option):
         more["min"], more["max"] = option.span
     if isinstance(default, int):
         return IntProperty(**more)
+    if isinstance(default, float):
+        return FloatProperty(**more)
     if isinstance(default[0], int):
         return IntVectorProperty(size=len(default), **more)
     return FloatVectorProperty(
