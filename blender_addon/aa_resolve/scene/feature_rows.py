@@ -159,7 +159,8 @@ ROWS: tuple[Feature, ...] = (
         "POINT SUN SPOT",
         HANDLED,
         "noise-free light takes their size; as-is keeps it. Several whose visibility is animated "
-        "are refused in noise-free light",
+        "are refused in noise-free light. Instanced ones shine, too: one at several places at once, by "
+        "collections, faces, particles or nodes, stays noisy, which is noted",
         "lighting:set_up",
     ),
     Feature(

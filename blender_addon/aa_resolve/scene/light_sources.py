@@ -44,6 +44,18 @@ def instancers_of(lights: list[bpy.types.Object]) -> set[bpy.types.Object]:
     return {user for user in reached if isinstance(user, bpy.types.Object) and _instances(user)}
 
 
+def shown_several_times(lights: list[bpy.types.Object]) -> list[str]:
+    """Names of the lights that shine at several places at once in the present frame: of those the samples pick one."""
+    places = dict.fromkeys(lights, 0)
+    for instance in bpy.context.evaluated_depsgraph_get().object_instances:
+        item = instance.object.original
+        if item in places:
+            # Cycles leaves out what its parent puts on its vertices or faces, and renders its instances alone.
+            replaced = item.parent and item.parent.instance_type in ("VERTS", "FACES")
+            places[item] += bool(instance.is_instance or not replaced)
+    return sorted(item.name for item, count in places.items() if count > 1)
+
+
 def is_portal(item: bpy.types.Object) -> bool:
     """True for an area light that only shows Cycles where light of the world comes in."""
     return item.type == "LIGHT" and item.data.type == "AREA" and item.data.cycles.is_portal

@@ -27,6 +27,7 @@ from .light_sources import (
     is_portal,
     lights_of,
     noise_causes,
+    shown_several_times,
 )
 from .ownership import is_animated, own, own_if_present
 
@@ -166,10 +167,10 @@ def set_up(
         changes.append(f"{len(plan.lights)} lights rendered one by one and added")
     if changes:
         plan.notes.append("noise-free light: " + ", ".join(changes))
-    instanced = {item.name for item in plan.lights if item.name not in scene.objects}
-    if instanced:
+    several = shown_several_times(plan.lights)
+    if several:
         plan.notes.append(
-            f"lights inside instanced collections ({', '.join(sorted(instanced))}) are several at once: noise remains"
+            f"instanced lights ({', '.join(several)}) are several at once: noise remains"
         )
     return plan
 
