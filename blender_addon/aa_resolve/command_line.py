@@ -119,8 +119,9 @@ def _passes_and_jitter(
     """Passes of the frames and of those at the pixel centres, and the jitter sequence.
 
     Methods that accumulate read jittered frames, all others the pixel centres: with both kinds chosen the shot holds
-    both, with one kind only the frames themselves are of that kind. A shot's methods count as chosen, and its jitter is
-    the default of what is added to it."""
+    both, with one kind only the frames themselves are of that kind; where a jitter is asked for nevertheless, those at
+    the centres lie beside them, as their truth does. A shot's methods count as chosen, and its jitter is the default of
+    what is added to it."""
     passes = registry.required_passes(choices, "jittered")
     centre_passes = registry.required_passes(choices, "centre")
     before = stored.methods if stored else []
@@ -133,7 +134,7 @@ def _passes_and_jitter(
         sequence = stored.content["jitter"]
     if sequence is None:
         sequence = Settings.jitter if passes or not arguments.methods else "none"
-    if not jittered or sequence == "none":
+    if sequence == "none" or not jittered and arguments.jitter is None:
         passes |= centre_passes
         centre_passes = set()
     known = registry.load_passes()

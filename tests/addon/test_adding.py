@@ -417,6 +417,21 @@ def test_what_makes_other_pictures_is_refused() -> None:
     assert files(out) == before
 
 
+def test_methods_at_the_centres_have_theirs_beside_a_jitter() -> None:
+    """A jitter that is asked for moves no frame of methods that read the pixel centres, as truth is centred, too."""
+    plain, both = (os.path.join(FOLDER, name) for name in ("centred", "jittered"))
+    wish = ("--frames", "1", "--for", "fxaa311,gbaa", "--truth-frames", "none")
+    exported(plain, *wish)
+    shot = exported(both, *wish, "--jitter", "halton23")
+    entry = shot["frames"][0]
+    assert entry["jitter"] != [0, 0] and entry["centre"] == "centre/000001.exr", entry
+    for part in ("color", "edges"):
+        ours = t.read_part(os.path.join(both, entry["centre"]), part)
+        theirs = t.read_part(os.path.join(plain, "frames/000001.exr"), part)
+        for channel, pixels in theirs.items():
+            assert np.array_equal(ours[channel], pixels), (part, channel)
+
+
 def test_an_option_younger_than_the_shot_is_at_its_default() -> None:
     """A shot begun before an option existed is resumed where the option keeps its default, and refused elsewhere."""
     out = os.path.join(FOLDER, "older")
@@ -448,5 +463,6 @@ if __name__ == "__main__":
         test_two_processes_add,
         test_a_static_shot_is_added_to,
         test_what_makes_other_pictures_is_refused,
+        test_methods_at_the_centres_have_theirs_beside_a_jitter,
         test_an_option_younger_than_the_shot_is_at_its_default,
     )
