@@ -6,6 +6,7 @@ the one on the PATH; and whether it can serve. Nothing here needs a window, or B
 from __future__ import annotations
 
 import functools
+import json
 import os
 import re
 import shutil
@@ -68,6 +69,25 @@ def problem(preferred: str = "") -> str:
     if version != ADDON_VERSION:
         return f"{path}: is version {version}, but the add-on is version {ADDON_VERSION}: install both of one version"
     return ""
+
+
+def runnable(path: str, shot: str) -> list[str]:
+    """Methods that the program can run on a shot. Raises RuntimeError with the program's own words."""
+    try:
+        ended = subprocess.run(
+            [path, "list", "--shot", shot, "--json"],
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            encoding="utf-8",
+            errors="replace",
+            timeout=_TIMEOUT_SECONDS,
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise RuntimeError(f"{path}: {error}") from error
+    if ended.returncode != 0:
+        raise RuntimeError(ended.stderr.strip() or f"{path}: ended with code {ended.returncode}")
+    return [m["id"] for m in json.loads(ended.stdout)["methods"] if not m["whyNot"]]
 
 
 def look_again() -> None:

@@ -94,8 +94,16 @@ def reads_subsamples(passes: Iterable[str]) -> bool:
     return any(load_passes()[name].per_sub_sample for name in passes)
 
 
+def sets() -> dict[str, list[str]]:
+    """Set -> its methods, as the resolver names sets: ``all`` and the families."""
+    found: dict[str, list[str]] = {"all": list(load_methods())}
+    for name, method in load_methods().items():
+        found.setdefault(method["family"], []).append(name)
+    return found
+
+
 def parse_choices(texts: list[str]) -> list[MethodChoice]:
-    """Reads ``m1,m2:k=v,k=v,m3``: a part with ``=`` and no ``:`` belongs to the method before it."""
+    """Reads ``m1,m2:k=v,k=v,set,m3``: a part with ``=`` and no ``:`` belongs to the method before it."""
     choices: list[tuple[str, dict[str, str]]] = []
     for part in (part.strip() for text in texts for part in text.split(",")):
         if not part:
@@ -113,6 +121,15 @@ def parse_choices(texts: list[str]) -> list[MethodChoice]:
             raise UsageError(f"--for: expected KEY=VALUE after '{choices[-1][0]}:', found '{part}'")
         choices[-1][1][key] = value
     known = load_methods()
+    choices = [
+        each
+        for name, parameters in choices
+        for each in (
+            [(member, {}) for member in sets()[name]]
+            if name in sets() and not parameters
+            else [(name, parameters)]
+        )
+    ]
     for name, parameters in choices:
         if name not in known:
             near = difflib.get_close_matches(name, known, 1)

@@ -73,7 +73,8 @@ class Settings:
     )
     methods: list[str] = option(
         "--for",
-        "methods the shot must serve, as `aaresolve run -m` names them, e.g. noaa,karis:box=variance; decides the passes. "
+        "methods the shot must serve, as `aaresolve run -m` names them, e.g. noaa,spatial,karis:box=variance; decides the "
+        "passes. "
         "S=8 behind one that reads sub-samples asks for 8 of them: rsaa:S=8 (default: noaa)",
         metavar="METHODS",
         unsaid=[],

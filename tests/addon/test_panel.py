@@ -232,6 +232,63 @@ def test_starts_and_families() -> None:
     assert sum(map(len, families().values())) == len(registry.load_methods())
 
 
+def test_sets_of_methods() -> None:
+    """All, none, and what the program says that the shot serves, which is asked of that shot."""
+    from aa_resolve import registry
+    from aa_resolve.panel import preferences
+
+    shown = registered()
+    assert bpy.ops.aa_resolve.choose_set(kind="ALL") == {"FINISHED"}
+    assert set(shown.chosen()) == set(registry.load_methods())
+    assert bpy.ops.aa_resolve.choose_set(kind="NONE") == {"FINISHED"}
+    assert shown.chosen() == []
+    folder = t.temporary_folder()
+    shown.out = os.path.join(folder, "shot")
+    program = os.path.join(folder, "aaresolve")
+    with open(program, "w", encoding="utf-8") as file:
+        file.write(
+            "#!/bin/sh\n"
+            f'[ "$1" = --version ] && echo {aa_resolve.ADDON_VERSION} && exit\n'
+            f'[ "$*" = "list --shot {shown.out} --json" ] || {{ echo "asked: $*" >&2; exit 3; }}\n'
+            'echo \'{"methods": [{"id": "noaa", "whyNot": ""},'
+            ' {"id": "msaa", "whyNot": "its frames lack subsamples"}, {"id": "mlaa", "whyNot": ""}]}\'\n'
+        )
+    os.chmod(program, 0o755)
+    before = preferences.preferred
+    preferences.preferred = lambda: program
+    try:
+        assert bpy.ops.aa_resolve.choose_set(kind="RUNNABLE") == {"FINISHED"}
+        assert sorted(shown.chosen()) == ["mlaa", "noaa"], shown.chosen()
+        shown.out = os.path.join(folder, "other")
+        with open(program, "a", encoding="utf-8") as file:
+            file.write("exit 3\n")
+        try:
+            bpy.ops.aa_resolve.choose_set(kind="RUNNABLE")
+            raise AssertionError("what the program refuses must be told")
+        except RuntimeError as error:
+            assert "asked" in str(error) or "3" in str(error), error
+    finally:
+        preferences.preferred = before
+    assert sorted(shown.chosen()) == ["mlaa", "noaa"], "a refusal must change nothing"
+
+
+def test_for_takes_sets() -> None:
+    """What `aaresolve run -m` takes, `--for` does: families and all, once each, beside methods with parameters."""
+    from aa_resolve import registry
+    from aa_resolve.errors import UsageError
+
+    spatial = [n for n, m in registry.load_methods().items() if m["family"] == "spatial"]
+    parsed = registry.parse_choices(["noaa,spatial", "karis:box=variance,alpha=0.1"])
+    assert [choice.id for choice in parsed] == ["noaa", *spatial, "karis"]
+    assert parsed[-1].parameters == {"box": "variance", "alpha": "0.1"}
+    assert len(registry.parse_choices(["all"])) == len(registry.load_methods())
+    try:
+        registry.parse_choices(["spatial:x=1"])
+        raise AssertionError("a set has no parameters")
+    except UsageError as error:
+        assert "spatial" in str(error)
+
+
 def test_the_look_is_foretold() -> None:
     """What the panel says of 'No Noise' is what the exporter then does, and a scene without such things hears nothing."""
     from aa_resolve.panel import look, watch
@@ -372,6 +429,8 @@ if __name__ == "__main__":
         test_the_panel_says_what_it_shows,
         test_parameters_are_edited_and_said,
         test_starts_and_families,
+        test_sets_of_methods,
+        test_for_takes_sets,
         test_the_look_is_foretold,
         test_results_are_found_on_disk,
         test_looking_is_not_drawing,

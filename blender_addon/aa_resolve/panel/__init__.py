@@ -25,6 +25,7 @@ _CLASSES = (
     parameters.AA_RESOLVE_OT_reset_parameters,
     presets.AA_RESOLVE_OT_use_preset,
     presets.AA_RESOLVE_OT_choose_family,
+    presets.AA_RESOLVE_OT_choose_set,
     presets.AA_RESOLVE_MT_presets,
     presets.AA_RESOLVE_OT_add_preset,
     panels.AA_RESOLVE_PT_main,

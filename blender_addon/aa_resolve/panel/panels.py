@@ -22,6 +22,7 @@ from .presets import (
     AA_RESOLVE_MT_presets,
     AA_RESOLVE_OT_add_preset,
     AA_RESOLVE_OT_choose_family,
+    AA_RESOLVE_OT_choose_set,
     AA_RESOLVE_OT_use_preset,
 )
 from .properties import families, method_property, unfold_property
@@ -144,6 +145,9 @@ class AA_RESOLVE_PT_methods(_Panel, bpy.types.Panel):
     def draw(self, context) -> None:
         settings = context.scene.aa_resolve
         layout = self.layout
+        row = layout.row(align=True)
+        for kind, text in (("ALL", "All"), ("NONE", "None"), ("RUNNABLE", "What the Shot Serves")):
+            row.operator(AA_RESOLVE_OT_choose_set.bl_idname, text=text).kind = kind
         layout.prop(context.window_manager, "aa_resolve_search", text="", icon="VIEWZOOM")
         wanted = context.window_manager.aa_resolve_search.lower()
         if wanted:

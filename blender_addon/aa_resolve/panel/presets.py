@@ -8,7 +8,8 @@ import bpy
 from bl_operators.presets import AddPresetBase
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 
-from .. import registry
+from .. import program, registry
+from . import preferences, running
 from .properties import STORED, families, method_property
 
 _PRESETS = "aa_resolve"
@@ -136,6 +137,50 @@ class AA_RESOLVE_OT_choose_family(bpy.types.Operator):
     def execute(self, context):
         for name in families()[self.family]:
             setattr(context.scene.aa_resolve, method_property(name), self.chosen)
+        return {"FINISHED"}
+
+
+class AA_RESOLVE_OT_choose_set(bpy.types.Operator):
+    """Choose a set of methods"""
+
+    bl_idname = "aa_resolve.choose_set"
+    bl_label = "Choose Methods"
+    bl_options = {"REGISTER", "UNDO"}
+
+    kind: EnumProperty(
+        items=[
+            ("ALL", "All", "Choose every method"),
+            ("NONE", "None", "Choose no method"),
+            (
+                "RUNNABLE",
+                "What the Shot Serves",
+                "Choose the methods that the shot in the folder can serve as it is: none of them needs anything "
+                "rendered",
+            ),
+        ],
+        name="Set",
+    )
+
+    @classmethod
+    def description(cls, _context, properties) -> str:
+        """The tooltip of one button."""
+        return properties.bl_rna.properties["kind"].enum_items[properties.kind].description
+
+    def execute(self, context):
+        chosen = list(registry.load_methods()) if self.kind == "ALL" else []
+        if self.kind == "RUNNABLE":
+            wanted = preferences.preferred()
+            found = program.find(wanted)
+            if found is None:
+                self.report({"ERROR"}, program.problem(wanted))
+                return {"CANCELLED"}
+            try:
+                chosen = program.runnable(found.path, running.shot_folder(context.scene))
+            except RuntimeError as error:
+                self.report({"ERROR"}, str(error))
+                return {"CANCELLED"}
+        for name in registry.load_methods():
+            setattr(context.scene.aa_resolve, method_property(name), name in chosen)
         return {"FINISHED"}
 
 
