@@ -19,7 +19,7 @@ LAUNCHER := $(if $(shell command -v ccache 2>/dev/null),-DCMAKE_CXX_COMPILER_LAU
 help:
 	@echo "make demo       build, render two scenes in Blender, run the methods, make contact sheets and reports"
 	@echo "make test       build and run every test"
-	@echo "make build      the program, at build/aaresolve"
+	@echo "make program    the program, at build/aaresolve; make build: and its tests"
 	@echo "make install    the program, the add-on's zip and the pages below PREFIX=/usr/local"
 	@echo "make addon      the Blender add-on as one zip for 3.4 to 5.2, at build/aa_resolve.zip"
 	@echo "make bundle     the program with its libraries, build/aaresolve-*.tar.gz, and the add-on with it, build/aa_resolve-linux-x64.zip"
@@ -115,7 +115,7 @@ docs: program
 	@python3 blender_addon/write_scenes_page.py
 	@$(BUILD)/aaresolve list --markdown > docs/methods.md
 	@$(BUILD)/aaresolve list --json > blender_addon/aa_resolve/methods.json
-	@$(BUILD)/aaresolve bench --family temporal --markdown --size 480x270 --frames 8 --repeats 1 --threads 1 > docs/precision.md
+	@$(BUILD)/aaresolve bench -m temporal --markdown --size 480x270 --frames 8 --repeats 1 --threads 1 > docs/precision.md
 
 # After a change of a method's pixels that was meant: what every build must give from now on.
 bits: program

@@ -9,6 +9,8 @@ Makes BUILD/bundle/aaresolve-VERSION-linux-x64/ and BUILD/aaresolve-VERSION-linu
     lib/                     its libraries, unchanged files of this machine's distribution
     lib/unless-newer/        those that a graphics driver may load too: launcher.cpp says why they lie apart
     share/aaresolve/fonts/   the contact sheet's font
+    share/man, share/bash-completion, share/zsh, share/fish
+                             the manual page and the shells' completion
     share/doc/aaresolve/     this project's pages and the licence of every part
 
 The C library and the dynamic loader stay the system's. Pictures that are neither PNG nor EXR need OpenImageIO, which is
@@ -125,6 +127,13 @@ class Bundle:
             self.put(font, f"share/aaresolve/fonts/{name}")
         self.packages.add(FONT_PACKAGE)
 
+    def put_manual(self) -> None:
+        pages = self.build / "pages"
+        self.put(pages / "aaresolve.1", "share/man/man1/aaresolve.1")
+        self.put(pages / "aaresolve", "share/bash-completion/completions/aaresolve")
+        self.put(pages / "_aaresolve", "share/zsh/site-functions/_aaresolve")
+        self.put(pages / "aaresolve.fish", "share/fish/vendor_completions.d/aaresolve.fish")
+
     def put_pages(self) -> None:
         for page in PAGES:
             self.put(ROOT / page, f"share/doc/aaresolve/{page}")
@@ -182,6 +191,7 @@ def main(build: Path) -> None:
     bundle.put_programs()
     bundle.put_libraries()
     bundle.put_fonts()
+    bundle.put_manual()
     bundle.put_pages()
     archive = build / f"{name}.tar.gz"
     write_archive(bundle.folder, archive)

@@ -4,15 +4,19 @@
 #include <cstdio>
 #include <iostream>
 
+#include "cli/choose.h"
 #include "cli/cli.h"
+#include "image/error.h"
 #include "image/io.h"
 
 namespace aa {
 namespace {
+constexpr int kLeastSizePx = 16, kMostSizePx = 4096;
 struct Options {
     std::vector<std::string> methods;
     std::string out;
     AngleStudyOptions study;
+    std::string size = std::to_string(study.sizePx) + "x" + std::to_string(study.sizePx);
     bool json = false;
     WorkOptions work;
 };
@@ -39,7 +43,12 @@ void printTable(const AngleStudy& s) {
 }
 
 void execute(Options& o) {
-    for (const auto& text : o.methods) o.study.methods.push_back(parseMethod(text));
+    o.study.methods = chosen(o.methods);
+    const auto [width, height] = sizeOf("--size", o.size);
+    if (width != height || width < kLeastSizePx || width > kMostSizePx)
+        throw UsageError("--size: expected a square of " + std::to_string(kLeastSizePx) + " to " +
+                         std::to_string(kMostSizePx) + " px, found '" + o.size + "'");
+    o.study.sizePx = width;
     AngleStudy study;
     withThreads(o.work.threads, [&] { study = studyAngles(o.study, o.work.exec()); });
     if (!o.out.empty()) {
@@ -60,12 +69,13 @@ void execute(Options& o) {
 void addAngles(CommandLine& line, Context&) {
     auto o = std::make_shared<Options>();
     Command c = line.command("angles", "What methods gain on a straight edge, by its direction");
-    c.option("-m,--method", o->methods, "a method, `id` or `id:name=value`; repeat for more").required().oneEach();
+    addMethodOption(c, o->methods, "a method", false).required();
     c.option("-o,--out", o->out,
-             "folder for angles.json, angles.csv and angles.svg; `report` of that folder shows them");
+             "folder for angles.json, angles.csv and angles.svg; in that of a run, its report shows them, too")
+        .typeName("FOLDER");
     c.option("--angles", o->study.angles, "number of directions, a multiple of 4").range(4, 3600);
     c.option("--offsets", o->study.offsets, "sub-pixel offsets per direction").range(1, 256);
-    c.option("--size", o->study.sizePx, "width and height of a picture, px").range(16, 4096);
+    c.option("--size", o->size, "size of a picture, a square, px").typeName("WxH");
     c.option("--frames", o->study.frames, "jittered frames for methods that accumulate").range(1, 1024);
     c.option("--jitter", o->study.jitter, "jitter sequence of those frames (`synth --list`)");
     c.flag("--json", o->json, "print angles.json instead of the table");

@@ -9,7 +9,9 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "cli/choose.h"
 #include "image/error.h"
+#include "image/json_text.h"
 #include "methods/driver.h"
 #include "shot/pass_table.h"
 
@@ -121,22 +123,8 @@ void printRow(const Options& o, const Row& row, const ShotInfo& info) {
     std::fflush(stdout);
 }
 
-std::vector<MethodSpec> chosen(const Options& o) {
-    std::vector<MethodSpec> specs;
-    for (const auto& text : o.methods) specs.push_back(parseMethod(text));
-    for (const auto& family : o.families) {
-        const size_t before = specs.size();
-        for (const auto& m : registry())
-            if (m.family == family) specs.push_back(parseMethod(m.id));
-        if (specs.size() == before)
-            throw UsageError("--family: no method is of the family '" + family + "'; `aaresolve list` shows all");
-    }
-    if (specs.empty()) throw UsageError("bench: expected at least one -m METHOD or --family FAMILY, found none");
-    return specs;
-}
-
 void execute(const Options& o) {
-    const std::vector<MethodSpec> specs = chosen(o);
+    const std::vector<MethodSpec> specs = o.shot.empty() ? chosen(o.methods) : chosenFor(o.shot, o.methods);
     const Exec exec = o.work.exec();
     if (o.work.device != "cpu") return benchDevice(o, specs);
     BenchFrames source{o.shot, o.scene, 0, 0, o.frames};
@@ -165,7 +153,7 @@ void execute(const Options& o) {
                            {"rmsError", row.rmsError}});
         }
     });
-    if (o.json) std::cout << all.dump(1) << "\n";
+    if (o.json) std::cout << jsonText(all) << "\n";
 }
 
 }  // namespace
@@ -173,11 +161,10 @@ void execute(const Options& o) {
 void addBench(CommandLine& line, Context&) {
     auto o = std::make_shared<Options>();
     Command c = line.command("bench", "Speed and memory of methods, and their error against the double form");
-    c.option("-m,--method", o->methods, "methods to time, noaa first as the baseline").oneEach();
-    c.option("--family", o->families, "time every method of a family: reference, spatial, geometry, temporal")
-        .oneEach();
-    c.option("--size", o->sizes, "size of the synthetic frames, px; on a device several").oneEach();
-    c.option("--shot", o->shot, "time on this shot's frames instead of synthetic ones");
+    addMethodOption(c, o->methods, "a method to time, noaa first as the baseline", false).required();
+    line.renamed("bench", "--family", "--method");
+    c.option("--size", o->sizes, "size of the synthetic frames, px; on a device several").oneEach().typeName("WxH");
+    c.option("--shot", o->shot, "time on this shot's frames instead of synthetic ones").typeName("SHOT");
     c.option("--scene", o->scene,
              "synthetic scene (`synth --list`); default moving, half_planes for methods that read edges")
         .excludes("--shot");

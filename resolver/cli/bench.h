@@ -10,7 +10,7 @@
 namespace aa {
 
 struct BenchOptions {
-    std::vector<std::string> methods, families, sizes = {"1920x1080"};
+    std::vector<std::string> methods, sizes = {"1920x1080"};
     std::string shot, scene;
     int frames = 8, repeats = 3, runs = 200;
     bool json = false, markdown = false;

@@ -6,6 +6,7 @@
 #include "cli/bench.h"
 #include "gpu/method.h"
 #include "image/error.h"
+#include "image/json_text.h"
 #include "methods/driver.h"
 
 namespace aa {
@@ -141,7 +142,7 @@ void benchDevice(const BenchOptions& o, const std::vector<MethodSpec>& methods) 
         all["copyBytesPerSecond"][size] = copyRate;
         if (!o.shot.empty()) break;
     }
-    if (o.json) std::cout << all.dump(1) << "\n";
+    if (o.json) std::cout << jsonText(all) << "\n";
 }
 
 }  // namespace aa

@@ -5,6 +5,7 @@
 
 #include "cli/cli.h"
 #include "cli/progress.h"
+#include "image/json_text.h"
 #include "shot/manifest.h"
 
 namespace aa {
@@ -19,11 +20,12 @@ void print(const CheckReport& r) {
     for (const auto& m : r.measured) std::printf("  %-32s %.4g\n", m.name.c_str(), m.value);
     for (const auto& v : r.variants) std::printf("  labelled variant: %s\n", v.c_str());
     for (const auto& n : r.notChecked) std::printf("  not checked: %s\n", n.c_str());
-    std::printf("%s: %s; %zu frames; passes: %s\n", r.name.c_str(),
+    const std::string centre = r.centrePasses.empty() ? "" : "; at the pixel centres: " + passList(r.centrePasses);
+    std::printf("%s: %s; %zu frames; passes: %s%s\n", r.name.c_str(),
                 r.clean()
                     ? (r.variants.empty() ? "clean" : "clean as the labelled variant that it is")
                     : (std::to_string(r.findings.size()) + (r.findings.size() == 1 ? " finding" : " findings")).c_str(),
-                r.frames, passList(r.passes).c_str());
+                r.frames, passList(r.passes).c_str(), centre.c_str());
 }
 }  // namespace
 
@@ -35,25 +37,27 @@ void addCheck(CommandLine& line, Context& context) {
     };
     auto o = std::make_shared<Options>();
     Command c = line.command("check", "Is the shot what its manifest claims? Exit code 1 when something is found");
-    c.option("SHOT", o->shot, "folder of the shot").required();
+    c.option("SHOT", o->shot, "folder of the shot").required().typeName("SHOT");
     c.option("-j,--threads", o->threads, "threads; 0 = all processors").range(0, 1024);
     c.flag("--json", o->json, "as JSON");
     c.flag("-q,--quiet", o->quiet, "no progress");
     c.run([o, &context] {
         CheckReport report;
+        bool interrupted = false;
         withThreads(o->threads, [&] {
             const size_t frames = readManifest(o->shot).frames.size();
             TerminalProgress progress("check", frames, o->quiet || o->json);
             report = checkShot(o->shot, [&](int frame) {
                 progress.step("frame " + std::to_string(frame));
-                return !progress.interrupted();
+                interrupted = progress.interrupted();
+                return !interrupted;
             });
         });
         if (o->json)
-            std::cout << toJson(report).dump(1) << "\n";
+            std::cout << jsonText(toJson(report)) << "\n";
         else
             print(report);
-        context.exitCode = report.clean() ? 0 : 1;
+        context.exitCode = interrupted ? 130 : report.clean() ? 0 : 1;
     });
 }
 

@@ -1,7 +1,7 @@
 // The command line: one file per subcommand, each adding itself to the application.
 //
-// Exit codes: 0 ok, 1 a check failed or a difference was found, 2 wrong usage, 3 bad input. UsageError and InputError
-// are caught once, in main.
+// Exit codes: 0 ok, 1 a check failed, a difference was found or the output could not be written, 2 wrong usage, 3 bad
+// input. UsageError, InputError and OutputError are caught once, in main.
 #pragma once
 #include <functional>
 #include <memory>
@@ -33,7 +33,7 @@ struct WorkOptions {
 void addWorkOptions(Command& command, WorkOptions& work);
 // --device and what goes with it.
 void addDeviceOptions(Command& command, WorkOptions& work);
-// Width and height of an option's "480x270"; throws UsageError.
+// Width and height of an option's "480x270"; one number is a square. Throws UsageError.
 std::pair<int, int> sizeOf(const std::string& option, const std::string& text);
 // Runs `body` in an arena of the asked number of threads.
 void withThreads(int threads, const std::function<void()>& body);
@@ -56,5 +56,7 @@ void addAngles(CommandLine& line, Context& context);
 void addDevices(CommandLine& line, Context& context);
 void addSurvey(CommandLine& line, Context& context);
 void addVerify(CommandLine& line, Context& context);
+void addHelp(CommandLine& line, Context& context);
+void addCompletion(CommandLine& line, Context& context);
 
 }  // namespace aa

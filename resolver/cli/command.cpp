@@ -1,7 +1,9 @@
 #include "cli/command.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
+#include <sstream>
 
 #include "image/error.h"
 
@@ -23,6 +25,7 @@ Option& Option::values(int least, int most) {
     return least == most ? option_->expected(least) : option_->expected(least, most), *this;
 }
 Option& Option::excludes(std::string_view name) { return option_->excludes(std::string(name)), *this; }
+Option& Option::typeName(const std::string& name) { return option_->type_name(name), *this; }
 Option& Option::defaultText(const std::string& text) { return option_->default_str(text), *this; }
 
 Option Command::option(const std::string& names, std::string& to, const std::string& help) {
@@ -65,7 +68,8 @@ Command Command::command(const std::string& name, const std::string& help) {
 }
 void Command::run(std::function<void()> body) { app_->callback(std::move(body)); }
 
-CommandLine::CommandLine(const std::string& help, const std::string& version) : app_(std::make_unique<CLI::App>(help)) {
+CommandLine::CommandLine(const std::string& help, const std::string& version)
+    : app_(std::make_unique<CLI::App>(help, "aaresolve")) {
     app_->set_version_flag("--version", version);
     app_->require_subcommand(1);
     app_->fallthrough(false);
@@ -77,17 +81,107 @@ CommandLine::~CommandLine() = default;
 Command CommandLine::command(const std::string& name, const std::string& help) {
     return Command(app_->add_subcommand(name, help));
 }
-std::vector<std::string> CommandLine::commands() const {
-    std::vector<std::string> names;
-    for (const auto* c : app_->get_subcommands({})) names.push_back(c->get_name());
-    return names;
+void CommandLine::renamed(const std::string& command, const std::string& before, const std::string& now) {
+    renamed_.push_back({command, before, now});
 }
+
+namespace {
+// CLI11 keeps what is allowed in the text of the type, "TEXT:{png,exr}".
+std::vector<std::string> choicesOf(const CLI::Option& option) {
+    const std::string type = option.get_type_name();
+    const size_t open = type.find('{'), close = type.find('}');
+    std::vector<std::string> all;
+    if (open == std::string::npos || close == std::string::npos) return all;
+    std::istringstream inner(type.substr(open + 1, close - open - 1));
+    for (std::string choice; std::getline(inner, choice, ',');) all.push_back(choice);
+    return all;
+}
+OptionInfo describe(const CLI::Option& option) {
+    OptionInfo info;
+    info.isArgument = option.get_positional();
+    if (info.isArgument)
+        info.names = {option.get_name(true)};
+    else {
+        for (const auto& n : option.get_snames()) info.names.push_back("-" + n);
+        for (const auto& n : option.get_lnames()) info.names.push_back("--" + n);
+    }
+    if (option.get_items_expected_max() > 0) {
+        info.type = option.get_type_name();
+        info.type = info.type.substr(0, info.type.find(':'));
+        info.choices = choicesOf(option);
+        info.defaultText = option.get_default_str();
+        if (info.defaultText == "[]") info.defaultText.clear();
+    }
+    info.help = option.get_description();
+    info.isRequired = option.get_required();
+    info.isRepeatable = option.get_expected_max() > 1;
+    return info;
+}
+CommandInfo describe(const CLI::App& app) {
+    CommandInfo info{app.get_name(), app.get_description(), {}, {}};
+    for (const auto* o : app.get_options()) info.options.push_back(describe(*o));
+    for (const auto* c : app.get_subcommands({})) info.commands.push_back(describe(*c));
+    return info;
+}
+// The command that was being read when the usage went wrong: "aaresolve survey make".
+std::string commandBeingRead(const CLI::App& app) {
+    std::string name = app.get_name();
+    for (const CLI::App* at = &app; !at->get_subcommands().empty();) {
+        at = at->get_subcommands().back();
+        name += " " + at->get_name();
+    }
+    return name;
+}
+}  // namespace
+
+const CommandInfo* CommandInfo::find(std::string_view command) const {
+    for (const auto& c : commands)
+        if (c.name == command) return &c;
+    return nullptr;
+}
+CommandInfo CommandLine::describe() const { return aa::describe(*app_); }
+
+void CommandLine::useNewNames(std::vector<std::string>& words) const {
+    if (words.empty()) return;
+    for (auto& word : words)
+        for (const Renamed& r : renamed_)
+            if (words[0] == r.command && (word == r.before || word.starts_with(r.before + "="))) {
+                std::cerr << "aaresolve: note: " << r.before << " is called " << r.now << " now\n";
+                word = r.now + word.substr(r.before.size());
+            }
+}
+
+namespace {
+// "help survey make" -> "survey make --help". Throws UsageError: no such command.
+std::vector<std::string> helpWords(const std::vector<std::string>& words, const CommandInfo& program) {
+    if (words.empty() || words[0] != "help" || (words.size() > 1 && words[1].starts_with('-'))) return words;
+    std::vector<std::string> asked(words.begin() + 1, words.end());
+    std::string name = program.name;
+    const CommandInfo* at = &program;
+    for (const auto& word : asked) {
+        std::vector<std::string_view> known;
+        for (const auto& c : at->commands) known.push_back(c.name);
+        const std::string near = suggestion(word, known);
+        at = at->find(word);
+        if (!at)
+            throw UsageError("help: " + name + " has no command '" + word + "'" +
+                             (near.empty() ? "; see " + name + " --help" : "; did you mean '" + near + "'?"));
+        name += " " + word;
+    }
+    asked.push_back("--help");
+    return asked;
+}
+}  // namespace
+
 int CommandLine::parse(int argc, char** argv) {
+    std::vector<std::string> words = helpWords({argv + 1, argv + argc}, describe());
+    useNewNames(words);
+    std::reverse(words.begin(), words.end());  // as CLI11 takes them
     try {
-        app_->parse(argc, argv);
+        app_->parse(std::move(words));
     } catch (const CLI::ParseError& e) {
         if (e.get_exit_code() == 0) return app_->exit(e);  // --help, --version
-        std::cerr << "aaresolve: " << e.what() << " (see aaresolve --help)\n";
+        std::cerr << "aaresolve: " << e.what() << " (see " << commandBeingRead(*app_) << " --help)\n";
         return 2;
     }
     return 0;

@@ -31,9 +31,26 @@ class Option {
     Option& values(int least, int most);  // behind one
     Option& excludes(std::string_view name);
     Option& defaultText(const std::string& text);  // that the help shows
+    // What is expected, as the help names it and completion knows it: METHOD, SHOT, RUN, FILE, FOLDER, WxH ...
+    Option& typeName(const std::string& name);
 
   private:
     CLI::Option* option_;
+};
+
+// A command line described: what completion and the manual page are made of.
+struct OptionInfo {
+    std::vector<std::string> names;  // "-o", "--out"; of an argument its name alone
+    std::string type;                // "METHOD", "FILE"; empty: a flag
+    std::vector<std::string> choices;
+    std::string help, defaultText;
+    bool isArgument = false, isRequired = false, isRepeatable = false;
+};
+struct CommandInfo {
+    std::string name, help;
+    std::vector<OptionInfo> options;
+    std::vector<CommandInfo> commands;
+    const CommandInfo* find(std::string_view command) const;  // null: none is called so
 };
 
 class Command {
@@ -62,13 +79,20 @@ class CommandLine {
     CommandLine(const std::string& help, const std::string& version);
     ~CommandLine();
     Command command(const std::string& name, const std::string& help);
-    std::vector<std::string> commands() const;
-    // Reads and runs. Returns 2 where the usage is wrong (said on stderr), 0 otherwise, also for help and version.
-    // Errors of the command itself pass through.
+    // An option's former name: read as the present one, with a line on stderr that says so.
+    void renamed(const std::string& command, const std::string& before, const std::string& now);
+    CommandInfo describe() const;
+    // Reads and runs; `help COMMAND` is read as `COMMAND --help`. Returns 2 where the usage is wrong (said on stderr),
+    // 0 otherwise, also for help and version. Errors of the command itself pass through.
     int parse(int argc, char** argv);
 
   private:
+    struct Renamed {
+        std::string command, before, now;
+    };
+    void useNewNames(std::vector<std::string>& words) const;
     std::unique_ptr<CLI::App> app_;
+    std::vector<Renamed> renamed_;
 };
 
 }  // namespace aa

@@ -10,6 +10,7 @@
 #include "image/colour.h"
 #include "image/error.h"
 #include "image/io.h"
+#include "image/json_text.h"
 #include "metrics/maps.h"
 #include "metrics/measure.h"
 #include "report/format.h"
@@ -218,7 +219,7 @@ void compare(const Options& o, Context& context) {
         if (device.session) j["device"]["name"] = device.name();
         if (device.seconds > 0) j["device"]["seconds"] = device.seconds;
         j["failures"] = failures;
-        std::cout << j.dump(1) << "\n";
+        std::cout << jsonText(j) << "\n";
     } else {
         const auto line = [&](const std::string& name, const FrameMetrics& m) {
             std::printf("%-16s", name.c_str());

@@ -4,6 +4,7 @@
 
 #include "cli/cli.h"
 #include "gpu/device.h"
+#include "image/json_text.h"
 
 namespace aa {
 
@@ -24,7 +25,7 @@ void addDevices(CommandLine& line, Context&) {
                                {"memoryBytes", d.memoryBytes},
                                {"usable", d.lacks.empty()},
                                {"lacks", d.lacks}});
-            std::cout << all.dump(2) << "\n";
+            std::cout << jsonText(all, 2) << "\n";
             return;
         }
         if (devices.empty())

@@ -4,6 +4,7 @@
 #include "gpu/method.h"
 #include "image/error.h"
 #include "image/io.h"
+#include "methods/choosing.h"
 #include "methods/driver.h"
 #include "study/protocol.h"
 
@@ -34,6 +35,8 @@ Frame frameOf(const LoadedImage& image, const DisplayChain& display, const Exec&
 }
 
 void filter(const Options& o) {
+    if (splitMethods(o.method).size() > 1 || isMethodSet(o.method))
+        throw UsageError("filter: expected one method, found '" + o.method + "'");
     const MethodSpec spec = parseMethod(o.method);
     if (const PassSet missing = spec.passes().without(Pass::color); !missing.empty()) {
         std::string list;
@@ -77,10 +80,11 @@ void filter(const Options& o) {
 void addFilter(CommandLine& line, Context&) {
     auto o = std::make_shared<Options>();
     Command c = line.command("filter", "One image through one spatial method; PNG = 8-bit sRGB codes, EXR = linear");
-    c.option("METHOD", o->method, "for example smaa1x:preset=HIGH").required();
-    c.option("IN", o->in, "PNG or EXR").required();
-    c.option("OUT", o->out, "PNG or EXR").required();
-    c.option("--debug-layers", o->debugLayers, "also write the method's intermediate images to this EXR");
+    c.option("METHOD", o->method, "for example smaa1x:preset=HIGH").required().typeName("METHOD");
+    c.option("IN", o->in, "PNG or EXR").required().typeName("FILE");
+    c.option("OUT", o->out, "PNG or EXR").required().typeName("FILE");
+    c.option("--debug-layers", o->debugLayers, "also write the method's intermediate images to this EXR")
+        .typeName("FILE");
     c.option("--display", o->display,
              "srgb = EXR values are linear light; identity = they are the displayed values, as the codes of a PNG")
         .oneOf({"srgb", "identity"});

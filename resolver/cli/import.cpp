@@ -7,6 +7,7 @@
 #include "cli/cli.h"
 #include "cli/progress.h"
 #include "image/error.h"
+#include "image/json_text.h"
 #include "methods/method.h"
 #include "shot/import/folder.h"
 #include "shot/manifest.h"
@@ -90,7 +91,7 @@ int import(Options& o) {
     });
     for (const auto& w : report.warnings) std::fprintf(stderr, "warning: %s\n", w.c_str());
     if (o.json)
-        std::cout << toJson(report).dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
+        std::cout << jsonText(toJson(report)) << "\n";
     else
         print(report, o);
     return interrupted ? 130 : 0;

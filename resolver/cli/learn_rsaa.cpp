@@ -1,12 +1,12 @@
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "cli/cli.h"
 #include "image/error.h"
 #include "image/io.h"
+#include "image/json_text.h"
 #include "methods/geometry/rsaa_lut_data.h"
 
 namespace aa {
@@ -22,12 +22,6 @@ Learned learn(size_t samples, RsaaTraining training) {
     const auto entries = learnRsaa(positionsPx, training);
     return {samples, entries.size(), halfPlaneErrors(positionsPx, rsaaTable(samples, entries))};
 }
-void writeText(const std::string& path, const std::string& text) {
-    std::ofstream file(path, std::ios::binary);
-    file << text;
-    if (!file.flush()) throw InputError(path + ": cannot be written; check that its folder exists and has room");
-}
-
 }  // namespace
 
 void addLearnRsaa(CommandLine& line, Context&) {
@@ -38,7 +32,10 @@ void addLearnRsaa(CommandLine& line, Context&) {
     auto o = std::make_shared<Options>();
     Command c = line.command("learn-rsaa", "Learns RSAA's offsets for 4, 8 and 16 sub-samples and measures them");
     c.option("--training", o->training, "classes of training pictures").oneOf({"all", "halfPlanes"});
-    c.option("-o,--output", o->source, "write the offsets of --training all as C++ source here").defaultText("");
+    c.option("-o,--out", o->source, "write the offsets of --training all as C++ source here")
+        .defaultText("")
+        .typeName("FILE");
+    line.renamed("learn-rsaa", "--output", "--out");
     c.flag("--json", o->json, "as JSON");
     c.run([o] {
         const auto training = o->training == "all" ? RsaaTraining::all : RsaaTraining::halfPlanes;
@@ -64,7 +61,7 @@ void addLearnRsaa(CommandLine& line, Context&) {
                 std::printf("%11zu  %5d  %7zu  %34.2f dB  %12.2f dB\n", l.samples, 1 << l.samples, l.trained,
                             l.gainDb(l.errors.rsaa), l.gainDb(l.errors.msaa));
         }
-        if (o->json) std::cout << all.dump(1) << "\n";
+        if (o->json) std::cout << jsonText(all) << "\n";
     });
 }
 

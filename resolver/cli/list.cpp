@@ -1,12 +1,16 @@
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 
+#include "cli/choose.h"
 #include "cli/cli.h"
 #include "cli/describe.h"
 #include "image/error.h"
+#include "image/json_text.h"
 #include "methods/asymmetry.h"
 #include "methods/stage.h"
 #include "shot/pass_table.h"
+#include "study/runnable.h"
 
 namespace aa {
 namespace {
@@ -184,36 +188,98 @@ nlohmann::ordered_json describeRegistry() {
     return all;
 }
 
-void addList(CommandLine& line, Context&) {
-    struct Options {
-        bool json = false, markdown = false;
-        std::vector<std::string> ids;
-    };
-    auto o = std::make_shared<Options>();
-    Command c = line.command("list", "Methods, their passes, parameters and sources");
-    c.option("METHOD", o->ids, "only these, with their parameters");
-    c.flag("--json", o->json, "as JSON");
-    c.flag("--markdown", o->markdown, "as the page docs/methods.md");
-    c.run([o] {
-        if (o->markdown) return printMarkdown();
-        if (o->json) {
-            nlohmann::ordered_json all = describeRegistry();
-            if (!o->ids.empty()) {
-                all["methods"] = nlohmann::ordered_json::array();
-                for (const auto& id : o->ids) all["methods"].push_back(describe(findMethod(id)));
-            }
-            std::cout << all.dump(1) << "\n";
-            return;
+namespace {
+struct ListOptions {
+    bool json = false, markdown = false;
+    std::vector<std::string> words;
+    std::string shot;
+};
+// What a word of `list` means, in the registry's order: a method, a set, or what somebody may search by it.
+std::vector<const MethodDescriptor*> meantBy(const std::string& word) {
+    for (const auto& m : registry())
+        if (m.id == word) return {&m};
+    std::vector<const MethodDescriptor*> found;
+    if (isMethodSet(word))
+        for (const auto& spec : chooseMethods({word}).methods) found.push_back(spec.method);
+    else
+        found = methodsLike(word);
+    if (found.empty()) findMethod(word);  // throws, with a suggestion
+    return found;
+}
+std::vector<const MethodDescriptor*> listed(const std::vector<std::string>& texts) {
+    std::vector<const MethodDescriptor*> all;
+    for (const auto& text : texts)
+        for (const auto& word : splitMethods(text))
+            for (const auto* m : meantBy(word))
+                if (std::find(all.begin(), all.end(), m) == all.end()) all.push_back(m);
+    if (texts.empty())
+        for (const auto& m : registry()) all.push_back(&m);
+    return all;
+}
+
+// "accum, csaa: REASON", methods with one reason together.
+void printForShot(const std::vector<const MethodDescriptor*>& methods, const std::string& folder) {
+    const Runnable runnable{ShotReader(folder)};
+    std::vector<std::pair<std::string, std::string>> refused;  // reason, methods
+    size_t count = 0;
+    for (const auto* m : methods) {
+        const std::string why = runnable.whyNot(parseMethod(m->id));
+        if (why.empty()) {
+            count++;
+            printMethod(*m, false);
+            continue;
         }
-        if (o->ids.empty())
-            for (const auto& m : registry()) printMethod(m, false);
+        const auto same = std::find_if(refused.begin(), refused.end(), [&](const auto& r) { return r.first == why; });
+        if (same == refused.end())
+            refused.emplace_back(why, m->id);
         else
-            for (const auto& id : o->ids) printMethod(findMethod(id), true);
-        if (o->ids.empty()) {
-            printStages();
-            std::puts("\n`aaresolve list METHOD` shows its parameters; write them as METHOD:name=value,name=value");
+            same->second += ", " + std::string(m->id);
+    }
+    std::printf("\n%s can run %zu of %zu methods (run -m runnable)%s\n", folder.c_str(), count, methods.size(),
+                refused.empty() ? "" : "; not:");
+    for (const auto& [why, names] : refused) std::printf("  %s: %s\n", names.c_str(), why.c_str());
+}
+
+void list(const ListOptions& o) {
+    if (o.markdown) return printMarkdown();
+    const auto methods = listed(o.words);
+    if (o.json) {
+        nlohmann::ordered_json all = describeRegistry();
+        all["methods"] = nlohmann::ordered_json::array();
+        const auto runnable =
+            o.shot.empty() ? std::nullopt : std::optional<Runnable>(std::in_place, ShotReader(o.shot));
+        for (const auto* m : methods) {
+            all["methods"].push_back(describe(*m));
+            if (runnable) all["methods"].back()["whyNot"] = runnable->whyNot(parseMethod(m->id));
         }
-    });
+        std::cout << jsonText(all) << "\n";
+        return;
+    }
+    if (!o.shot.empty()) return printForShot(methods, o.shot);
+    const auto isNamed = [&](const MethodDescriptor* m) {
+        return std::any_of(o.words.begin(), o.words.end(), [&](const auto& text) {
+            const auto words = splitMethods(text);
+            return std::find(words.begin(), words.end(), m->id) != words.end();
+        });
+    };
+    for (const auto* m : methods) printMethod(*m, isNamed(m));
+    if (!o.words.empty()) return;
+    printStages();
+    std::puts("\nSets, wherever methods are named");
+    for (const MethodSet& set : methodSets(true)) std::printf("  %-18s %s\n", set.name.c_str(), set.meaning.c_str());
+    std::puts("\n`aaresolve list METHOD` shows its parameters; write them as METHOD:name=value,name=value");
+}
+}  // namespace
+
+void addList(CommandLine& line, Context&) {
+    auto o = std::make_shared<ListOptions>();
+    Command c = line.command("list", "Methods, their passes, parameters and sources");
+    c.option("METHOD", o->words, "only these, with their parameters; a set, or a word that is searched for, as taa")
+        .typeName("METHOD");
+    c.option("--shot", o->shot, "what this shot can run, and what it lacks for the others").typeName("SHOT");
+    c.flag("--json", o->json, "as JSON; with --shot each method has whyNot, which is empty where it can run");
+    c.flag("--markdown", o->markdown, "as the page docs/methods.md");
+    c.run([o] { list(*o); });
 }
 
 void addPlan(CommandLine& line, Context&) {
@@ -223,16 +289,15 @@ void addPlan(CommandLine& line, Context&) {
     };
     auto o = std::make_shared<Options>();
     Command c = line.command("plan", "The passes that these methods need");
-    c.option("METHODS", o->methods, "methods, as for run").required().separatedBy(' ');
+    c.option("METHODS", o->methods, "methods and sets, as for run").required().typeName("METHOD");
     c.flag("--json", o->json, "as JSON");
     c.run([o] {
-        std::vector<MethodSpec> specs;
-        for (const auto& m : o->methods) specs.push_back(parseMethod(m));
+        const std::vector<MethodSpec> specs = chosen(o->methods);
         const PassSet needed = passesOf(specs);
         if (o->json) {
             nlohmann::ordered_json j = {{"passes", names(needed)}};
             for (const auto& s : specs) j["methods"][s.text] = names(s.passes());
-            std::cout << j.dump(1) << "\n";
+            std::cout << jsonText(j) << "\n";
             return;
         }
         for (const auto& s : specs) std::printf("%-28s %s\n", s.text.c_str(), passList(s.passes()).c_str());

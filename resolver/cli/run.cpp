@@ -2,8 +2,8 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
-#include <set>
 
+#include "cli/choose.h"
 #include "cli/cli.h"
 #include "cli/run_arguments.h"
 #include "image/error.h"
@@ -15,8 +15,9 @@ namespace {
 struct Options {
     RunArguments run;
     std::vector<std::string> methods;
-    bool debugLayers = false, overFrames = false;
+    bool debugLayers = false, overFrames = false, withoutBaseline = false;
 };
+constexpr const char* kBaseline = "noaa";
 }  // namespace
 
 void printTable(const RunResults& r) {
@@ -135,14 +136,19 @@ void printOverFrames(const RunResults& r, bool all) {
             "a frame that is identical has an infinite PSNR, and then the average has; the pooled one has not\n");
 }
 
+// Gains are measured against no anti-aliasing.
+void addBaseline(std::vector<MethodSpec>& methods, const Options& o) {
+    const auto isPlain = [](const MethodSpec& m) { return m.text == kBaseline; };
+    if (o.withoutBaseline || std::any_of(methods.begin(), methods.end(), isPlain)) return;
+    methods.insert(methods.begin(), parseMethod(kBaseline));
+    if (!o.run.quiet)
+        std::fprintf(stderr, "%s is run as well: gains are measured against it (--no-noaa: without)\n", kBaseline);
+}
+
 void execute(const Options& o, Context& context) {
     RunOptions run;
-    std::set<std::string> folders;
-    for (const auto& text : o.methods) {
-        run.methods.push_back(parseMethod(text));
-        if (!folders.insert(run.methods.back().folderName()).second)
-            throw UsageError("method '" + text + "' is given twice");
-    }
+    run.methods = chosenFor(o.run.shot, o.methods);
+    addBaseline(run.methods, o);
     run.debugLayers = o.debugLayers;
     const ShotReader shot = openShot(o.run, run);
     RunResults results;
@@ -163,9 +169,8 @@ void execute(const Options& o, Context& context) {
 void addRun(CommandLine& line, Context& context) {
     auto o = std::make_shared<Options>();
     Command c = line.command("run", "Run methods on a shot and measure them against its ground truth");
-    c.option("-m,--method", o->methods, "a method, `id` or `id:name=value,name=value`; repeat for more")
-        .required()
-        .oneEach();
+    addMethodOption(c, o->methods, "a method", true).required();
+    c.flag("--no-noaa", o->withoutBaseline, "do not add noaa where it is not named; then there are no gains");
     addRunArguments(c, o->run);
     c.flag("--over-frames", o->overFrames,
            "print best, worst and average over the frames of every figure, not of PSNR alone");

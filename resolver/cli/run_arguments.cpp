@@ -9,8 +9,8 @@
 namespace aa {
 
 void addRunArguments(Command& c, RunArguments& a) {
-    c.option("SHOT", a.shot, "the shot's folder").required();
-    c.option("-o,--out", a.out, "folder for images, results.json and results.csv").required();
+    c.option("SHOT", a.shot, "the shot's folder").required().typeName("SHOT");
+    c.option("-o,--out", a.out, "folder for images, results.json and results.csv").required().typeName("FOLDER");
     c.option("--frames", a.frames, "frames, as 1-16,20; default all");
     c.option("--write", a.write, "image files: exr (linear), png (8-bit sRGB), exr,png or none");
     c.option("--write-frames", a.writeFrames,
@@ -39,8 +39,9 @@ void addRunArguments(Command& c, RunArguments& a) {
         "--region", a.region,
         "X,Y,WIDTH,HEIGHT: figures of these pixels alone, as if they were the picture; methods still see all of it");
     c.option(
-        "--reference", a.reference,
-        "a method: the others are held against its images instead of the shot's truth; added where it is not there");
+         "--reference", a.reference,
+         "a method: the others are held against its images instead of the shot's truth; added where it is not there")
+        .typeName("METHOD");
     c.option("--input", a.input, "NaN and Inf in the input: sanitise = replace and count, strict = refuse")
         .oneOf({"sanitise", "strict"});
     c.flag("--json", a.json, "print results.json instead of the table");

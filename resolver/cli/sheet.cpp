@@ -30,8 +30,8 @@ void drawSheet(const Options& o) {
 void addSheet(CommandLine& line, Context&) {
     auto o = std::make_shared<Options>();
     Command c = line.command("sheet", "A contact sheet of a run: methods, magnified details, error maps, figures");
-    c.option("RUN", o->run, "output folder of `aaresolve run`").required();
-    c.option("-o,--out", o->out, "the PNG; default RUN/sheet.png");
+    c.option("RUN", o->run, "output folder of `aaresolve run`").required().typeName("RUN");
+    c.option("-o,--out", o->out, "the PNG; default RUN/sheet.png").typeName("FILE");
     c.option("--frame", o->frame, "frame to show; 0 = the last that every method wrote").notNegative();
     addWorkOptions(c, o->work);
     c.run([o] { drawSheet(*o); });

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "cli/choose.h"
 #include "cli/run_arguments.h"
 
 namespace aa {
@@ -15,12 +16,20 @@ struct Options {
 
 void execute(const Options& o, Context& context) {
     RunOptions run;
-    run.methods = variantsOf(o.sweep);
+    SweepOptions sweeping = o.sweep;
+    const auto textsOf = [](const std::vector<MethodSpec>& methods) {
+        std::vector<std::string> texts;
+        for (const auto& m : methods) texts.push_back(m.text);
+        return texts;
+    };
+    sweeping.methods = textsOf(chosenFor(o.run.shot, o.sweep.methods));
+    if (o.sweep.with != std::vector<std::string>{"none"}) sweeping.with = textsOf(chosenFor(o.run.shot, o.sweep.with));
+    run.methods = variantsOf(sweeping);
     const ShotReader shot = openShot(o.run, run);
     RunResults all;
     size_t passes = 0;
     withThreads(o.run.work.threads, [&] {
-        Sweep sweep(shot, run, o.sweep);
+        Sweep sweep(shot, run, sweeping);
         passes = sweep.passes();
         TerminalProgress progress("sweep", sweep.steps(), o.run.quiet);
         all = sweep.run(progress.callbacks());
@@ -39,14 +48,12 @@ void execute(const Options& o, Context& context) {
 void addSweep(CommandLine& line, Context& context) {
     auto o = std::make_shared<Options>();
     Command c = line.command("sweep", "Run every combination of some parameters' values");
-    c.option("-m,--method", o->sweep.methods,
-             "the method, `id` or `id:name=value` with what stays the same; repeatable")
-        .required()
-        .oneEach();
+    addMethodOption(c, o->sweep.methods, "the method, with what stays the same", true).required();
     c.option("--vary", o->sweep.vary, "NAME=VALUE,VALUE,...: a parameter and its values; repeat for more parameters")
         .required()
         .oneEach();
-    c.option("--with", o->sweep.with, "methods to compare with, as they are; none = without").separatedBy(' ');
+    c.option("--with", o->sweep.with, "methods to compare with, as they are, with commas; none = without")
+        .typeName("METHOD");
     c.option("--memory", o->sweep.memoryMb, "MiB that all variants may hold at a time; more are run in another pass")
         .range(1.0, 1e7);
     addRunArguments(c, o->run);

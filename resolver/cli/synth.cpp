@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <tuple>
 
+#include "cli/choose.h"
 #include "cli/cli.h"
 #include "cli/progress.h"
 #include "image/error.h"
@@ -19,7 +20,7 @@ struct Options {
     std::string out;
     std::vector<std::string> methods;
     std::vector<int> nanPixel;
-    std::string resolution = "480x270", jitterProjection = "post";
+    std::string size = "480x270", jitterProjection = "post";
     int threads = 0;
     bool quiet = false, list = false;
 };
@@ -51,8 +52,7 @@ std::string patternFor(const std::vector<MethodSpec>& jittered, const std::vecto
 // The passes that these methods read, from jittered and from centre-sampled frames.
 void planFor(const std::vector<std::string>& methods, SynthOptions& o) {
     std::vector<MethodSpec> jittered, centre;
-    for (const auto& text : methods) {
-        const MethodSpec spec = parseMethod(text);
+    for (const MethodSpec& spec : chosen(methods)) {
         (spec.method->sampling() == Sampling::centre && o.jitter != "none" ? centre : jittered).push_back(spec);
     }
     o.wanted = passesOf(jittered) | Pass::color;
@@ -67,7 +67,7 @@ int synth(Options& o) {
     if (o.list) return printScenes(), 0;
     if (o.synth.scene.empty() || o.out.empty())
         throw UsageError("synth: expected NAME -o SHOT; `aaresolve synth --list` shows the names");
-    std::tie(o.synth.width, o.synth.height) = sizeOf("--resolution", o.resolution);
+    std::tie(o.synth.width, o.synth.height) = sizeOf("--size", o.size);
     if (!o.nanPixel.empty()) o.synth.nanPixel = glm::ivec2(o.nanPixel[0], o.nanPixel[1]);
     o.synth.premultiplied = o.jitterProjection == "pre";
     if (!o.methods.empty()) planFor(o.methods, o.synth);
@@ -85,7 +85,7 @@ int synth(Options& o) {
                 m.name.c_str(), m.width, m.height, m.jitterSequence.c_str(),
                 m.jitterPremultiplied ? " (labelled variant: premultiplied)" : "", m.isStatic ? "static" : "moving",
                 o.out.c_str());
-    return stopped ? 1 : 0;
+    return stopped ? 130 : 0;
 }
 }  // namespace
 
@@ -93,10 +93,13 @@ void addSynth(CommandLine& line, Context& context) {
     auto o = std::make_shared<Options>();
     o->synth.scene.clear();
     Command c = line.command("synth", "Analytic shots with exact truth, without Blender");
-    c.option("NAME", o->synth.scene, "scene; --list shows them");
-    c.option("-o,--out", o->out, "folder of the shot");
-    c.option("--resolution", o->resolution, "width and height, px");
-    c.option("--for", o->methods, "only the passes that these methods read; all passes without it").separatedBy(',');
+    c.option("NAME", o->synth.scene, "scene; --list shows them").typeName("SCENE");
+    c.option("-o,--out", o->out, "folder of the shot").typeName("FOLDER");
+    c.option("--size", o->size, "width and height, px").typeName("WxH");
+    line.renamed("synth", "--resolution", "--size");
+    c.option("--for", o->methods,
+             "only the passes that these methods read, methods and sets as for run; all passes without it")
+        .typeName("METHOD");
     c.option("--frames", o->synth.frames, "number of frames");
     c.option("--jitter", o->synth.jitter, "sequence; `none` samples pixel centres");
     c.option("--start", o->synth.jitterStart, "index of the first point of halton23; -1 = its own");

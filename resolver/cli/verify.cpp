@@ -4,10 +4,13 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "cli/choose.h"
 #include "cli/cli.h"
 #include "cli/progress.h"
 #include "image/error.h"
+#include "image/json_text.h"
 #include "study/prepare.h"
+#include "study/runnable.h"
 
 namespace aa {
 namespace {
@@ -56,18 +59,14 @@ void execute(const Options& o, Context& context) {
     VerifyOptions options;
     if (o.work.device == "cpu") throw UsageError("verify: --device: expected a graphics device, found 'cpu'");
     const auto session = o.work.session();
-    for (const auto& text : o.methods) options.methods.push_back(parseMethod(text));
+    if (!o.methods.empty()) options.methods = chosenFor(o.shot, o.methods);
     options.exec = o.work.exec();
     const ShotReader shot(o.shot);
     options.frames = selectFrames(shot.manifest(), o.frames);
     if (options.methods.empty())
         for (const auto& m : registry())
-            if (const MethodSpec spec = parseMethod(m.id); gpu::hasForm(m.id)) try {
-                    requirePasses(shot, {spec});
-                    spec.create(shotInfo(shot.manifest()));
-                    options.methods.push_back(spec);
-                } catch (const std::runtime_error&) {  // not for this shot
-                }
+            if (MethodSpec spec = parseMethod(m.id); gpu::hasForm(m.id) && Runnable(shot).whyNot(spec).empty())
+                options.methods.push_back(std::move(spec));
     std::vector<VerifyResult> results;
     withThreads(o.work.threads, [&] {
         TerminalProgress progress(shot.manifest().name, options.frames.size(), o.quiet);
@@ -75,7 +74,7 @@ void execute(const Options& o, Context& context) {
         if (progress.interrupted()) context.exitCode = 130;
     });
     if (o.json)
-        std::cout << json(results, *session, shot.manifest().name).dump(1) << "\n";
+        std::cout << jsonText(json(results, *session, shot.manifest().name)) << "\n";
     else
         print(results, *session);
     for (const auto& r : results)
@@ -87,8 +86,8 @@ void addVerify(CommandLine& line, Context& context) {
     auto o = std::make_shared<Options>();
     o->work.device = "vulkan";
     Command c = line.command("verify", "Compare the methods' shaders with their kernels on a shot, frame by frame");
-    c.option("SHOT", o->shot, "the shot's folder").required();
-    c.option("-m,--method", o->methods, "a method; repeat for more; default: every one that the shot serves").oneEach();
+    c.option("SHOT", o->shot, "the shot's folder").required().typeName("SHOT");
+    addMethodOption(c, o->methods, "a method (default: every one that the shot serves)", true);
     c.option("--frames", o->frames, "frames, as 1-16,20; default all");
     c.option("--limit", o->limit, "exit code 1 where a difference exceeds it; 0: none does").notNegative();
     c.flag("--json", o->json, "print JSON");

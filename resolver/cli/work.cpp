@@ -37,7 +37,8 @@ void addDeviceOptions(Command& command, WorkOptions& work) {
 
 std::pair<int, int> sizeOf(const std::string& option, const std::string& text) {
     int width = 0, height = 0, read = 0;
-    const int found = std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &read);
+    int found = std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &read);
+    if (found == 1 && std::sscanf(text.c_str(), "%d%n", &width, &read) == 1) height = width, found = 2;
     if (found != 2 || size_t(read) != text.size() || std::min(width, height) < 1)
         throw UsageError(option + ": expected WIDTHxHEIGHT in one word, as in 480x270, found '" + text + "'");
     return {width, height};

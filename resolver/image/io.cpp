@@ -11,6 +11,7 @@
 #include "image/error.h"
 #include "image/exr.h"
 #include "image/other_formats.h"
+#include "image/output_error.h"
 #include "image/png.h"
 
 namespace aa {
@@ -29,22 +30,22 @@ void renameInto(const fs::path& temporary, const fs::path& file) {
     std::error_code failed;
     fs::rename(temporary, file, failed);
     if (failed)
-        throw InputError(file.string() + ": cannot be put in place (" + failed.message() +
-                         "); check the folder's permissions");
+        throw OutputError(file.string() + ": cannot be put in place (" + failed.message() +
+                          "); check the folder's permissions");
 }
 
 void makeWritableFolder(const fs::path& folder) {
     std::error_code failed;
     fs::create_directories(folder, failed);
     if (failed || ::access(folder.c_str(), W_OK) != 0)
-        throw InputError(folder.string() + ": not a writable folder" + (failed ? " (" + failed.message() + ")" : "") +
-                         "; choose another output folder or change its permissions");
+        throw OutputError(folder.string() + ": not a writable folder" + (failed ? " (" + failed.message() + ")" : "") +
+                          "; choose another output folder or change its permissions");
 }
 
 void giveUpWriting(const fs::path& file, const std::string& why) {
     std::error_code ignored;
     fs::remove(temporaryName(file), ignored);
-    throw InputError(file.string() + ": cannot be written (" + why + "); check permissions and free disk space");
+    throw OutputError(file.string() + ": cannot be written (" + why + "); check permissions and free disk space");
 }
 
 void writeBytes(const fs::path& file, std::span<const unsigned char> bytes) {

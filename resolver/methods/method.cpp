@@ -1,6 +1,9 @@
 #include "methods/method.h"
 
+#include <algorithm>
+
 #include "image/error.h"
+#include "methods/family.h"
 
 namespace aa {
 
@@ -10,9 +13,20 @@ const MethodDescriptor& findMethod(std::string_view id, const std::vector<Method
         if (m.id == id) return m;
         known.push_back(m.id);
     }
-    const std::string near = suggestion(id, known);
-    throw UsageError("unknown method '" + std::string(id) + "'" +
-                     (near.empty() ? "; `aaresolve list` shows all" : "; did you mean '" + near + "'?"));
+    const std::string unknown = "unknown method '" + std::string(id) + "'";
+    if (id.find('=') != std::string_view::npos)
+        throw UsageError(unknown + "; parameters stand behind METHOD: as NAME=VALUE");
+    constexpr size_t kMostNames = 6;  // of a message that one still reads
+    std::vector<std::string_view> like;
+    for (const auto& m : among)
+        if (isSearchedBy(id, m.id, m.title, m.family)) like.push_back(m.id);
+    std::string names;
+    for (size_t i = 0; i < std::min(like.size(), kMostNames); i++) names += (i ? ", " : "") + std::string(like[i]);
+    if (like.size() > kMostNames) names += " and " + std::to_string(like.size() - kMostNames) + " more";
+    if (like.size() > 1)
+        throw UsageError(unknown + "; there are " + names + " (`aaresolve list " + std::string(id) + "`)");
+    const std::string near = like.size() == 1 ? std::string(like[0]) : suggestion(id, known);
+    throw UsageError(unknown + (near.empty() ? "; `aaresolve list` shows all" : "; did you mean '" + near + "'?"));
 }
 
 ParamSpec averagedSpaceParam() {

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "image/error.h"
+#include "image/json_text.h"
 #include "report/page.h"
 #include "report/web/web_files.h"
 
@@ -52,7 +53,7 @@ std::string toJsonText(const AngleStudy& s) {
         method["turnDb"] = s.turnAsymmetryDb(m);
         j["methods"].push_back(std::move(method));
     }
-    return j.dump(1);
+    return jsonText(j);
 }
 
 std::string toCsvText(const AngleStudy& s) {

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "image/json_text.h"
+
 namespace aa {
 
 std::string filled(std::string_view page, std::initializer_list<std::pair<std::string_view, std::string_view>> places) {
@@ -14,7 +16,7 @@ std::string filled(std::string_view page, std::initializer_list<std::pair<std::s
 }
 
 std::string forScript(const nlohmann::ordered_json& j) {
-    const std::string text = j.dump();
+    const std::string text = jsonText(j, -1);
     std::string safe;
     safe.reserve(text.size());
     for (const char c : text) {

@@ -7,6 +7,7 @@
 
 #include "image/error.h"
 #include "image/io.h"
+#include "image/json_text.h"
 #include "report/canvas.h"
 #include "report/html.h"
 #include "report/page.h"
@@ -198,7 +199,8 @@ class Maker {
     std::string codeOf(const SurveyRun& run, const std::string& method, const std::vector<int>& frames,
                        const Window& region, const std::vector<std::string>& files) {
         const std::string what =
-            json({run.folder.string(), method, frames, {region.x, region.y, region.width, region.height}}).dump();
+            run.folder.string() + '\0' +
+            jsonText(json({method, frames, {region.x, region.y, region.width, region.height}}), -1);
         auto& code = known_[what];
         if (!code.empty()) return code;
         constexpr int kDigits = 8;
@@ -250,7 +252,7 @@ class Maker {
                                          {"pictures", codes}});
         }
         page["images"] = images_;
-        uint64_t all = digest(page.dump());
+        uint64_t all = digest(jsonText(page, -1));
         constexpr int kDigits = 10;
         std::string& id = key.survey;
         for (; int(id.size()) < kDigits; all <<= 4) id += "0123456789abcdef"[all >> 60];

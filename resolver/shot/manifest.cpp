@@ -7,6 +7,7 @@
 
 #include "image/error.h"
 #include "image/io.h"
+#include "image/json_text.h"
 #include "shot/frame_notes.h"
 
 namespace aa {
@@ -381,8 +382,6 @@ json toJson(const Manifest& m) {
     return j;
 }
 
-void writeManifest(const Manifest& m) {
-    writeText(m.folder / "shot.json", toJson(m).dump(1, ' ', false, json::error_handler_t::replace) + "\n");
-}
+void writeManifest(const Manifest& m) { writeText(m.folder / "shot.json", jsonText(toJson(m)) + "\n"); }
 
 }  // namespace aa

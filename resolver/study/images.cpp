@@ -51,9 +51,16 @@ void writeMaps(const RunningMethod& m, const Reference& measured, int frame, con
 }
 
 std::string writeTruthImage(const Reference& reference, int frame, const RunOptions& o) {
-    const std::string file = (fs::path("truth") / frameName(frame, ".exr")).string();
-    writeExr(o.out / file, reference.linear, o.protocol.display.transfer == Transfer::identity);
-    return file;
+    std::string written;
+    if (o.writePng) {
+        written = (fs::path("truth") / frameName(frame, ".png")).string();
+        writePng(o.out / written, reference.encoded);
+    }
+    if (o.writeExr) {
+        written = (fs::path("truth") / frameName(frame, ".exr")).string();
+        writeExr(o.out / written, reference.linear, o.protocol.display.transfer == Transfer::identity);
+    }
+    return written;
 }
 
 }  // namespace aa

@@ -6,6 +6,7 @@
 
 #include "image/error.h"
 #include "image/io.h"
+#include "image/json_text.h"
 #include "study/json_number.h"
 #include "study/results.h"
 
@@ -378,7 +379,7 @@ std::string toJsonText(const RunResults& run) {
         j["pairs"][i]["first"] = run.methods[run.pairs[i].first].text;
         j["pairs"][i]["second"] = run.methods[run.pairs[i].second].text;
     }
-    return j.dump(1) + "\n";
+    return jsonText(j) + "\n";
 }
 
 void writeResults(const RunResults& run, const fs::path& folder) {

@@ -74,7 +74,8 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, const Progres
             return o.writeAllFrames || (judge.reference() && (!manifest.isStatic || i + 1 == o.frames.size()));
         };
         if (!standsIn && judge.reference() && isWritten())
-            results.truthImages[frame->number] = writeTruthImage(*judge.reference(), frame->number, o);
+            if (const auto image = writeTruthImage(*judge.reference(), frame->number, o); !image.empty())
+                results.truthImages[frame->number] = image;
 
         for (const size_t k : order) {
             const bool isReference = standsIn && k == order.front();

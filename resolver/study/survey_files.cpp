@@ -5,6 +5,7 @@
 #include <set>
 
 #include "image/error.h"
+#include "image/json_text.h"
 #include "study/json_number.h"
 #include "study/survey.h"
 
@@ -67,7 +68,7 @@ class Place {
   private:
     std::string shortened() const {
         constexpr size_t kMost = 60;
-        const std::string all = value_.dump();
+        const std::string all = jsonText(value_, -1);
         return all.size() <= kMost ? all : all.substr(0, kMost) + "...";
     }
     const json& value_;
@@ -195,7 +196,7 @@ std::string toJsonText(const SurveyKey& key) {
                 {{"code", p.code}, {"method", p.method}, {"shown", toJson(p.shown)}, {"run", toJson(p.run)}});
         j["questions"].push_back(std::move(question));
     }
-    return j.dump(1) + "\n";
+    return jsonText(j) + "\n";
 }
 
 fs::path keyBeside(const fs::path& page) { return fs::path(page).replace_extension(".key.json"); }

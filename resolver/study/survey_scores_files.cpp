@@ -1,6 +1,7 @@
 // The scores as JSON and CSV.
 #include <nlohmann/json.hpp>
 
+#include "image/json_text.h"
 #include "study/json_number.h"
 #include "study/survey_scores.h"
 
@@ -89,7 +90,7 @@ std::string toJsonText(const SurveyScores& scores) {
               {"sets", json::array()}};
     for (const ScoredSet& set : scores.sets) j["sets"].push_back(toJson(set, scores.participants));
     j["agreement"] = toJson(scores.pooled);
-    return j.dump(1) + "\n";
+    return jsonText(j) + "\n";
 }
 
 std::string toCsvText(const SurveyScores& scores) {

@@ -43,6 +43,7 @@ def run_methods(
             "--write",
             write,
             "-q",
+            "--no-noaa",  # the tables hold what their sources do
             *flags,
         ]
         for m in texts:

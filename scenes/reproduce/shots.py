@@ -116,7 +116,7 @@ def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
     size = "{}x{}".format(*shot.size)
     if shot.scene.startswith("synth:"):
         command = [shop.program, "synth", shot.scene.split(":")[1], "-o", folder, "-q"]
-        command += ["--frames", shot.frames, "--resolution", size]
+        command += ["--frames", shot.frames, "--size", size]
         command += ["--jitter", shot.jitter, "--period", shot.period]
         command += ["--subsamples", shot.pattern] if shot.pattern else []
         shop.run(f"synth.{shot.name}", command)

@@ -34,7 +34,7 @@ ZIP, ZIP_WITH_PROGRAM = BUILD / "aa_resolve.zip", BUILD / "aa_resolve-linux-x64.
 SHOT_TO_REPORT = """
 set -e
 "$1" --version
-"$1" synth circles -o "$2/shot" --resolution 64 36 --frames 3
+"$1" synth circles -o "$2/shot" --size 64x36 --frames 3
 "$1" check "$2/shot"
 "$1" run "$2/shot" -m noaa -m fxaa311 -m taaSimplest -o "$2/out" -q
 "$1" sheet "$2/out" -o "$2/out/sheet.png"
@@ -138,9 +138,7 @@ class Program(BundleTest):
 
     def test_with_a_newer_driver(self) -> None:
         """Mesa's loads the system's C++ library; with an older one before it there would be no device."""
-        shot = (
-            'set -e; "$1" devices; "$1" synth circles -o /tmp/s --resolution 32 24 --frames 2 -q;'
-        )
+        shot = 'set -e; "$1" devices; "$1" synth circles -o /tmp/s --size 32x24 --frames 2 -q;'
         run = '"$1" run /tmp/s -m fxaa311 --device vulkan -o /tmp/o -q'
         done = self.shell("vulkan-sid", shot + run, "/tmp/bundle/bin/aaresolve")
         self.assertEqual(done.returncode, 0, last_words(done))

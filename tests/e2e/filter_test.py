@@ -21,7 +21,7 @@ class Filter(ProgramTest):
 
     def test_every_method_of_one_image(self) -> None:
         shot = self.folder / "shot"
-        size = ("--resolution", "120x70", "--frames", "1", "--jitter", "none", "--for", "noaa")
+        size = ("--size", "120x70", "--frames", "1", "--jitter", "none", "--for", "noaa")
         self.aaresolve("synth", "clutter", "-o", shot, *size)
         frame = shot / "frames" / RUN_FRAME
         listed = [m for m in self.methods() if m["passes"] == ["color"] and not m["temporal"]]

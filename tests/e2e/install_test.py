@@ -73,13 +73,18 @@ class Install(ProgramTest):
             ).stdout
 
         self.assertEqual(run("--version").strip(), version_of(ROOT))
-        run("synth", "circles", "-o", "shot", "--resolution", "32x24", "--frames", "2")
+        run("synth", "circles", "-o", "shot", "--size", "32x24", "--frames", "2")
         run("run", "shot", "-m", "noaa", "-m", "fxaa311", "-o", "out", "-q")
         run("report", "out", "-o", "report.html")
         self.assertIn("fxaa311", (self.folder / "report.html").read_text())
         with zipfile.ZipFile(prefix / "share/aaresolve/aa_resolve.zip") as addon:
             self.assertIn("aa_resolve/__init__.py", addon.namelist())
         pages = prefix / "share/doc/aaresolve"
+        for file in (
+            "man/man1/aaresolve.1", "bash-completion/completions/aaresolve",
+            "zsh/site-functions/_aaresolve", "fish/vendor_completions.d/aaresolve.fish",
+        ):  # fmt: skip
+            self.assertIn("aaresolve", (prefix / "share" / file).read_text(), file)
         for page in (
             "README.md",
             "CHANGELOG.md",

@@ -62,7 +62,7 @@ class ProgramTest(unittest.TestCase):
             scene,
             "-o",
             shot,
-            "--resolution",
+            "--size",
             "{}x{}".format(*size),
             "--frames",
             frames,

@@ -39,7 +39,7 @@ class Protocol(ProgramTest):
     def synth(self, scene: str, name: str, *more: object, frames: int = 16) -> Path:
         shot = self.folder / name
         self.aaresolve(
-            "synth", scene, "-o", shot, "--resolution", "64x40", "--frames", frames, "-q", *more
+            "synth", scene, "-o", shot, "--size", "64x40", "--frames", frames, "-q", *more
         )
         return shot
 
@@ -389,7 +389,7 @@ class Protocol(ProgramTest):
         least = {"half_planes": 2.5, "thin_lines": 0.5, "hairs": 3.5}
         for scene, gain in least.items():
             shot = self.folder / scene
-            size = ("--resolution", "256x144", "--frames", 16, "--jitter", "thesis")
+            size = ("--size", "256x144", "--frames", 16, "--jitter", "thesis")
             self.aaresolve("synth", scene, "-o", shot, "-q", *size)
             methods = ("noaa", "master", "master:unjitter=off", "uncharted")
             out = self.run_shot(

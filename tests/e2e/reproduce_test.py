@@ -16,7 +16,7 @@ from shots import Workshop, make, scene_sources  # noqa: E402
 class Reproduce(ProgramTest):
     def run_of(self, scene: str, methods: str, *options: object) -> Run:
         shot, out = self.folder / scene, self.folder / f"{scene}.run"
-        self.aaresolve("synth", scene, "-o", shot, "--resolution", "96x64", "-q", *options)
+        self.aaresolve("synth", scene, "-o", shot, "--size", "96x64", "-q", *options)
         words = [w for m in methods.split() for w in ("-m", m)]
         self.aaresolve("run", shot, *words, "-o", out, "--write", "none", "-q")
         return Run(out)

@@ -18,7 +18,7 @@ import exr_pixels
 from program import ROOT, ProgramTest, main
 
 FILE = ROOT / "tests/e2e/same_bits.json"
-SIZE = ("--resolution", "96x54", "--frames", "4")
+SIZE = ("--size", "96x54", "--frames", "4")
 # Shot: scene and sub-sample pattern. Together they serve every method.
 SHOTS = {"half_planes": "d3d2", "moving": "d3d4", "two_planes": "d3d8"}
 # What a shot does not serve: csaa has 4 slots; a disc has no straight edges; accum is for static shots.

@@ -45,7 +45,7 @@ class Corpus:
 
     def __init__(self, program: Path, folder: Path) -> None:
         self.program, self.folder = program, folder
-        size = ["--resolution", "24x16", "--frames", "2", "-q"]
+        size = ["--size", "24x16", "--frames", "2", "-q"]
         self._call(
             "synth",
             "two_planes",

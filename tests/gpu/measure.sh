@@ -27,9 +27,9 @@ say() { echo "[$(($(date +%s) - started)) s] $*" >&2; }
 # The analytic shots hold every pass; the pictures are small, because every pixel is compared.
 say "making frames"
 for scene in half_planes thin_lines moving; do
-    "$program" synth $scene -o "$work/$scene" --resolution 240x135 --frames 16 --subsamples d3d8 --subsample-color -q
+    "$program" synth $scene -o "$work/$scene" --size 240x135 --frames 16 --subsamples d3d8 --subsample-color -q
 done
-"$program" synth half_planes -o "$work/still" --resolution 240x135 --frames 64 --subsamples d3d2 --subsample-color -q
+"$program" synth half_planes -o "$work/still" --size 240x135 --frames 64 --subsamples d3d2 --subsample-color -q
 {
     printf '{"format": "aaresolve-gpu", "version": 1, "date": "%s",\n"system": "%s",\n"devices": ' "$(date -u +%F)" "$(uname -srm)"
     "$program" devices --json
@@ -48,7 +48,7 @@ done
     for precision in exact fast; do
         say "64 frames of a still scene, $precision"
         "$program" run "$work/still" -o "$work/ran" --device "$device" --gpu-precision $precision --write none -q --json \
-            -m noaa $("$program" list | awk '$2 == "temporal" { print "-m " $1 }') >"$work/run.json"
+            -m noaa,temporal >"$work/run.json"
         printf ',\n"run-%s": ' $precision
         cat "$work/run.json"
     done
@@ -60,7 +60,7 @@ done
             say "timing at $size, $precision"
             printf '%s' "$comma"
             "$program" bench --device "$device" --gpu-precision $precision --size "$size" --runs "$runs" --json \
-                --family reference --family spatial --family geometry --family temporal
+                -m reference,spatial,geometry,temporal
             comma=,
         done
         printf ']'

@@ -109,8 +109,8 @@ class ShotCheck {
         if (entry.centre.empty() || entry.centre == lastCentre_) return;
         lastCentre_ = entry.centre;
         try {
-            if (centrePasses_.empty()) centrePasses_ = reader_.offered(Sampling::centre);
-            const Frame f = reader_.readCentre(i, centrePasses_);
+            if (report_.centrePasses.empty()) report_.centrePasses = reader_.offered(Sampling::centre);
+            const Frame f = reader_.readCentre(i, report_.centrePasses);
             numbers(f, "centre ");
             if (has(f, Pass::color)) registerAgainstTruth(i, f, dvec2(0.0));
         } catch (const InputError& e) {
@@ -334,7 +334,6 @@ class ShotCheck {
     IdCheck ids_;
     MotionCheck motion_;
     DepthCheck depth_;
-    PassSet centrePasses_;
     std::string lastCentre_, truthFile_;
     std::optional<Rgb> truthMean_;
     std::set<std::string> numbersFound_;
@@ -356,6 +355,7 @@ std::string Finding::line() const {
 nlohmann::ordered_json toJson(const CheckReport& r) {
     nlohmann::ordered_json j = {
         {"shot", r.name}, {"clean", r.clean()}, {"frames", r.frames}, {"passes", names(r.passes)}};
+    if (!r.centrePasses.empty()) j["centrePasses"] = names(r.centrePasses);
     j["findings"] = nlohmann::ordered_json::array();
     for (const auto& f : r.findings) {
         nlohmann::ordered_json e = {{"check", f.check}};

@@ -35,7 +35,7 @@ struct Measured {
 struct CheckReport {
     std::string name;  // of the shot
     size_t frames = 0;
-    PassSet passes;
+    PassSet passes, centrePasses;  // of the jittered frames, of those at the pixel centres
     std::vector<Finding> findings;
     std::vector<Measured> measured;
     std::vector<std::string> notChecked;  // what, and why

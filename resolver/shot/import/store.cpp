@@ -5,6 +5,7 @@
 
 #include "image/error.h"
 #include "image/io.h"
+#include "image/json_text.h"
 
 namespace aa {
 namespace fs = std::filesystem;
@@ -43,7 +44,7 @@ ImportStore::ImportStore(fs::path out, const json& settings, const std::vector<s
         makeWritableFolder(out_ / kind);
         makeWritableFolder(out_ / ".aa" / kind);
     }
-    if (!ours) writeText(file, settings.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+    if (!ours) writeText(file, jsonText(settings) + "\n");
 }
 
 std::string ImportStore::picture(const std::string& kind, int frame) { return numbered(kind, frame, ".exr"); }
@@ -63,7 +64,7 @@ std::optional<json> ImportStore::finished(const std::string& kind, int frame, co
 
 void ImportStore::finish(const std::string& kind, int frame, const json& inputs, const json& facts) const {
     const json record = {{"inputs", inputs}, {"bytes", fs::file_size(out_ / picture(kind, frame))}, {"facts", facts}};
-    writeText(recordOf(kind, frame), record.dump(-1, ' ', false, json::error_handler_t::replace) + "\n");
+    writeText(recordOf(kind, frame), jsonText(record, -1) + "\n");
 }
 
 json fileIdentity(const fs::path& file) {
