@@ -17,12 +17,16 @@ const FrameResult* find(const MethodResult& m, int frame) {
     return nullptr;
 }
 
-Rgb loadEncoded(const fs::path& file, const RunResults& run, const Exec& exec) {
+LoadedImage loadOfItsSize(const fs::path& file, const RunResults& run) {
     LoadedImage image = readImage(file);
     if (image.rgb.width() != run.width || image.rgb.height() != run.height)
         throw InputError(file.string() + ": expected " + std::to_string(run.width) + "x" + std::to_string(run.height) +
                          " as results.json says, found " + std::to_string(image.rgb.width()) + "x" +
                          std::to_string(image.rgb.height()) + "; run the shot again");
+    return image;
+}
+Rgb loadEncoded(const fs::path& file, const RunResults& run, const Exec& exec) {
+    LoadedImage image = loadOfItsSize(file, run);
     const Protocol& p = run.protocol;
     Rgb encoded;
     if (image.space == FileSpace::encoded)
@@ -31,6 +35,19 @@ Rgb loadEncoded(const fs::path& file, const RunResults& run, const Exec& exec) {
         encode(image.rgb, image.displayReferred ? p.display.transferOnly() : p.display, exec, encoded);
     if (p.eightBit) quantise8(encoded, exec);
     return encoded;
+}
+LinearPicture loadLinear(const fs::path& file, const RunResults& run) {
+    LoadedImage image = loadOfItsSize(file, run);
+    if (image.space == FileSpace::encoded)
+        throw InputError(file.string() + ": expected linear light, found 8-bit codes; run with --write exr");
+    return {std::move(image.rgb), image.displayReferred};
+}
+const std::string& imageOf(const MethodResult& m, const fs::path& folder, int frame) {
+    const FrameResult* f = find(m, frame);
+    if (!f)
+        throw InputError(folder.string() + ": no image of frame " + std::to_string(frame) + " by '" + m.text +
+                         "'; run with --write exr and choose a frame that was written");
+    return f->image;
 }
 
 // Sums over any window in constant time.
@@ -110,15 +127,17 @@ Pictures loadPictures(const RunResults& run, const fs::path& folder, int frame, 
     Pictures p;
     p.frame = frame;
     p.region = run.protocol.region;
-    for (const auto& m : run.methods) {
-        const FrameResult* f = find(m, frame);
-        if (!f)
-            throw InputError(folder.string() + ": no image of frame " + std::to_string(frame) + " by '" + m.text +
-                             "'; run with --write exr and choose a frame that was written");
-        p.methods.push_back(loadEncoded(folder / f->image, run, exec));
-    }
+    for (const auto& m : run.methods) p.methods.push_back(loadEncoded(folder / imageOf(m, folder, frame), run, exec));
     if (const auto truth = run.truthImages.find(frame); truth != run.truthImages.end())
         p.truth = loadEncoded(folder / truth->second, run, exec);
+    return p;
+}
+
+LinearPictures loadLinearPictures(const RunResults& run, const fs::path& folder, int frame) {
+    LinearPictures p;
+    for (const auto& m : run.methods) p.methods.push_back(loadLinear(folder / imageOf(m, folder, frame), run));
+    if (const auto truth = run.truthImages.find(frame); truth != run.truthImages.end())
+        p.truth = loadLinear(folder / truth->second, run);
     return p;
 }
 

@@ -20,6 +20,18 @@ std::vector<int> framesWithPictures(const RunResults& run);
 // Throws InputError: no such frame, a file missing, damaged or of another size.
 Pictures loadPictures(const RunResults& run, const std::filesystem::path& folder, int frame, const Exec& exec);
 
+// The same frame as its files hold it: linear light, before the display.
+struct LinearPicture {
+    Rgb linear;
+    bool displayReferred = false;  // needs the display's transfer alone (image/io.h)
+};
+struct LinearPictures {
+    std::optional<LinearPicture> truth;
+    std::vector<LinearPicture> methods;
+};
+// Throws InputError as above, and where a file holds 8-bit codes only.
+LinearPictures loadLinearPictures(const RunResults& run, const std::filesystem::path& folder, int frame);
+
 // Up to `count` windows that do not overlap, in which the methods differ most: greatest variance between methods of the
 // root mean squared error against the truth; without truth, of the colours themselves; of a single method, its error.
 // Only in the region, where there is one. Windows without any difference are left out; left to right, then top to

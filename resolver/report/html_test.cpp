@@ -165,45 +165,33 @@ TEST(Html, PngKeepsTheCodes) {
         for (int x = 0; x < 5; x++) EXPECT_NEAR(back.c[c].at(x, 2) * 255, float(int(c) * 50 + 20 + x), 1e-3);
     fs::remove(file);
 }
-TEST(Html, FramesAreSpread) {
-    EXPECT_EQ(framesToShow({7}), std::vector<int>{7});
-    EXPECT_EQ(framesToShow({1, 2, 3}), (std::vector<int>{3, 2, 1}));
-    std::vector<int> many(16);
-    std::iota(many.begin(), many.end(), 1);
-    EXPECT_EQ(framesToShow(many), (std::vector<int>{16, 11, 6, 1}));
+nlohmann::json dataOf(const std::string& page) {
+    const size_t begin = page.find("id=\"data\">") + 10, end = page.find("</script>", begin);
+    return nlohmann::json::parse(page.substr(begin, end - begin));
 }
 TEST(Html, SelfContained) {
     const RunResults run = runOf({method("noaa", 1e-3, 1e-5), method("accum", 1e-4, 9e-5)}, 1e-7);
-    Pictures p{1, Rgb(100, 100, 0.5f), {Rgb(100, 100, 0.4f), Rgb(100, 100, 0.45f)}};
-    const std::string page = reportHtml(run, {p});
+    PackedView view{{0, 0, 100, 100}, {1}, {}};
+    for (const int source : {PackedPicture::kTruth, 0, 1})
+        view.pictures.push_back({.frame = 1, .source = source, .bytes = {1, 2, 3}});
+    const std::string page = reportHtml(run, {.views = {view}});
     EXPECT_EQ(page.find("{{"), std::string::npos);
     // Nothing is loaded from elsewhere.
     EXPECT_FALSE(std::regex_search(page.substr(0, page.find("id=\"data\"")), std::regex("(src|href)=\"?(https?:)?//")));
     // The shot's name cannot break out of the script.
-    const size_t begin = page.find("id=\"data\">") + 10, end = page.find("</script>", begin);
-    const auto data = nlohmann::json::parse(page.substr(begin, end - begin));
+    const auto data = dataOf(page);
     EXPECT_EQ(data["run"]["shot"]["name"], run.shot);
     EXPECT_EQ(data["order"], nlohmann::json({1, 0}));
-    EXPECT_EQ(data["pictures"].size(), 1u);
-    EXPECT_EQ(data["pictures"][0]["methods"].size(), 2u);
-    EXPECT_TRUE(data["pictures"][0]["truth"].get<std::string>().starts_with("data:image/png;base64,iVBOR"));
+    ASSERT_EQ(data["viewer"]["views"].size(), 1u);
+    EXPECT_EQ(data["viewer"]["views"][0]["pictures"].size(), 3u);
+    EXPECT_NE(page.find("id=\"picture-0-1-truth\">AQID</script>"), std::string::npos);
+    EXPECT_NE(page.find("id=\"picture-0-1-1\">AQID</script>"), std::string::npos);
     EXPECT_NE(page.find("Chart.js"), std::string::npos);
 }
-TEST(Html, LargeFramesShowTheirTellingPart) {
-    const RunResults run = runOf({method("noaa", 1e-3, 1e-5), method("accum", 1e-4, 9e-5)}, 0);
-    Pictures p{1, Rgb(1920, 1080, 0.5f), {Rgb(1920, 1080, 0.5f), Rgb(1920, 1080, 0.5f)}};
-    for (auto& plane : p.methods[0].c)
-        for (int y = 1000; y < 1010; y++)
-            for (int x = 1700; x < 1710; x++) plane.at(x, y) = 1;
-    const std::string page = reportHtml(run, {p});
-    EXPECT_LT(page.size(), 2'000'000u);
-    const size_t begin = page.find("id=\"data\">") + 10, end = page.find("</script>", begin);
-    const auto window = nlohmann::json::parse(page.substr(begin, end - begin))["pictures"][0]["window"];
-    EXPECT_EQ(window[2], 960);
-    EXPECT_EQ(window[3], 540);
-    EXPECT_LE(window[0], 1700);
-    EXPECT_GE(window[0].get<int>() + 960, 1710);
-    EXPECT_GE(window[1].get<int>() + 540, 1010);
+TEST(Html, WithoutPictures) {
+    const std::string page = reportHtml(runOf({method("noaa", 1e-3, 1e-5)}, 0), {});
+    EXPECT_TRUE(dataOf(page)["viewer"]["views"].empty());
+    EXPECT_EQ(page.find("id=\"picture-"), std::string::npos);
 }
 }  // namespace
 }  // namespace aa

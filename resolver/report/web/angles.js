@@ -17,7 +17,7 @@
       `PSNR over no anti-aliasing. “Mirrored” and “quarter turn” are the largest differences of the gain between directions that a symmetric method treats alike.`),
     element("div", { class: "charts" }, element("figure", { class: "wide" }, element("figcaption", {}, "Gain by the direction of the edge’s normal; click a name to hide it"), element("div", { class: "chart" }, canvas))),
     element("div", { class: "scroll", tabindex: "0", role: "region", "aria-labelledby": "angles-title" }, table));
-  document.getElementById("viewer").before(section);
+  document.getElementById("details").before(section);
 
   let chart;
   const draw = () => {

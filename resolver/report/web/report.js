@@ -1,11 +1,10 @@
 // The report's page: everything is drawn from the JSON in #data, which `aaresolve report` wrote. No network, no storage.
 "use strict";
 (() => {
-  const { run, order, words, protocol, space, reference, region, pictures, errorScale, errorColours, figures, passBytes, publishedMemory: published } = JSON.parse(document.getElementById("data").textContent);
+  const { run, order, words, protocol, space, reference, region, figures, passBytes, publishedMemory: published } = JSON.parse(document.getElementById("data").textContent);
   const $ = (id) => document.getElementById(id);
   const methods = run.methods;
   const standIn = run.run.reference;  // the method that the others are held against; undefined: the truth
-  const truthName = standIn ? `the reference, ${standIn}` : "ground truth";
   const measured = (m) => m.frames.filter((f) => f.metrics);
 
   // ---- numbers: JSON carries Inf and NaN as text ----
@@ -279,108 +278,6 @@
   };
   drawCharts();
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", drawCharts);
-
-  // ---- pictures ----
-  // A source is "truth", a method's index, or "error:" and a method's index.
-  const loaded = new Map();
-  const load = (url) => {
-    if (!loaded.has(url))
-      loaded.set(url, new Promise((resolve, reject) => {
-        const image = new Image();
-        image.onload = () => resolve(image);
-        image.onerror = () => reject(new Error("a picture in this report is damaged"));
-        image.src = url;
-      }));
-    return loaded.get(url);
-  };
-  const pixels = async (url) => {
-    const image = await load(url), canvas = element("canvas", { width: image.naturalWidth, height: image.naturalHeight });
-    const context = canvas.getContext("2d", { willReadFrequently: true });
-    context.drawImage(image, 0, 0);
-    return { canvas, context, data: context.getImageData(0, 0, canvas.width, canvas.height) };
-  };
-  const errorMaps = new Map();
-  const errorMap = (set, method) => {
-    const key = set.frame + ":" + method;
-    if (!errorMaps.has(key))
-      errorMaps.set(key, (async () => {
-        const test = await pixels(set.methods[method]), truth = await pixels(set.truth), out = test.data, t = out.data, r = truth.data.data;
-        for (let i = 0; i < t.length; i += 4) {
-          const d0 = t[i] - r[i], d1 = t[i + 1] - r[i + 1], d2 = t[i + 2] - r[i + 2];
-          const error = Math.sqrt((d0 * d0 + d1 * d1 + d2 * d2) / 3) / 255 / errorScale;
-          const c = errorColours[Math.min(errorColours.length - 1, Math.round(error * (errorColours.length - 1)))];
-          t[i] = c[0]; t[i + 1] = c[1]; t[i + 2] = c[2];
-        }
-        test.context.putImageData(out, 0, 0);
-        return test.canvas.toDataURL("image/png");
-      })());
-    return errorMaps.get(key);
-  };
-  const urlOf = (set, source) => (source === "truth" ? set.truth : source.startsWith("error:") ? errorMap(set, Number(source.slice(6))) : set.methods[Number(source)]);
-  const nameOf = (source) => (source === "truth" ? truthName : source.startsWith("error:") ? "error of " + methods[Number(source.slice(6))].text : methods[Number(source)].text);
-
-  if (!pictures.length) {
-    $("viewer").hidden = $("details").hidden = true;
-  } else {
-    const zooms = [1, 2, 3, 4, 6, 8];
-    const options = () => [
-      pictures[0].truth ? element("option", { value: "truth" }, standIn ? "Reference: " + standIn : "Ground truth") : null,
-      element("optgroup", { label: "Methods" }, ...order.map((i) => element("option", { value: i }, methods[i].text))),
-      pictures[0].truth ? element("optgroup", { label: "Error maps" }, ...order.map((i) => element("option", { value: "error:" + i }, "error of " + methods[i].text))) : null,
-    ].filter(Boolean);
-    $("left").append(...options());
-    $("right").append(...options());
-    $("left").value = String(noaa >= 0 ? noaa : order[order.length - 1]);
-    $("right").value = String(order[0]);
-    $("frame").append(...pictures.map((p, k) => element("option", { value: k }, String(p.frame))));
-    $("frame-label").hidden = pictures.length < 2;
-    $("zoom").append(...zooms.map((z) => element("option", { value: z }, "× " + z)));
-    const fit = () => Math.max(1, Math.floor($("stage").clientWidth / pictures[0].window[2]));
-    $("zoom").value = String(zooms.filter((z) => z <= fit()).pop());
-
-    const setImage = async (id, set, source) => {
-      const image = $(id), zoom = Number($("zoom").value);
-      image.src = await urlOf(set, source);
-      image.alt = nameOf(source);
-      image.style.width = set.window[2] * zoom + "px";
-      image.style.height = set.window[3] * zoom + "px";
-    };
-    const show = async () => {
-      const set = pictures[Number($("frame").value)], [left, right] = [$("left").value, $("right").value];
-      await Promise.all([setImage("left-image", set, left), setImage("right-image", set, right)]);
-      const [x, y, w, h] = set.window, part = w < run.shot.resolution[0] || h < run.shot.resolution[1];
-      $("stage-note").textContent = `Left: ${nameOf(left)}. Right: ${nameOf(right)}. Drag the bar, or focus it and use the arrow keys.` +
-        (part ? ` The part of the frame at ${x}, ${y} (${w} × ${h} px) where the methods differ most.` : "");
-      $("scale").hidden = !left.startsWith("error:") && !right.startsWith("error:");
-    };
-    for (const id of ["left", "right", "frame", "zoom"]) $(id).addEventListener("change", show);
-    $("frame").addEventListener("change", () => drawCrops());
-    $("swap").addEventListener("click", () => {
-      [$("left").value, $("right").value] = [$("right").value, $("left").value];
-      show();
-    });
-    $("scale").append("0", element("span", { class: "bar", style: `background: linear-gradient(to right, ${errorColours.map((c) => `rgb(${c})`).join(",")})` }),
-      "≥ " + errorScale, `error per pixel of ${space} 0 to 1, RMS over R, G, B`);
-
-    // ---- crops ----
-    const drawCrops = async () => {
-      const set = pictures[Number($("frame").value)];
-      const sources = (set.truth ? ["truth"] : []).concat(order.map(String));
-      const drawn = await Promise.all(set.details.map(async ([x, y, w, h]) => {
-        const figures = await Promise.all(sources.map(async (source) => {
-          const image = await load(await urlOf(set, source));
-          const canvas = element("canvas", { width: w, height: h, role: "img", "aria-label": `${nameOf(source)}, detail at ${x}, ${y}` });
-          canvas.getContext("2d").drawImage(image, x - set.window[0], y - set.window[1], w, h, 0, 0, w, h);
-          return element("figure", {}, canvas, element("figcaption", {}, nameOf(source)));
-        }));
-        return element("div", {}, element("h3", {}, `Frame ${set.frame}, ${w} × ${h} px at ${x}, ${y}`), element("div", { class: "crop-row" }, ...figures));
-      }));
-      $("crops").replaceChildren(...drawn);
-      $("details").hidden = !drawn.length;
-    };
-    show();
-    drawCrops();
-  }
 
   // ---- what was run ----
   const facts = [

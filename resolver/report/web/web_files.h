@@ -3,7 +3,10 @@
 #include <string_view>
 
 namespace aa::web {
-extern const std::string_view html, css, js, chart, slider, sliderCss, common, angles;
+extern const std::string_view html, css, js, chart, common, angles;
+// The viewer's, in the order in which they build on each other.
+extern const std::string_view viewerCss, viewerCodec, viewerPictures, viewerMeasure, viewerFlip, viewerPaint,
+    viewerState, viewerStage, viewerInput, viewerFigures, viewerControls, viewerCrops, viewerMain;
 extern const std::string_view surveyHtml, surveyCss, surveyJs;  // the survey's page
 extern const std::string_view scoresHtml, scoresJs;             // and that of its scores
 }  // namespace aa::web
