@@ -12,6 +12,8 @@
 namespace aa {
 namespace {
 namespace fs = std::filesystem;
+using glm::dvec2;
+using ::testing::Contains;
 using ::testing::HasSubstr;
 
 // A synthetic shot, damaged in one way, written, checked and removed.
@@ -187,6 +189,40 @@ TEST_F(CheckTest, MotionSignsAndAxes) {
     expectOnly(damaged([](float& x, float& y) { x *= 8, y *= 8; }), "motion", "same object");
 }
 
+// One surface fills the picture and moves by (2.3, 1.2) px per frame, so that ids say the same of every variant.
+void fillWithOneSurface(Frame& f, double (*pattern)(dvec2 onSurface, double time)) {
+    const dvec2 motion(2.3, 1.2);
+    for (int y = 0; y < f.height; y++)
+        for (int x = 0; x < f.width; x++) {
+            const dvec2 p = dvec2(x + 0.5, y + 0.5) + f.jitterPx;
+            f.objectId.at(x, y) = 1;
+            f.depthView.at(x, y) = 20;  // of object 1 in "moving"
+            f.motionXPx.at(x, y) = float(motion.x), f.motionYPx.at(x, y) = float(motion.y);
+            for (auto& channel : f.colorLinear.c)
+                channel.at(x, y) = float(pattern(p - double(f.number) * motion, f.number));
+        }
+}
+TEST_F(CheckTest, MotionByTextureAlone) {
+    const auto texture = [](Frame& f) {
+        fillWithOneSurface(f, [](dvec2 q, double) { return 0.5 + 0.2 * std::sin(q.x) + 0.2 * std::sin(0.7 * q.y); });
+    };
+    EXPECT_TRUE(withFrames(options("moving"), texture).clean());
+    expectOnly(withFrames(options("moving"),
+                          [&](Frame& f) {
+                              texture(f);
+                              for (int y = 0; y < f.height; y++)
+                                  for (int x = 0; x < f.width; x++) f.motionXPx.at(x, y) *= -1;
+                          }),
+               "motion", "turn the sign of motion.X");
+}
+TEST_F(CheckTest, AShadowIsNoMotion) {
+    // Its edge crosses the plain surface against the surface's way: (-2.3, 1.2) px per frame in the picture.
+    const CheckReport r = withFrames(options("moving"), [](Frame& f) {
+        fillWithOneSurface(f, [](dvec2 q, double time) { return q.x + 2 * 2.3 * time < 80 ? 0.2 : 0.6; });
+    });
+    EXPECT_TRUE(r.clean()) << lines(r);
+    EXPECT_THAT(r.notChecked, Contains(HasSubstr("may be a shadow")));
+}
 TEST_F(CheckTest, MotionInAStaticShot) {
     Manifest m = SynthShot(options("circles")).manifest();
     const CheckReport r = checked(

@@ -21,6 +21,8 @@ class MotionCheck {
     struct Variant {
         uint64_t hits = 0, misses = 0;
         double colourError = 0;  // sum over hits
+        // Where this and the stated one hit: in how many pixels its colour is nearer or farther, by more than chance.
+        uint64_t both = 0, nearer = 0, farther = 0;
     };
     std::array<Variant, 8> variants_{};
     uint64_t moving_ = 0;
