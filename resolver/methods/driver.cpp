@@ -11,10 +11,13 @@ RunningMethod::RunningMethod(MethodSpec s, const ShotInfo& shot) : spec(std::mov
 RunningMethod::RunningMethod(MethodSpec s, std::unique_ptr<Method> form)
     : spec(std::move(s)), method(std::move(form)) {}
 
-double RunningMethod::resolve(const Frame& frame, const DisplayChain& chain, const Exec& exec) {
+void RunningMethod::accumulate(const Frame& frame, const Exec& exec) {
     if (out.width() != frame.width || out.height() != frame.height) out = Rgb(frame.width, frame.height);
-    const auto start = std::chrono::steady_clock::now();
     method->resolve(frame, exec, out);
+}
+double RunningMethod::resolve(const Frame& frame, const DisplayChain& chain, const Exec& exec) {
+    const auto start = std::chrono::steady_clock::now();
+    accumulate(frame, exec);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     out.fillBorder();
     if (spec.outputSpace() == Space::linear)

@@ -17,6 +17,8 @@ struct RunningMethod {
     // Resolves one frame; returns the seconds that the method took, conversions not counted. `chain` is frame.display
     // of a frame that was prepared.
     double resolve(const Frame& frame, const DisplayChain& chain, const Exec& exec);
+    // The same for the history's sake alone: outEncoded stays as it is.
+    void accumulate(const Frame& frame, const Exec& exec);
 };
 
 ShotInfo shotInfo(const Manifest& manifest);

@@ -12,6 +12,7 @@
 #include "shot/synth/synth.h"
 #include "study/prepare.h"
 #include "study/sweep.h"
+#include "study/warm_up.h"
 
 namespace aa {
 namespace {
@@ -70,6 +71,25 @@ TEST(Study, AFullHistoryRunsTenPeriodsBefore) {
     RunOptions moving = optionsFor("moving", {"uncharted"});
     moving.protocol.history = History::full;
     EXPECT_THROW(applyHistory(moving, shot("moving").manifest()), UsageError);
+}
+TEST(Study, AWarmUpIsTheSameWhetherItsFramesAreKeptOrReadAgain) {
+    for (const bool identity : {false, true}) {
+        RunOptions o = optionsFor("half_planes", {"uncharted", "master:historyBits=8,dither=on", "inside"});
+        o.protocol.history = History::full;
+        if (identity) o.protocol.display.transfer = Transfer::identity;
+        std::vector<std::vector<Rgb>> last;
+        for (const size_t mostBytes : {size_t(0), kMostBytesOfWarmUp}) {
+            std::vector<RunningMethod> methods = startMethods(shot("half_planes"), o);
+            warmUp(shot("half_planes"), o, methods, 10, {}, mostBytes);
+            last.emplace_back();
+            for (auto& m : methods) last.back().push_back(std::move(m.out));
+        }
+        for (size_t m = 0; m < last[0].size(); m++)
+            for (size_t c = 0; c < 3; c++)
+                for (int y = 0; y < last[0][m].height(); y++)
+                    for (int x = 0; x < last[0][m].width(); x++)
+                        ASSERT_EQ(last[0][m].c[c].at(x, y), last[1][m].c[c].at(x, y)) << o.methods[m].text;
+    }
 }
 TEST(Study, FiguresThatAreAskedForAreMeasured) {
     RunOptions o = optionsFor("half_planes", {"noaa"});

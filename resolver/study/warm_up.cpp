@@ -2,6 +2,7 @@
 
 #include "gpu/method.h"
 #include "shot/frame_stream.h"
+#include "shot/pass_table.h"
 
 namespace aa {
 namespace {
@@ -27,28 +28,61 @@ size_t warmUpPasses(const RunOptions& o, const Manifest& m) {
     return (frames + o.frames.size() - 1) / o.frames.size();
 }
 
+namespace {
+// The frames of every pass, ready for the methods: decoded and prepared once where all of them may stay in memory,
+// which is most of a warm-up's work, else again in each pass.
+class RepeatedFrames {
+  public:
+    RepeatedFrames(const ShotReader& shot, const RunOptions& o, const std::vector<RunningMethod>& methods,
+                   size_t mostBytes)
+        : shot_(shot), options_(o), methods_(methods), mostBytes_(mostBytes) {}
+
+    // Frame i of a pass; to be asked for in order. Valid until the next call.
+    Frame& at(size_t i) {
+        const size_t count = options_.frames.size();
+        if (kept_.size() == count) return kept_[i];
+        if (i == 0) stream_.emplace(shot_, options_.frames, passesOf(withHistory(options_.methods)));
+        current_ = *stream_->next();
+        prepareFrame(current_, methods_, options_.protocol.display, options_.exec);
+        if (i == 0 && count * bytes(current_) <= mostBytes_) kept_.reserve(count);
+        if (kept_.capacity() < count) return current_;
+        return kept_.emplace_back(std::move(current_));
+    }
+
+  private:
+    size_t bytes(const Frame& f) const {
+        const size_t encoded = 2 * bytesOfTarget(f.width, f.height);  // of colour and albedo
+        return encoded + bytesOf(f.passes, f, shot_.manifest().subsamplePositionsPx.size());
+    }
+    const ShotReader& shot_;
+    const RunOptions& options_;
+    const std::vector<RunningMethod>& methods_;
+    size_t mostBytes_;
+    std::optional<FrameStream> stream_;
+    std::vector<Frame> kept_;
+    Frame current_;
+};
+}  // namespace
+
 std::optional<Camera> warmUp(const ShotReader& shot, const RunOptions& o, std::vector<RunningMethod>& methods,
-                             size_t passes, const Progress& progress) {
-    std::vector<size_t> frames;
-    for (size_t pass = 0; pass < passes; pass++) frames.insert(frames.end(), o.frames.begin(), o.frames.end());
-    FrameStream stream(shot, frames, passesOf(withHistory(o.methods)));
+                             size_t passes, const Progress& progress, size_t mostBytes) {
+    RepeatedFrames frames(shot, o, methods, mostBytes);
     std::optional<Camera> before;
-    for (size_t i = 0; auto frame = stream.next(); i++) {
-        const size_t pass = i / o.frames.size();
-        const int number = frame->number;
-        if (i % o.frames.size() == 0) {
-            frame->reset = pass == 0;
-            if (pass > 0) frame->previousCamera = before;
+    for (size_t step = 0; step < passes * o.frames.size() && !progress.interrupted(); step++) {
+        const size_t pass = step / o.frames.size(), i = step % o.frames.size();
+        Frame& frame = frames.at(i);
+        if (i == 0) {
+            frame.reset = pass == 0;
+            if (pass > 0) frame.previousCamera = before;
         }
-        frame->number = numberInPass(number, passes - pass, o, shot.manifest());
-        before = frame->camera;
-        prepareFrame(*frame, methods, o.protocol.display, o.exec);
-        if (o.device) o.device->share(*frame);
+        const int number = shot.manifest().frames[o.frames[i]].frame;
+        frame.number = numberInPass(number, passes - pass, o, shot.manifest());
+        before = frame.camera;
+        if (o.device) o.device->share(frame);
         for (auto& m : methods)
-            if (m.spec.method->wantsHistory()) m.resolve(*frame, frame->display, o.exec);
+            if (m.spec.method->wantsHistory()) m.accumulate(frame, o.exec);
         progress.step("warm-up " + std::to_string(pass + 1) + "/" + std::to_string(passes) + " frame " +
                       std::to_string(number));
-        if (progress.interrupted()) break;
     }
     if (o.device) o.device->forget();
     return before;
