@@ -6,12 +6,14 @@
 #include "image/io.h"
 #include "methods/choosing.h"
 #include "methods/driver.h"
+#include "metrics/metrics.h"
 #include "study/protocol.h"
 
 namespace aa {
 namespace {
 struct Options {
     std::string method, in, out, debugLayers, display = "srgb";
+    bool dither = false;
     WorkOptions work;
 };
 bool isPng(const std::filesystem::path& p) { return p.extension() == ".png" || p.extension() == ".PNG"; }
@@ -46,6 +48,7 @@ void filter(const Options& o) {
     }
     if (std::filesystem::path(o.out).extension() != ".exr" && !isPng(o.out))
         throw UsageError("filter: expected an output name ending in .png or .exr, found '" + o.out + "'");
+    if (o.dither && !isPng(o.out)) throw UsageError("--dither: no effect on an EXR file, which keeps floats");
     const Exec exec = o.work.exec();
     const LoadedImage image = readImage(o.in);
     const DisplayChain display{.transfer = transferByName(o.display)};
@@ -58,6 +61,7 @@ void filter(const Options& o) {
     double seconds = 0;
     withThreads(o.work.threads, [&] { seconds = running.resolve(frame, frame.display, exec); });
     if (isPng(o.out)) {
+        if (o.dither) dither8(running.outEncoded, frame.number, exec);
         writePng(o.out, running.outEncoded);
     } else if (spec.outputSpace() == Space::linear && display.transfer != Transfer::identity) {
         writeExr(o.out, running.out, false);
@@ -88,6 +92,9 @@ void addFilter(CommandLine& line, Context&) {
     c.option("--display", o->display,
              "srgb = EXR values are linear light; identity = they are the displayed values, as the codes of a PNG")
         .oneOf({"srgb", "identity"});
+    c.flag(
+        "--dither", o->dither,
+        "codes of a PNG rounded up or down by chance, the same in every run: noise instead of bands on slow gradients");
     addWorkOptions(c, o->work);
     addDeviceOptions(c, o->work);
     c.run([o] { filter(*o); });

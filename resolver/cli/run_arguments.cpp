@@ -13,6 +13,10 @@ void addRunArguments(Command& c, RunArguments& a) {
     c.option("-o,--out", a.out, "folder for images, results.json and results.csv").required().typeName("FOLDER");
     c.option("--frames", a.frames, "frames, as 1-16,20; default all");
     c.option("--write", a.write, "image files: exr (linear), png (8-bit sRGB), exr,png or none");
+    c.flag(
+        "--dither", a.dither,
+        "8-bit codes of PNG files rounded up or down by chance, the same in every run: noise instead of bands on slow "
+        "gradients");
     c.option("--write-frames", a.writeFrames,
              "truth = frames that have their own truth (of a static shot the last), all")
         .oneOf({"truth", "all"});
@@ -68,6 +72,10 @@ ShotReader openShot(const RunArguments& a, RunOptions& run) {
     if (!run.writeExr && !run.writePng && a.write != "none")
         throw UsageError("--write: expected exr, png, exr,png or none, found '" + a.write + "'");
     run.writeAllFrames = a.writeFrames == "all";
+    run.dither = a.dither;
+    if (a.dither && !run.writePng) throw UsageError("--dither: no effect without --write png");
+    if (a.dither && a.quantise)
+        throw UsageError("--dither: no effect with --quantise, which rounds before images are written");
     ShotReader shot(a.shot, a.input == "strict" ? InputPolicy::strict : InputPolicy::sanitise);
     run.frames = selectFrames(shot.manifest(), a.frames);
     if (!a.region.empty())

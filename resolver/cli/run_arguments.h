@@ -14,7 +14,7 @@ struct RunArguments {
     double exposure = 0;
     std::vector<std::string> metrics, maps;
     int quantise = 0;  // 0: off
-    bool timeOnly = false;
+    bool timeOnly = false, dither = false;
     bool json = false, quiet = false;
     WorkOptions work;
 };

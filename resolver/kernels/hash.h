@@ -13,7 +13,8 @@ AA_INLINE U mixedBits(U h) {
     h *= 0x846ca68bu;
     return h ^ (h >> 16);
 }
-enum class NoiseStream : uint32_t { historyDither, motionBlur };  // drawn independently
+// Drawn independently: a seed holds 2 frame + stream, so that those above 1 meet others in no frame before 2^30.
+enum class NoiseStream : uint32_t { historyDither, motionBlur, outputDither = 0x80000000u };
 AA_INLINE uint32_t noiseSeed(NoiseStream stream, uint32_t frame, uint32_t row) {
     return mixedBits(mixedBits(frame * 2u + uint32_t(stream)) + row);
 }

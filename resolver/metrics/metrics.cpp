@@ -144,6 +144,15 @@ Metric ssimMatlab3DMetric() {
     return ssimMetric({"ssimMatlab3D", "SSIM 3D", "SSIM as MATLAB filters an RGB array"}, false, 120, ssimMatlab3D);
 }
 
+void dither8(Rgb& encoded, int frame, const Exec& exec) {
+    auto& c = encoded.c;
+    const DitherArgs args{.image = {{c[0].row(0), c[1].row(0), c[2].row(0)}},
+                          .stride = c[0].stride(),
+                          .width = encoded.width(),
+                          .frame = uint32_t(frame)};
+    runKernel(metricsKernelsFor(exec).dither, exec, args, encoded.height());
+    encoded.fillBorder();
+}
 void quantise8(Rgb& encoded, const Exec& exec) {
     forRows(exec, encoded.height(), [&](int y0, int y1) {
         for (auto& channel : encoded.c)

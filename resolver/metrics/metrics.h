@@ -55,5 +55,8 @@ Metric ssimMatlab3DMetric();
 
 // floor(255 x + 0.5) / 255: what an 8-bit image file keeps. Border filled.
 void quantise8(Rgb& encoded, const Exec& exec);
+// floor(255 x + u) / 255 with u even in [0, 1), by place, channel and frame number: the mean over places or frames is
+// x, so that slow gradients show noise and no steps. A whole code stays. Border filled.
+void dither8(Rgb& encoded, int frame, const Exec& exec);
 
 }  // namespace aa

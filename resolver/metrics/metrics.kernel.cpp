@@ -1,3 +1,4 @@
+#include "kernels/hash.h"
 #include "kernels/lanes.h"
 #include "metrics/metrics_kernels.h"
 #include "metrics/strip.h"
@@ -219,7 +220,20 @@ __attribute__((flatten)) void ssimRows(const SsimArgs& a, int y0, int y1) {
             ssimStrip<R, 1>(a, x0, y0, y1);
     }
 }
+// Codes of an image file, so float in every precision. Channels draw on their own: grey noise would be seen better.
+template <class R>
+__attribute__((flatten)) void ditherRows(const DitherArgs& a, int y0, int y1) {
+    for (int y = y0; y < y1; y++) {
+        const uint32_t seed = noiseSeed(NoiseStream::outputDither, a.frame, uint32_t(y));
+        for (int c = 0; c < 3; c++)
+            for (int x = 0; x < a.width; x++) {
+                float& v = a.image.c[c][long(y) * a.stride + x];
+                const float chance = noise<float>(seed, uint32_t(3 * x + c));
+                v = min(floor(saturate(v) * 255.0f + chance), 255.0f) / 255.0f;
+            }
+    }
+}
 }  // namespace AA_ARCH
 
 AA_DEFINE_TABLE(aa::MetricsKernels, metricsKernels) = {AA_ROWS(squaredErrorRows), AA_ROWS(relativeErrorRows),
-                                                       AA_ROWS(ssimRows)};
+                                                       AA_ROWS(ssimRows), AA_ROWS(ditherRows)};

@@ -28,10 +28,16 @@ struct SsimArgs {
     int mapStride;
     double* rows;  // [height][kSumStrands], zero at the start
 };
+struct DitherArgs {
+    RgbOut image;
+    int stride, width;
+    uint32_t frame;
+};
 struct MetricsKernels {
     RowKernel<SquaredErrorArgs> squaredError;
     RowKernel<RelativeErrorArgs> relativeError;
     RowKernel<SsimArgs> ssim;
+    RowKernel<DitherArgs> dither;
 };
 }  // namespace aa
 AA_KERNEL_TABLE(aa::MetricsKernels, metricsKernels)

@@ -219,5 +219,24 @@ TEST(Metrics, EightBitCodes) {
     EXPECT_EQ(q.c[0].at(2, 0), 1.0f);
     EXPECT_EQ(q.c[0].at(3, 0), 0.0f);
 }
+TEST(Metrics, DitheredCodes) {
+    Rgb a(64, 64, 0.3f);  // 76.5 codes
+    a.c[1] = PlaneF(64, 64, 77.0f / 255);
+    a.c[2] = PlaneF(64, 64, 2.0f);
+    Rgb one = a, again = a, other = a;
+    dither8(one, 5, {}), dither8(again, 5, {bestIsa(), Precision::oracle, false}), dither8(other, 6, {});
+    double sum = 0;
+    for (int y = 0; y < 64; y++)
+        for (int x = 0; x < 64; x++) {
+            const float code = one.c[0].at(x, y) * 255;
+            EXPECT_TRUE(code == 76 || code == 77) << code;
+            sum += double(code);
+            EXPECT_EQ(one.c[1].at(x, y), 77.0f / 255) << "a whole code stays";
+            EXPECT_EQ(one.c[2].at(x, y), 1.0f);
+        }
+    EXPECT_NEAR(sum / 4096, 76.5, 4 * 0.5 / 64);
+    EXPECT_TRUE(one.c[0].samePixels(again.c[0])) << "the same in every run, precision and thread";
+    EXPECT_FALSE(one.c[0].samePixels(other.c[0])) << "every frame has noise of its own";
+}
 }  // namespace
 }  // namespace aa

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "image/error.h"
+#include "metrics/banding.h"
 #include "metrics/flip.h"
 #include "metrics/fourier.h"
 #include "metrics/metric.h"
@@ -12,7 +13,7 @@ namespace aa {
 const std::vector<Metric>& metrics() {
     static const std::vector<Metric> all = {
         squaredErrorMetric(), ssimLumaMetric(), ssimRgbMetric(), ssimMatlab3DMetric(),
-        flipMetric(),         relMseMetric(),   fourierMetric(),
+        flipMetric(),         relMseMetric(),   fourierMetric(), bandingMetric(),
     };
     return all;
 }

@@ -20,7 +20,13 @@ std::string writeImage(const RunningMethod& m, int frame, const RunOptions& o) {
     std::string written;
     if (o.writePng) {
         written = (folder / frameName(frame, ".png")).string();
-        writePng(o.out / written, m.outEncoded);
+        if (o.dither) {
+            Rgb dithered = m.outEncoded;
+            dither8(dithered, frame, o.exec);
+            writePng(o.out / written, dithered);
+        } else {
+            writePng(o.out / written, m.outEncoded);
+        }
     }
     if (o.writeExr) {
         written = (folder / frameName(frame, ".exr")).string();

@@ -27,6 +27,7 @@ struct RunOptions {
     std::vector<const MapKind*> maps;  // of the frames that are written: OUT/maps/KIND/METHOD/<frame>.png
     std::filesystem::path out;
     bool writeExr = true, writePng = false;
+    bool dither = false;          // codes of PNG files are rounded up or down by chance (metrics/metrics.h)
     bool writeAllFrames = false;  // otherwise: frames with ground truth of their own; of a static shot, the last
     bool debugLayers = false;
 };

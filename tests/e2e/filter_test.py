@@ -67,6 +67,33 @@ class Filter(ProgramTest):
         self.aaresolve("filter", "noaa", folder / RUN_FRAME, png)
         self.same(png, folder / RUN_FRAME.replace(".exr", ".png"))
 
+    def test_dithered_codes(self) -> None:
+        """Noise instead of rounding, the same in every run; refused where nothing is rounded by it."""
+        shot, out = self.folder / "shot", self.folder / "run"
+        self.synth("zone_plate", shot, (64, 48), 2, "--jitter", "none")
+        frame = shot / "frames" / RUN_FRAME
+        plain, one, again = (self.folder / f"{n}.png" for n in ("plain", "one", "again"))
+        self.aaresolve("filter", "noaa", frame, plain)
+        for picture in (one, again):
+            self.aaresolve("filter", "noaa", frame, picture, "--dither")
+        self.assertEqual(one.read_bytes(), again.read_bytes())
+        self.assertNotEqual(one.read_bytes(), plain.read_bytes())
+        difference = json.loads(self.aaresolve("compare", one, plain, "--json").stdout)["pooled"][
+            "mse"
+        ]
+        self.assertLess(65025 * difference, 1.0, "a code at most")
+        self.aaresolve(
+            "run", shot, "-m", "noaa", "-o", out, "-q", "--write", "png", "--dither", "-j", 1
+        )
+        self.same(out / "noaa" / RUN_FRAME.replace(".exr", ".png"), one)
+        self.refused(
+            2, "filter", "noaa", frame, self.folder / "a.exr", "--dither", says=("--dither", "EXR")
+        )
+        for words, says in ((("exr",), "png"), (("png", "--quantise", "8"), "--quantise")):
+            self.refused(
+                2, "run", shot, "-m", "noaa", "-o", out, "--dither", "--write", *words, says=("--dither", says)
+            )  # fmt: skip
+
     def test_methods_of_more_passes_are_refused(self) -> None:
         image = self.folder / "in.png"
         shot = self.folder / "shot"
