@@ -12,7 +12,7 @@
 namespace aa {
 namespace {
 
-constexpr double kMaskPassFloor = 0.2;  // decisions 32; blender_addon/aa_resolve/subsamples.py
+constexpr double kMaskPassFloor = 0.2;  // decisions 32; blender_addon/aa_resolve/passes/surface_mask.py
 
 constexpr Choice<Dissimilarity> kMeasures[] = {
     {"sadp", Dissimilarity::sadp}, {"depth", Dissimilarity::depth}, {"normal", Dissimilarity::normal}};
