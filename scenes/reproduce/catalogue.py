@@ -123,9 +123,6 @@ STEPS = {
     "displayed values, full history": ("--display", "identity", "--history", "full"),
     "the same as 8-bit images": ("--display", "identity", "--history", "full", "--quantise", "8"),
 }
-# One stop darker: values end below the display's, so that an overshoot is not clipped there.
-HEADROOM_FLAGS = ("--exposure", "-1")
-HEADROOM_METHODS = "noaa uncharted unchartedNorm master"
 STEP_METHODS = "noaa uncharted unchartedNorm master master:unjitter=off accum:samples=16"
 # Run once more in that protocol: T2MSAA between MSAA of 2 and of 4 in one space.
 DISPLAYED = {

@@ -18,7 +18,9 @@ except ImportError:  # Python before 3.11
 from shots import ROOT, Shot
 
 FOLDER = ROOT / "scenes/experiments"
-KINDS = ("table", "ghosts", "fourier", "reference size", "cost", "options", "series", "rates")
+KINDS = (
+    "table", "ghosts", "fourier", "reference size", "cost", "options", "series", "rates", "variants", "codes",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -31,7 +33,10 @@ class Protocol:
     methods: dict[str, str] = field(default_factory=dict)  # the source's names -> our methods
     shots: dict[str, str] = field(default_factory=dict)  # the source's names -> shot; else "main"
     reference: str = ""  # the method that stood for the truth, by the source's name
-    beside: tuple[str, ...] = ()  # further methods, for the reasons of what differs
+    beside: tuple[str, ...] = ()  # further methods, shown with those of the table
+    parts: tuple[
+        str, ...
+    ] = ()  # parts of a method off or read otherwise: for the reasons of what differs
 
 
 @dataclass(frozen=True)
@@ -61,7 +66,16 @@ class Experiment:
     claims: tuple[Claim, ...] = ()
     regions: dict = field(default_factory=dict)
     options: tuple[dict, ...] = ()
+    rows: tuple[
+        dict, ...
+    ] = ()  # of a table of written pictures: name, method, flags of `run`, file format
+    crop: dict = field(
+        default_factory=dict
+    )  # of its picture: part of the width and height, whether contrast is stretched, of what
     moment: tuple[int, ...] = ()  # first and last frame of what happens in a series
+    says_of: dict[str, tuple[str, ...]] = field(
+        default_factory=dict
+    )  # further words of its shots' exports
     on: tuple[str, ...] = ()  # shots of the catalogue that the studies use, too
 
     @property
@@ -85,12 +99,12 @@ class BadExperiment(Exception):
 TESTS = (
     "better", "near", "best", "between", "less_than_half", "more_flicker", "less_ghost", "exact_at_best",
     "changes_below", "changes_more", "better_than_in", "worse_than_still", "costs", "cheapest", "above_by",
-    "dips", "above_in_moment", "reaches",
+    "dips", "above_in_moment", "reaches", "better_shot", "lower",
 )  # fmt: skip
 _SHOT_FIELDS = {f.name for f in fields(Shot)} - {"name", "methods", "serves"}
 _KEYS = {
     "kind", "source", "table", "title", "says", "protocol", "shots", "methods", "published", "claims", "regions",
-    "options", "on", "moment",
+    "options", "on", "moment", "rows", "crop",
 }  # fmt: skip
 
 
@@ -100,7 +114,7 @@ def load(catalogue: dict[str, Shot]) -> dict[str, Experiment]:
     protocols = {}
     for name, table in _read(FOLDER / "protocols.toml").items():
         _only(FOLDER / "protocols.toml", table, {f.name for f in fields(Protocol)})
-        lists = {k: tuple(table.get(k, ())) for k in ("flags", "beside")}
+        lists = {k: tuple(table.get(k, ())) for k in ("flags", "beside", "parts")}
         protocols[name] = Protocol(**{**table, **lists})
     found = {}
     for path in sorted(FOLDER.glob("*.toml"), key=_order):
@@ -148,22 +162,25 @@ def _experiment(
     protocol = protocols[data["protocol"]]
     methods = {**protocol.methods, **data.get("methods", {})}
     if "methods" in data:  # those of the table alone, and no anti-aliasing, over which gains are
-        methods = {"No AA": protocol.methods["No AA"], **data["methods"]}
+        base = {n: t for n, t in protocol.methods.items() if n == "No AA"}
+        methods = {**base, **data["methods"]}
     found = Experiment(
         path.stem, data["kind"], data["source"], data["table"], data["title"], data["says"], protocol,
         methods=methods, published=data.get("published", {}),
         claims=tuple(_claim(path, c) for c in data.get("claims", ())),
         regions=data.get("regions", {}), options=tuple(data.get("options", ())), on=tuple(data.get("on", ())),
-        moment=tuple(data.get("moment", ())),
+        moment=tuple(data.get("moment", ())), rows=tuple(data.get("rows", ())), crop=data.get("crop", {}),
     )  # fmt: skip
     shots: dict[str, str] = {}
     for own, wish in data.get("shots", {}).items():
         _only(path, wish, _SHOT_FIELDS)
+        found.says_of[own] = tuple(wish.get("export", ()))
         shots[own] = _join(path, own, dict(wish), shots, found, catalogue)
     for name in found.on:
         if name not in catalogue:
             raise BadExperiment(f"{path}: on: no shot '{name}'; known: {', '.join(catalogue)}")
         texts = [o[k] for o in found.options for k in ("with", "without")]
+        texts += [row["method"] for row in found.rows]
         catalogue[name] = _serving(catalogue[name], texts)
     return replace(found, shots=shots)
 
@@ -187,7 +204,7 @@ def _join(
     path: Path, own: str, wish: dict, shots: dict[str, str], experiment: Experiment, catalogue: dict[str, Shot]
 ) -> str:  # fmt: skip
     """Finds or adds one of an experiment's shots; returns its name in the catalogue."""
-    for key in ("variant", "size", "quick_size", "published_size"):
+    for key in ("variant", "size", "quick_size", "published_size", "export"):
         if key in wish:
             wish[key] = tuple(wish[key])
     if wish.get("truth_of"):
@@ -196,8 +213,8 @@ def _join(
     wish.setdefault("quick_frames", wish.get("frames", 16))
     places = experiment.protocol.shots
     texts = [t for n, t in experiment.methods.items() if places.get(n, "main") in (own, "")]
-    if own == "main" or experiment.kind == "reference size":
-        texts += [*experiment.texts()]
+    if own == "main" or experiment.kind in ("reference size", "variants"):
+        texts += [*experiment.texts(), *experiment.protocol.parts]
     shot = Shot(name="", methods="", serves=" ".join(dict.fromkeys(["noaa", *texts])), **wish)
     base = "_".join([shot.scene, *(v.strip("-") for v in shot.variant)]).replace(" ", "_")
     for name, other in catalogue.items():
@@ -219,6 +236,7 @@ def _join(
     parts += ["pre"] * (shot.jitter_projection == "pre")
     parts += [f"truth{shot.truth_samples}"] * shot.own_truth
     parts += ["timing"] * (not shot.truth)
+    parts += ["_".join(w.removeprefix("--") for w in shot.export)] * bool(shot.export)
     if ".".join(parts) in catalogue:
         parts.append(f"{shot.frames}frames")
     name = ".".join(parts)
@@ -232,7 +250,7 @@ def _same_pictures(a: Shot, b: Shot) -> bool:
     """Whether one export can serve both."""
     alike = (
         "scene", "variant", "jitter", "jitter_projection", "period", "frames", "quick_frames", "first", "size",
-        "quick_size", "truth", "truth_of", "truth_frames", "own_truth",
+        "quick_size", "truth", "truth_of", "truth_frames", "own_truth", "export",
     )  # fmt: skip
     if any(getattr(a, key) != getattr(b, key) for key in alike):
         return False

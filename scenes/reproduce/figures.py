@@ -51,6 +51,29 @@ class Run:
         self.methods = {m["text"]: m for m in self.data["methods"]}
         self._pairs = {(p["first"], p["second"]): p for p in self.data["pairs"]}
 
+    def with_methods_alone(self, texts: list[str], folder: Path) -> "Run":
+        """The same with some of its methods, as a folder of its own whose pictures are this one's."""
+        folder.mkdir(parents=True, exist_ok=True)
+        kept = [self.methods[t] for t in texts]
+        for name in {
+            "truth",
+            *(Path(f["image"]).parts[0] for m in kept for f in m["frames"] if f.get("image")),
+        }:
+            link = folder / name
+            if link.is_symlink():
+                link.unlink()
+            link.symlink_to(self.folder / name)
+        number = {t: i for i, t in enumerate(texts)}
+        pairs = [
+            {**p, "indices": [number[p["first"]], number[p["second"]]]}
+            for p in self.data["pairs"]
+            if p["first"] in number and p["second"] in number
+        ]
+        (folder / "results.json").write_text(
+            json.dumps({**self.data, "methods": kept, "pairs": pairs})
+        )
+        return Run(folder)
+
     def __contains__(self, text: str) -> bool:
         return text in self.methods
 
@@ -93,6 +116,21 @@ class Run:
         c = pair[key]
         d = Difference(number(c["gainDb"]), number(c["low95"]), number(c["high95"]), c["resolved"])
         return d if sign > 0 else -d
+
+
+def setup(run: Run, smallest: float | None, of: str) -> str:
+    """Size, frames and how good the truth is beside the smallest error that is ranked, `of` something; None: none is."""
+    shot, truth = run.data["shot"], run.data["truth"]
+    width, height = shot["resolution"]
+    frames = len(run.data["methods"][0]["frames"])
+    text = f"{width} × {height}, {frames} frame{'s' if frames > 1 else ''}, {'static' if shot['static'] else 'moving'}"
+    if not run.noise > 0:
+        return text + (", analytic, with exact truth." if run.noise == 0 else ".")
+    if not smallest:
+        return text + "."
+    share = 100 * run.noise / smallest
+    text += f"; truth of two halves of {truth['samplesPerHalf']} samples, its own error {share:.2g} % of the smallest one {of}"
+    return text + (" (**more than the 1 % that a ranking asks for**)." if share > 1 else ".")
 
 
 def across(run_a: Run, a: str, run_b: Run, b: str) -> Difference:

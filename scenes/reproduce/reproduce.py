@@ -15,6 +15,8 @@ import json
 import os
 import sys
 import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import experiments
@@ -23,7 +25,7 @@ import studies
 import tables
 
 from catalogue import (
-    ANGLES, COSTS, DISPLAYED, HEADROOM_FLAGS, HEADROOM_METHODS, OTHER_COSTS, PICTURES, SHOTS, STEP_METHODS, STEPS,
+    ANGLES, COSTS, DISPLAYED, OTHER_COSTS, PICTURES, SHOTS, STEP_METHODS, STEPS,
 )  # fmt: skip
 from figures import Run, number
 from page import Page
@@ -44,19 +46,31 @@ def methods_of(shot: Shot, shop: Workshop) -> list[str]:
     return [m for m in shot.methods.split() if shop.serves(m)]
 
 
-_made: dict[tuple, str] = {}  # files of contact sheets
+def together(jobs: list[Callable[[], object]], shop: Workshop) -> list:
+    """What the jobs give, in their order. As many run at once as there are processors, each call of the program on its
+    share of them: much of a run is reading files, which takes one."""
+    processors = os.cpu_count() or 1
+    at_once = max(1, min(processors, len(jobs)))
+    shop.threads = max(1, processors // at_once)
+    try:
+        with ThreadPoolExecutor(at_once) as pool:
+            return list(pool.map(lambda job: job(), jobs))
+    finally:
+        shop.threads = 0
 
 
 def picture(
-    name: str, folder: Path, texts: list[str], docs: Path, shop: Workshop, flags: tuple[str, ...] = (), frame: int = 0
+    name: str, folder: Path, texts: list[str], docs: Path, shop: Workshop, flags: tuple[str, ...] = (), frame: int = 0,
+    run: Run | None = None,
 ) -> str:  # fmt: skip
     """A contact sheet as a small JPEG beside the pages; OpenImageIO's Python writes it, which Blender needs anyway.
-    Of a long shot the frames up to `frame`. Returns the file's name."""
-    key = (folder, *texts, *flags, frame)
-    if key in _made:  # another table's: the same shot, methods and protocol
-        return _made[key]
+    Of a long shot the frames up to `frame`; `run`: one that has written these methods' pictures already. Returns the
+    file's name."""
     some = ("--frames", f"{max(1, frame - 15)}-{frame}") if frame else ()
-    run = run_methods(folder, f"sheet.{name}", texts, shop, (*flags, *some), write="exr")
+    if run is None:
+        run = run_methods(folder, f"sheet.{name}", texts, shop, (*flags, *some), write="exr")
+    else:
+        run = run.with_methods_alone(texts, folder.parent / f"{folder.name}.shown.{name}")
     sheet = run.folder / "sheet.png"
     shop.run(f"sheet.{name}", [shop.program, "sheet", run.folder, "-o", sheet])
     docs.mkdir(parents=True, exist_ok=True)
@@ -64,7 +78,7 @@ def picture(
         f"sheet.{name}",
         ["/usr/bin/python3", "-c", _JPEG_WRITER + _JPEG, sheet, docs / f"{name}.jpg"],
     )
-    return _made.setdefault(key, f"{name}.jpg")
+    return f"{name}.jpg"
 
 
 def mosaic(name: str, pictures: dict[str, Path], docs: Path, shop: Workshop) -> str:
@@ -78,9 +92,24 @@ def mosaic(name: str, pictures: dict[str, Path], docs: Path, shop: Workshop) -> 
     return f"{name}.jpg"
 
 
+def crops(o: outcomes.Outcome, docs: Path, shop: Workshop) -> str:
+    """What the experiment's `crop` names of every picture, as one JPEG. Returns the file's name."""
+    docs.mkdir(parents=True, exist_ok=True)
+    key, crop, flags = o.experiment.key, o.experiment.crop, o.experiment.protocol.flags
+    exposure = flags[flags.index("--exposure") + 1] if "--exposure" in flags else "0"
+    shown = {name: o.pictures[name] for name in crop.get("of", o.pictures)}
+    shop.run(
+        f"crops.{key}",
+        ["/usr/bin/python3", "-c", _JPEG_WRITER + _CROPS, docs / f"{key}.jpg", json.dumps(crop["box"])]
+        + [exposure, json.dumps(crop.get("stretched", False))]
+        + [w for label, path in shown.items() for w in (label, path)],
+    )  # fmt: skip
+    return f"{key}.jpg"
+
+
 # For Blender's Python: `save` takes the best quality below 280 kB.
 _JPEG_WRITER = """
-import os, sys
+import json, os, sys
 import OpenImageIO as oiio
 def save(picture, path):
     for quality in range(90, 20, -5):
@@ -111,12 +140,48 @@ save(sheet, sys.argv[1])
 """
 
 
+# Crops of pictures, each pixel a square. EXR files hold linear light, before the exposure unless they say that they are
+# displayed already. Stretched: each channel from the least to the largest value that the first picture has.
+_CROPS = """
+import numpy as np
+out, box, exposure, stretched = sys.argv[1], *map(json.loads, sys.argv[2:5])
+labels, paths = sys.argv[5::2], sys.argv[6::2]
+parts = []
+for path in paths:
+    picture = oiio.ImageBuf(path)
+    pixels = picture.get_pixels(oiio.FLOAT)[:, :, :3]
+    if path.endswith(".exr"):
+        shown = picture.spec().getattribute("aaresolve:displayReferred")
+        light = np.clip(pixels * 2.0 ** (0 if shown else exposure), 0, 1)
+        pixels = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+    h, w = pixels.shape[:2]
+    x, y = int(box[0] * w), int(box[1] * h)
+    parts.append(pixels[y : y + int(box[3] * h), x : x + int(box[2] * w)])
+low, high = (f(parts[0], axis=(0, 1)) for f in (np.min, np.max)) if stretched else (0, 1)
+times = max(1, 300 // parts[0].shape[1])
+cut = [np.clip((p - low) / (high - low), 0, 1) for p in parts]
+cut = [np.repeat(np.repeat(p, times, 0), times, 1).astype(np.float32) for p in cut]
+columns = min(4, len(cut))
+height, width = cut[0].shape[:2]
+rows = -(-len(cut) // columns)
+sheet = oiio.ImageBuf(oiio.ImageSpec(columns * (width + 6), rows * (height + 26), 3, "uint8"))
+oiio.ImageBufAlgo.fill(sheet, (0.12, 0.12, 0.12))
+for n, (label, pixels) in enumerate(zip(labels, cut)):
+    x, y = n % columns * (width + 6), n // columns * (height + 26)
+    small = oiio.ImageBuf(oiio.ImageSpec(width, height, 3, "float"))
+    small.set_pixels(oiio.ROI(0, width, 0, height, 0, 1, 0, 3), np.ascontiguousarray(pixels))
+    oiio.ImageBufAlgo.paste(sheet, x, y + 22, 0, 0, small)
+    oiio.ImageBufAlgo.render_text(sheet, x + 4, y + 17, label, 13, "DejaVuSans", (0.9, 0.9, 0.9))
+save(sheet, out)
+"""
+
+
 # Shrinks to 1280 px wide.
 _JPEG = """
 sheet = oiio.ImageBuf(sys.argv[1])
 spec = sheet.spec()
 width = min(spec.width, 1280)
-small = oiio.ImageBufAlgo.resize(sheet, "lanczos3", 0, oiio.ROI(0, width, 0, spec.height * width // spec.width, 0, 1, 0, 3))
+small = oiio.ImageBufAlgo.resize(sheet, "triangle", 0, oiio.ROI(0, width, 0, spec.height * width // spec.width, 0, 1, 0, 3))
 save(small, sys.argv[2])
 """
 
@@ -174,63 +239,84 @@ def run_experiments(
     chosen: dict[str, experiments.Experiment], shop: Workshop, docs: Path
 ) -> tuple[dict[str, outcomes.Outcome], dict[str, str], dict[str, str]]:
     """Outcomes, pictures and charts by the experiments' keys."""
+    measured = lambda e: outcomes.measured(e, SHOTS, shop)  # noqa: E731
+    apart = [e for e in chosen.values() if e.kind != "cost"]
+    made = together([lambda e=e: measured(e) for e in apart], shop)
+    made += [
+        measured(e) for e in chosen.values() if e.kind == "cost"
+    ]  # times are of a quiet machine
+    by_key = {o.experiment.key: o for o in made}
     found: dict[str, outcomes.Outcome] = {}
+    for key in chosen:
+        o = found[key] = outcomes.judged(by_key[key], found)
+        print(f"  table {key}: {len(o.verdicts)} claims", flush=True)
     pictures: dict[str, str] = {}
     charts: dict[str, str] = {}
-    for key, experiment in chosen.items():
-        started = time.monotonic()
-        o = found[key] = outcomes.of(experiment, SHOTS, shop, found)
-        flags = experiment.protocol.flags
-        if "master" in experiment.methods.values() and experiment.kind == "table":
-            o.parts["headroom"] = run_methods(
-                o.folders["main"], f"{key}.headroom", HEADROOM_METHODS.split(), shop, (*flags, *HEADROOM_FLAGS)
-            )  # fmt: skip
-        texts = list(dict.fromkeys(experiment.methods.values()))
-        if experiment.kind == "table":
-            pictures[key] = picture(key, o.folders["main"], texts, docs, shop, flags)
-        elif experiment.kind == "ghosts":
-            worst = outcomes.extremes(o, o.named()[-1], "mse")[4] + 1
-            pictures[key] = picture(key, o.folders["main"], texts, docs, shop, flags, worst)
-            series = {
-                n: [number(f["metrics"]["psnr"]) for f in o.run.methods[o.text(n)]["frames"]]
-                for n in experiment.methods
-            }
-            tables.write_svg(
-                docs / f"{key}.svg", series, f"{experiment.title}: PSNR over the frames", "dB"
+    jobs, seen = [], {}
+    for key, o in found.items():
+        draw = _PICTURE.get(o.experiment.kind)
+        if draw is None:
+            continue
+        folder, texts, run, frame = draw(o)
+        # Another table's picture of the same shot, methods and protocol is this one's.
+        same = (folder, *texts, *o.experiment.protocol.flags, frame)
+        pictures[key] = f"{seen.setdefault(same, key)}.jpg"
+        if seen[same] == key:
+            jobs.append(
+                lambda key=key, o=o, folder=folder, texts=texts, run=run, frame=frame: picture(
+                    key, folder, texts, docs, shop, o.experiment.protocol.flags, frame, run
+                )
             )
+    for key, o in found.items():
+        if o.experiment.kind == "fourier":
+            jobs.append(lambda key=key, o=o: mosaic(f"{key}.fourier", o.spectra, docs, shop))
+            charts[key] = f"{key}.fourier.jpg"
+        elif o.experiment.crop:
+            jobs.append(lambda o=o: crops(o, docs, shop))
+            pictures[key] = f"{key}.jpg"
+        elif o.experiment.kind in _CURVES:
+            title, first, series = _CURVES[o.experiment.kind](o)
+            tables.write_svg(docs / f"{key}.svg", series, title, "dB", first)
             charts[key] = f"{key}.svg"
-        elif experiment.kind == "series":
-            middle = sum(experiment.moment) // 2
-            pictures[key] = picture(key, o.folders["main"], texts, docs, shop, flags, middle)
-            series = {
-                n: list(outcomes.gains_over_time(o, n).values())
-                for n in experiment.methods
-                if n != "No AA"
-            }
-            title = f"{experiment.title}: PSNR over no anti-aliasing"
-            tables.write_svg(
-                docs / f"{key}.svg",
-                series,
-                title,
-                "dB",
-                o.run.data["methods"][0]["frames"][0]["frame"],
-            )
-            charts[key] = f"{key}.svg"
-        elif experiment.kind == "fourier":
-            main = [
-                t
-                for n, t in experiment.methods.items()
-                if experiment.protocol.shots.get(n, "main") == "main"
-            ]
-            pictures[key] = picture(
-                key, o.folders["main"], list(dict.fromkeys(main)), docs, shop, flags
-            )
-            charts[key] = mosaic(f"{key}.fourier", o.spectra, docs, shop)
-        print(
-            f"  table {key}: {len(o.verdicts)} claims ({time.monotonic() - started:.0f} s)",
-            flush=True,
-        )
+    together(jobs, shop)
     return found, pictures, charts
+
+
+def _texts(o: outcomes.Outcome) -> list[str]:
+    """Those of the table that its main shot serves."""
+    e = o.experiment
+    named = [t for n, t in e.methods.items() if e.protocol.shots.get(n, "main") == "main"]
+    return list(dict.fromkeys(named))
+
+
+def _worst_frame(o: outcomes.Outcome) -> int:
+    """The frame with the largest error of the last published method, counted from 1."""
+    return outcomes.extremes(o, o.named()[-1], "mse")[4] + 1
+
+
+# By kind: the shot's folder, the methods, the run that has their pictures, and the frame of a long shot.
+_PICTURE = {
+    "table": lambda o: (o.folders["main"], _texts(o), o.run, 0),
+    "fourier": lambda o: (o.folders["main"], _texts(o), o.run, 0),
+    "ghosts": lambda o: (o.folders["main"], _texts(o), None, _worst_frame(o)),
+    "series": lambda o: (o.folders["main"], _texts(o), None, sum(o.experiment.moment) // 2),
+}
+
+
+def _psnr_over_frames(o: outcomes.Outcome) -> tuple[str, int, dict[str, list[float]]]:
+    frames = lambda n: o.run.methods[o.text(n)]["frames"]  # noqa: E731
+    series = {n: [number(f["metrics"]["psnr"]) for f in frames(n)] for n in o.experiment.methods}
+    return f"{o.experiment.title}: PSNR over the frames", 0, series
+
+
+def _gain_over_frames(o: outcomes.Outcome) -> tuple[str, int, dict[str, list[float]]]:
+    names = [n for n in o.experiment.methods if n != "No AA"]
+    series = {n: list(outcomes.gains_over_time(o, n).values()) for n in names}
+    first = o.run.data["methods"][0]["frames"][0]["frame"]
+    return f"{o.experiment.title}: PSNR over no anti-aliasing", first, series
+
+
+_CURVES = {"ghosts": _psnr_over_frames, "series": _gain_over_frames}  # title, first frame, series
 
 
 def write_tables(
@@ -319,6 +405,7 @@ def main(argv: list[str]) -> int:
     addon = json.loads((ROOT / "blender_addon/aa_resolve/methods.json").read_text())
     program = json.loads(shop.run("list", [shop.program, "list", "--json"]))
     shop.known = {m["id"] for m in program["methods"]} & {m["id"] for m in addon["methods"]}
+    shop.temporal = {m["id"] for m in program["methods"] if m["temporal"]}
     only = a.only or []
     for name in only:
         if name not in known and name not in SHOTS:
@@ -335,17 +422,21 @@ def main(argv: list[str]) -> int:
         return 0
     docs = shop.out / "only" if only else a.docs
 
-    runs: dict[str, Run] = {}
-    for name in shots:
-        folder = make(SHOTS, SHOTS[name], shop)
-        if SHOTS[name].methods and SHOTS[name].truth and (not only or name in only):
-            runs[name] = run_methods(folder, "run", methods_of(SHOTS[name], shop), shop)
+    folders = {name: make(SHOTS, SHOTS[name], shop) for name in shots}
+    studied = [n for n in shots if SHOTS[n].methods and SHOTS[n].truth and (not only or n in only)]
+    made = together(
+        [lambda n=n: run_methods(folders[n], "run", methods_of(SHOTS[n], shop), shop) for n in studied],
+        shop,
+    )  # fmt: skip
+    runs: dict[str, Run] = dict(zip(studied, made))
     found, pictures, charts = run_experiments(chosen, shop, docs)
     study = studies.Study(runs, *displayed(found, shop), found)
+    jobs = []
     for name, (shot_name, methods) in PICTURES.items():
         if shot_name in runs:
             texts = [m for m in methods.split() if m in runs[shot_name]]
-            picture(name, shop.folder(SHOTS[shot_name]), texts, docs, shop)
+            jobs.append(lambda n=name, f=folders[shot_name], t=texts: picture(n, f, t, docs, shop))
+    together(jobs, shop)
     index = write_tables(found, pictures, charts, docs)
     if only:
         for file in sorted(docs.glob("*.md")):
@@ -375,23 +466,32 @@ def needed_shots(
 
 def displayed(
     found: dict[str, outcomes.Outcome], shop: Workshop
-) -> tuple[dict[str, Run], dict[str, Run], dict[str, Run]]:
-    """Runs in the protocol of [Oliveros 2018]: by shot; hard_edges step by step; one stop darker."""
-    thesis, headroom, steps = {}, {}, {}
-    for o in found.values():
-        if "headroom" in o.parts:
-            name = o.experiment.shots["main"]
-            thesis[name], headroom[name] = o.run, o.parts["headroom"]
-    if "hard_edges" in thesis:
-        of = lambda shot, what, texts, flags: run_methods(  # noqa: E731
-            shop.folder(SHOTS[shot]), what, texts.split(), shop, flags
-        )
-        for name, texts in DISPLAYED.items():
-            if (shop.folder(SHOTS[name]) / "shot.json").exists():
-                thesis[name] = of(name, "thesis", texts, STEPS["the same as 8-bit images"])
-        for i, (what, flags) in enumerate(STEPS.items()):
-            steps[what] = of("hard_edges", f"step{i}", STEP_METHODS, flags)
-    return thesis, steps, headroom
+) -> tuple[dict[str, Run], dict[str, Run]]:
+    """Runs in the protocol of [Oliveros 2018]: by shot; and hard_edges step by step."""
+    thesis = {
+        o.experiment.shots["main"]: o.run
+        for o in found.values()
+        if o.experiment.kind == "table" and "master" in o.experiment.methods.values()
+    }
+    if "hard_edges" not in thesis:
+        return thesis, {}
+    wanted = [
+        (name, "thesis", texts, STEPS["the same as 8-bit images"])
+        for name, texts in DISPLAYED.items()
+        if (shop.folder(SHOTS[name]) / "shot.json").exists()
+    ]
+    steps = [("hard_edges", f"step{i}", STEP_METHODS, f) for i, f in enumerate(STEPS.values())]
+    made = together(
+        [
+            lambda shot=shot, what=what, texts=texts, flags=flags: run_methods(
+                shop.folder(SHOTS[shot]), what, texts.split(), shop, flags
+            )
+            for shot, what, texts, flags in [*wanted, *steps]
+        ],
+        shop,
+    )
+    thesis.update((shot, run) for (shot, *_), run in zip(wanted, made))
+    return thesis, dict(zip(STEPS, made[len(wanted) :]))
 
 
 def write_index(study: studies.Study, index: list[str], form: str, docs: Path) -> None:

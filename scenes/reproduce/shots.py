@@ -7,6 +7,7 @@ rendered once and hard-linked (`truth_of`).
 
 from __future__ import annotations
 
+import filecmp
 import hashlib
 import json
 import os
@@ -14,8 +15,10 @@ import re
 import shutil
 import subprocess
 import time
+from concurrent.futures import Future
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from threading import Lock
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -46,6 +49,9 @@ class Shot:
     size: tuple[int, int] = (480, 270)
     quick_size: tuple[int, int] | None = None  # of the short form
     published_size: tuple[int, int] | None = None  # of the full form: as its source has it
+    export: tuple[str, ...] = field(
+        default=(), repr=False
+    )  # further words of the exporter's command line
 
     def all_methods(self) -> list[str]:
         """Whatever is run on it."""
@@ -74,6 +80,10 @@ class Workshop:
     out: Path
     form: str  # quick, whole or full
     known: set[str] = field(default_factory=set)  # method ids of the program and of the add-on
+    temporal: set[str] | None = None  # those of them that accumulate frames; None: any may
+    threads: int = 0  # of one call of the program; 0: all processors
+    runs: dict[str, Future] = field(default_factory=dict)  # by what they are made of
+    lock: Lock = field(default_factory=Lock)
 
     def run(self, what: str, command: list[object]) -> str:
         """Runs a command, keeps its output in a log; a failure ends the study with its last lines."""
@@ -99,10 +109,18 @@ class Workshop:
 
     def serves(self, method: str) -> bool:
         """Whether the program has the method and every method that fills its rejected pixels."""
-        parts = method.split("+")
-        ids = [parts[0].split(":")[0]]
-        ids += [p.split("=", 1)[1].split(":")[0] for p in parts[1:] if p.startswith("fill=")]
-        return all(name in self.known for name in ids)
+        return all(name in self.known for name in _ids(method))
+
+    def accumulates(self, method: str) -> bool:
+        """Whether the frames before the judged one matter to a method."""
+        return self.temporal is None or not self.temporal.isdisjoint(_ids(method))
+
+
+def _ids(method: str) -> list[str]:
+    """The method's id and those of the methods that fill its rejected pixels."""
+    parts = method.split("+")
+    ids = [parts[0].split(":")[0]]
+    return ids + [p.split("=", 1)[1].split(":")[0] for p in parts[1:] if p.startswith("fill=")]
 
 
 def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
@@ -110,6 +128,9 @@ def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
     started = time.monotonic()
     folder = shop.folder(shot)
     if is_ready(shot, shop):
+        if shot.truth_of and not _has_lent_truth(make_folder(shop, shots[shot.truth_of]), folder):
+            _lend_truth(make_folder(shop, shots[shot.truth_of]), folder)
+            print(f"  shot {shot.name}: truth of {shot.truth_of} as it is now", flush=True)
         return folder
     shot = shot.in_form(shop.form)
     wish = _identity(shot, shop)
@@ -142,6 +163,7 @@ def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
         command += ["--jitter-projection", shot.jitter_projection]
     if shot.pattern:
         command += ["--subsamples", shot.pattern]
+    command += shot.export
     if shot.passes:
         command += ["--passes", shot.passes]
     if shot.truth_of or not shot.truth:
@@ -213,6 +235,7 @@ def _stamp(shot: Shot, shop: Workshop) -> Path:
 def _identity(shot: Shot, shop: Workshop) -> str:
     """What decides the shot's content: its description and the sources of scene and exporter."""
     digest = hashlib.sha256(f"{replace(shot, methods='', serves='')}".encode())
+    digest.update(" ".join(shot.export).encode())
     if shot.scene.startswith("synth:"):
         sources = [shop.program]
     else:
@@ -235,6 +258,23 @@ def make_folder(shop: Workshop, shot: Shot) -> Path:
     if not (folder / "shot.json").exists():
         raise SystemExit(f"{folder}: expected a finished shot, whose truth is to be lent")
     return folder
+
+
+def _has_lent_truth(lender: Path, borrower: Path) -> bool:
+    """Whether the lender's truth is still that which it has lent: of more samples it is another one."""
+    source, manifest = (json.loads((f / "shot.json").read_text()) for f in (lender, borrower))
+    if source["truth"] != manifest.get("truth"):
+        return False
+    lent = {f["truth"] for f in manifest["frames"] if "truth" in f}
+    return all(
+        (borrower / path).exists()
+        and (lender / path).exists()
+        and (
+            os.path.samefile(lender / path, borrower / path)
+            or filecmp.cmp(lender / path, borrower / path, shallow=False)
+        )
+        for path in lent
+    )
 
 
 def _lend_truth(lender: Path, borrower: Path) -> None:

@@ -4,26 +4,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import outcomes
-from figures import Difference, Run, across, kendall_tau, number, signed, verdict
+from figures import Difference, Run, across, kendall_tau, number, setup, signed, verdict
 from page import Page, code
 
 
 def _setup(run: Run) -> str:
-    shot, truth = run.data["shot"], run.data["truth"]
-    width, height = shot["resolution"]
-    frames = len(run.data["methods"][0]["frames"])
-    if not run.noise > 0:
-        return f"{width} × {height}, {frames} frames, analytic, with exact truth."
-    smallest = min(run.mse(m) for m in run.methods)
-    share = 100 * run.noise / smallest
-    return (
-        f"{width} × {height}, {frames} frame{'s' if frames > 1 else ''}, {'static' if shot['static'] else 'moving'}; truth of two "
-        f"halves of {truth['samplesPerHalf']} samples, its own noise {share:.2g} % of the smallest error here"
-        + (" (more than the 1 % that a ranking asks for)." if share > 1 else ".")
-    )
+    return setup(run, min(run.mse(m) for m in run.methods), "here")
 
 
 def _ranking(run: Run, over_time: bool = True) -> tuple[list[str], list[list[str]]]:
@@ -65,13 +55,12 @@ FXAA, SMAA = "fxaa1:preset=5", "smaa1x:preset=ULTRA"  # as [Oliveros 2018] compa
 
 @dataclass
 class Study:
-    """Runs by shot: in our protocol, in that of the theses, and there one stop darker; hard_edges step by step; and what
-    became of the published tables."""
+    """Runs by shot: in our protocol and in that of the theses; hard_edges step by step; and what became of the published
+    tables."""
 
     runs: dict[str, Run]
     thesis: dict[str, Run]
     steps: dict[str, Run]
-    headroom: dict[str, Run]
     tables: dict[str, outcomes.Outcome]
 
     def talk(self) -> dict[str, float]:
@@ -83,17 +72,21 @@ class Study:
         )
         return {name: row[0] for name, row in rows.items() if name != "columns"}
 
+    def table_of(self, shot: str) -> outcomes.Outcome | None:
+        """The published table that shows a shot's scene."""
+        for o in self.tables.values():
+            e = o.experiment
+            if e.kind == "table" and e.shots["main"] == shot and "No AA" in o.named():
+                return o
+        return None
+
     def published_gains(self, shot: str) -> dict[str, float]:
         """PSNR over no anti-aliasing by our methods, dB, of the table that shows the shot's scene; empty: none does."""
-        for o in self.tables.values():
-            if (
-                o.experiment.kind == "table"
-                and o.experiment.shots["main"] == shot
-                and "No AA" in o.named()
-            ):
-                base = o.published("No AA", "psnr")
-                return {o.text(n): o.published(n, "psnr") - base for n in o.named() if n != "No AA"}
-        return {}
+        o = self.table_of(shot)
+        if o is None:
+            return {}
+        base = o.published("No AA", "psnr")
+        return {o.text(n): o.published(n, "psnr") - base for n in o.named() if n != "No AA"}
 
 
 def headlines(study: Study) -> list[str]:
@@ -197,7 +190,10 @@ def static_page(study: Study) -> Page:
             for text in [*theirs, "unchartedNorm", "unchartedNoSharpen", "master:unjitter=off"]
         ],
     )  # fmt: skip
-    page.say("The thesis's question: " + " ".join(_order(thesis, theirs)))
+    page.say(
+        "The thesis's question: "
+        + " ".join(_order(thesis, theirs, study.table_of("hard_edges").by_parts))
+    )
     page.say("Ours: " + " ".join(_order(run, theirs)))
     page.heading("What each step of the protocol does")
     page.say("Gain over no anti-aliasing in the same protocol, dB.")
@@ -223,6 +219,7 @@ def static_page(study: Study) -> Page:
         ]
     )
     page.heading("What each part of master does")
+    thesis = study.table_of("hard_edges").by_parts()
     parts = [m for m in thesis.methods if m.startswith("master:")]
     page.table(
         ["variant", "the thesis's question: PSNR dB", "against `master`", "ours: PSNR dB", "against `master`"],
@@ -274,8 +271,9 @@ def _static_answers(study: Study, which: str, run: Run) -> list[str]:
     ]
 
 
-def _order(run: Run, theirs: dict[str, float]) -> list[str]:
-    """Pairs of published methods whose order differs here, and what the figures say of the reason."""
+def _order(run: Run, theirs: dict[str, float], parts: Callable[[], Run] | None = None) -> list[str]:
+    """Pairs of published methods whose order differs here, and what the figures say of the reason; ``parts`` gives the
+    run with the parts of `master` switched off, where that is another one."""
     names = sorted(theirs, key=lambda n: -theirs[n])
     swapped, unsure, agree = [], [], 0
     for i, first in enumerate(names):
@@ -295,7 +293,7 @@ def _order(run: Run, theirs: dict[str, float]) -> list[str]:
     if swapped:
         sentences.append("Published, but not here: " + "; ".join(swapped) + ".")
         if any(s.startswith("`master") for s in swapped):
-            sentences.append(outcomes.why_master_falls_behind(run))
+            sentences.append(outcomes.why_master_falls_behind(parts() if parts else run))
     if unsure:
         sentences.append("Not resolved: " + "; ".join(unsure) + ".")
     return sentences
@@ -596,9 +594,13 @@ def spaces_page(study: Study) -> Page:
             continue
         texts = [*theirs, "unchartedNorm"]
         rows.append([shot, "published", *(signed(theirs[t]) if t in theirs else "" for t in texts)])
-        for which, r in (("the thesis's question", run), ("ours", runs[shot])):
+        in_parts = study.table_of(shot).by_parts
+        for which, r, parts in (
+            ("the thesis's question", run, in_parts),
+            ("ours", runs[shot], None),
+        ):
             rows.append(["", which, *(_short(r.gain(t)) for t in texts)])
-            notes.append(f"**{shot}**, {which}: " + " ".join(_order(r, theirs)))
+            notes.append(f"**{shot}**, {which}: " + " ".join(_order(r, theirs, parts)))
     if rows:
         page.heading("PSNR gain over no anti-aliasing, dB")
         page.table(["scene", "question", *(code(t) for t in texts)], rows)

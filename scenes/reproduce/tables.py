@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 
 import outcomes
-from figures import signed
+from figures import setup, signed
 from outcomes import FAILS, HOLDS, UNRESOLVED, Outcome, Verdict
 from page import Page, code
 
@@ -31,9 +31,10 @@ def source_page(
     for o in found:
         e = o.experiment
         page.heading(f"{e.table}: {e.title}")
-        page.say(e.says, setup(o))
+        page.say(e.says, _setup(o))
         if e.key in pictures:
-            page.picture(pictures[e.key], f"{e.title}: {', '.join(o.named() or e.methods)}")
+            shown = ", ".join(e.crop.get("of", ()) or o.named() or e.methods)
+            page.picture(pictures[e.key], f"{e.title}: {shown}")
         _BODY[e.kind](page, o)
         if e.key in charts:
             what = (
@@ -52,20 +53,14 @@ def source_page(
     return page
 
 
-def setup(o: Outcome) -> str:
+def _setup(o: Outcome) -> str:
     """Size, frames and how good the truth is."""
     run = o.run or next(iter(o.parts.values()), None)
     if run is None:
         return ""
-    shot, truth = run.data["shot"], run.data["truth"]
-    text = "{} × {}, {} frames".format(*shot["resolution"], len(run.data["methods"][0]["frames"]))
-    if truth.get("samplesPerHalf") and o.experiment.kind != "reference size":
-        text += f"; truth of two halves of {truth['samplesPerHalf']} samples"
-    share = o.noise_share
-    if share is not None:
-        text += f", its own error {share:.2g} % of the smallest one in the table"
-        text += " (**more than the 1 % that a ranking asks for**)" if share > 1 else ""
-    return text + "."
+    return setup(
+        run, None if o.experiment.kind == "reference size" else o.smallest_error, "in the table"
+    )
 
 
 def claim_lines(o: Outcome) -> list[str]:
@@ -149,21 +144,14 @@ def _other_signs(o: Outcome) -> list[str]:
     """Methods that stand on the other side of no anti-aliasing than published, and what a stop of headroom changes."""
     if "psnr" not in o.experiment.published["columns"] or "No AA" not in o.named():
         return []
-    lines, headroom = [], o.parts.get("headroom")
+    lines = []
     for name in o.named():
         theirs = o.published(name, "psnr") - o.published("No AA", "psnr")
         ours = o.gain(name)
         if theirs * ours.db >= 0:
             continue
         line = f"{name} has the other sign: {signed(theirs)} dB published, {ours} here."
-        if headroom and o.text(name) in headroom:
-            dark = headroom.gain(o.text(name))
-            line += f" One stop darker, so that its overshoot is not clipped at the ends of the display, it is {dark}"
-            line += (
-                ": the published sign. The clipping hides what the sharpening does."
-                if dark.db * theirs > 0
-                else "."
-            )
+        line = " ".join([line, *outcomes.in_headroom(o, name)])
         lines.append(line)
     return lines
 
@@ -238,6 +226,7 @@ def _fourier(page: Page, o: Outcome) -> None:
             f"{name} ({code(o.text(name))})", "–" if theirs is None else f"{theirs:.4f}",
             "–" if ours is None else f"{1e6 * ours:.2f}", f"{share(theirs, published_base)} / {share(ours, base[1])}",
             f"{1e6 * true:.2f}", f"{o.other[name]['psnr']:.2f}",
+            *(f"{1e6 * v:.0f}" for v in o.places[1].get(name, (0.0, 0.0))),
         ])  # fmt: skip
     page.table(
         [
@@ -247,8 +236,13 @@ def _fourier(page: Page, o: Outcome) -> None:
             "over no AA, published / ours",
             "ours against the truth, × 10⁻⁶",
             "PSNR against the truth",
+            "squared error at edges, × 10⁻⁶",
+            "elsewhere",
         ],
         rows,
+    )
+    page.say(
+        f"Squared errors are against {reference}; edges, where it differs from no anti-aliasing, are {100 * o.places[0]:.0f} % of the pixels."
     )
     page.say(
         "In the pictures of the Fourier domain frequency 0 is in the centre; from dark to bright the difference's magnitude grows from",
@@ -318,7 +312,37 @@ def _rates(page: Page, o: Outcome) -> None:
     page.table(["method", *sorts, "history", "bytes read per pixel"], rows)
 
 
+def _variants(page: Page, o: Outcome) -> None:
+    e = o.experiment
+    rows = []
+    for own, run in o.parts.items():
+        row = [f"{own} ({code(' '.join(e.says_of.get(own, ())) or 'as Cycles')})"]
+        for text in e.methods.values():
+            flicker = run.temporal(text, "flickerStatic")
+            row.append(f"{run.psnr(text):.2f}" + (f" ({flicker:.2g})" if flicker else ""))
+        rows.append(row)
+    page.table(["textures", *(f"{n} ({code(t)})" for n, t in e.methods.items())], rows)
+    page.say("PSNR, dB; in brackets flicker over the frames at rest, 8-bit codes.")
+
+
+def _codes(page: Page, o: Outcome) -> None:
+    rows = []
+    for row in o.experiment.rows:
+        ours = o.by_name[row["name"]]
+        words = " ".join([row["method"], *row.get("flags", ())])
+        rows.append(
+            [f"{row['name']} ({code(words)}, {row['write'].upper()})", f"{ours['banding']:.3f}", f"{ours['grain']:.3f}",
+             f"{ours['psnr']:.2f}"]
+        )  # fmt: skip
+    page.table(["picture", "banding", "grain", "PSNR, dB"], rows)
+    page.say(
+        "Banding and grain: error on slow gradients, RMS in 8-bit codes, what a Gaussian of 4 px keeps and what it takes away.",
+        "PSNR is over the whole picture.",
+    )
+
+
 _BODY = {
+    "variants": _variants, "codes": _codes,
     "series": _series, "rates": _rates,
     "table": _table, "ghosts": _ghosts, "reference size": _reference_size, "fourier": _fourier, "cost": _cost,
     "options": _options,

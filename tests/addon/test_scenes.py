@@ -33,6 +33,7 @@ VARIANTS = {  # of the scenes that have some
 }
 OBJECTS = {  # what must be there, of the scenes of one model
     "pipe": {"Pipe"},
+    "stairs": {"Stairs"},
     "blinds": {"Blinds Slats", "Blinds Frame", "Facade"},
     "arched_window": {"Arch Frame", "Arch Door", "Facade"},
     "wall": {"Wall"},

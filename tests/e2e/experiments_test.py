@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import sys
 from dataclasses import replace
@@ -11,10 +12,12 @@ sys.path.insert(0, str(ROOT / "scenes/reproduce"))
 
 import experiments  # noqa: E402
 import outcomes  # noqa: E402
+import shots  # noqa: E402
 import tables  # noqa: E402
 from catalogue import SHOTS  # noqa: E402
 from experiments import Claim, Experiment, Protocol  # noqa: E402
 from reproduce import estimate, needed_shots  # noqa: E402
+from runs import run_methods  # noqa: E402
 from shots import Shot, Workshop, is_ready, make  # noqa: E402
 
 
@@ -29,7 +32,9 @@ class Files(ProgramTest):
             texts = [
                 *e.methods.values(),
                 *e.protocol.beside,
+                *e.protocol.parts,
                 *(o[k] for o in e.options for k in ("with", "without")),
+                *(row["method"] for row in e.rows),
             ]
             self.aaresolve(
                 "plan", *dict.fromkeys(texts)
@@ -42,7 +47,8 @@ class Files(ProgramTest):
                 names = claim.of if isinstance(claim.of, list) else [claim.of]
                 for name in names:
                     if isinstance(name, str) and name not in self.known:
-                        self.assertIn(name, e.methods, (key, claim))
+                        rows = [row["name"] for row in e.rows]
+                        self.assertIn(name, [*e.methods, *e.shots, *rows], (key, claim))
             for name in (*e.shots.values(), *e.on):
                 shot = self.catalogue[name]
                 scene = shot.scene.removeprefix("synth:")
@@ -124,8 +130,9 @@ class Outcomes(ProgramTest):
     }
 
     def outcome(
-        self, scene: str, kind: str, published: dict, claims: list[Claim], **more
-    ) -> outcomes.Outcome:
+        self, scene: str, kind: str, published: dict, claims: list[Claim],
+        flags: tuple[str, ...] = ("--display", "identity", "--quantise", "8"), **more,
+    ) -> outcomes.Outcome:  # fmt: skip
         shot = Shot(
             scene,
             f"synth:{scene}",
@@ -140,7 +147,7 @@ class Outcomes(ProgramTest):
         shop = Workshop(PROGRAM, "no blender", self.folder, "quick", set(listed))
         e = Experiment(
             "test", kind, "Nobody 2000", "1", "Test", "A test.",
-            Protocol(flags=("--display", "identity", "--quantise", "8"), codes=255.0), shots={"main": scene},
+            Protocol(flags=flags, codes=255.0), shots={"main": scene},
             methods=self.METHODS, published=published, claims=tuple(claims), **more,
         )  # fmt: skip
         return outcomes.of(e, {scene: shot}, shop, {})
@@ -149,7 +156,12 @@ class Outcomes(ProgramTest):
         names = list(self.METHODS)
         claims = [
             Claim("a", "better", ["Master", "Uncharted"], {}),
-            Claim("b", "better", ["Uncharted", "Master"], {"else": "Because."}),
+            Claim(
+                "b",
+                "better",
+                ["Uncharted", "Master"],
+                {"else": "Because.", "why": [["what it is", "master", "uncharted"]]},
+            ),
             Claim("c", "near", ["Master", "Master"], {"within": 0.5}),
             Claim("d", "best", "Uncharted", {}),
         ]
@@ -169,7 +181,15 @@ class Outcomes(ProgramTest):
         self.assertEqual(
             [v.answer for v in o.verdicts], ["holds", "does not hold", "holds", "does not hold"]
         )
-        self.assertEqual(o.verdicts[1].reasons, ["Because."])
+        self.assertEqual(o.verdicts[1].reasons, ["Because.", f"Measured: what it is {d}."])
+        again = run_methods(
+            o.folders["main"], "another name", o.experiment.texts(), o.shop, o.experiment.protocol.flags, "exr"
+        )  # fmt: skip
+        self.assertEqual(again.folder, o.run.folder, "the same run under another name")
+        some = o.run.with_methods_alone(["noaa", "master"], self.folder / "some")
+        self.assertEqual(list(some.methods), ["noaa", "master"])
+        self.assertEqual(some.gain("master"), o.run.gain("master"))
+        self.aaresolve("sheet", some.folder, "-o", self.folder / "sheet.png")
         page = "\n".join(tables.source_page("T", [o], {}, {}).lines)
         self.assertIn(f"| Master (`master`) | 32.00 / {ours['Master']:.2f} |", page)
         agreement = "\n".join(tables.agreement_page([o], {"Nobody 2000": "t.md"}).lines)
@@ -200,6 +220,47 @@ class Outcomes(ProgramTest):
         self.assertGreater(top, low)
         page = "\n".join(tables.source_page("T", [o], {}, {}).lines)
         self.assertIn(f"3, 4 / {at_best}, {at_worst}", page)
+
+    def test_codes(self) -> None:
+        """Written pictures against a truth that is not rounded."""
+        rows = (
+            {"name": "floats", "method": "accum", "write": "exr"},
+            {"name": "codes", "method": "accum", "write": "png"},
+            {"name": "dithered", "method": "accum", "write": "png", "flags": ["--dither"]},
+        )
+        pairs = (["codes", "dithered"], ["dithered", "codes"])
+        claims = [Claim("a", "lower", pair, {"figure": "mse"}) for pair in pairs]
+        more = dict(flags=("--display", "identity"), rows=rows, on=("half_plane",))
+        o = self.outcome("half_plane", "codes", {}, claims, **more)
+        self.assertEqual(set(o.by_name["codes"]), {"banding", "grain", "mse", "psnr"})
+        self.assertNotEqual(o.by_name["floats"]["mse"], o.by_name["codes"]["mse"])
+        self.assertEqual({v.answer for v in o.verdicts}, {"holds", "does not hold"})
+        page = "\n".join(tables.source_page("T", [o], {}, {}).lines)
+        self.assertIn("| dithered (`accum --dither`, PNG) |", page)
+
+    def test_variants(self) -> None:
+        catalogue = {
+            name: Shot(
+                name, "synth:half_planes", "", frames=4, quick_frames=4, size=(96, 64), jitter=jitter, period=4
+            )
+            for name, jitter in (("main", "halton23"), ("other", "r2"))
+        }  # fmt: skip
+        listed = self.aaresolve("list").stdout.split()
+        shop = Workshop(PROGRAM, "no blender", self.folder, "quick", set(listed))
+        claims = tuple(
+            Claim("a", "better_shot", pair, {"method": "TAA"})
+            for pair in (["main", "other"], ["other", "main"])
+        )
+        e = Experiment(
+            "test", "variants", "Nobody 2000", "1", "Test", "A test.", Protocol(),
+            shots={"main": "main", "other": "other"}, methods={"TAA": "taaSimplest", "No AA": "noaa"},
+            published={"columns": ["psnr"]}, claims=claims,
+        )  # fmt: skip
+        o = outcomes.of(e, catalogue, shop, {})
+        self.assertEqual(
+            {v.answer for v in o.verdicts}, {"holds", "does not hold"}, "what one says the other denies"
+        )  # fmt: skip
+        self.assertIn("| other (", "\n".join(tables.source_page("T", [o], {}, {}).lines))
 
     def test_series(self) -> None:
         claims = [
@@ -237,6 +298,27 @@ class Outcomes(ProgramTest):
         self.assertTrue(is_ready(shot, shop))
         self.assertFalse(is_ready(replace(shot, period=8), shop), "another content")
         self.assertIn("to render", estimate(["synth_moving"], shop))
+
+    def test_a_lent_truth_is_renewed(self) -> None:
+        """A lender with a better truth gives that to its borrowers, too, without another render of theirs."""
+        plain = Shot("lender", "synth:half_planes", "", frames=2, quick_frames=2, size=(48, 32))
+        lent = replace(plain, name="borrower", truth_of="lender", jitter="r2")
+        both = {s.name: s for s in (plain, lent)}
+        shop = Workshop(PROGRAM, "no blender", self.folder, "quick", {"noaa"})
+        lender, borrower = (make(both, s, shop) for s in both.values())
+        shots._lend_truth(lender, borrower)
+        text = json.loads((lender / "shot.json").read_text())
+        self.assertTrue(shots._has_lent_truth(lender, borrower))
+        path = next(f["truth"] for f in text["frames"] if "truth" in f)
+        better = (lender / path).read_bytes() + b"better"
+        (lender / path).unlink()
+        (lender / path).write_bytes(better)
+        text["truth"]["samples_per_half"] = 512
+        (lender / "shot.json").write_text(json.dumps(text))
+        make(both, lent, shop)
+        self.assertEqual((borrower / path).read_bytes(), better)
+        ours = json.loads((borrower / "shot.json").read_text())
+        self.assertEqual(ours["truth"]["samples_per_half"], 512)
 
     def test_curves(self) -> None:
         path = self.folder / "a.svg"
