@@ -7,6 +7,7 @@
 #include "cli/cli.h"
 #include "cli/progress.h"
 #include "image/error.h"
+#include "image/folder_claim.h"
 #include "image/json_text.h"
 #include "methods/method.h"
 #include "shot/import/folder.h"
@@ -78,6 +79,7 @@ int import(Options& o) {
         if (*end || !(o.import.truthFilterWidthPx > 0 && o.import.truthFilterWidthPx <= 1000))
             throw UsageError("--truth-filter: expected NAME:WIDTH with a width in px, found '" + o.truthFilter + "'");
     }
+    const FolderClaim claim(o.import.out);
     ImportReport report;
     bool interrupted = false;
     withThreads(o.threads, [&] {

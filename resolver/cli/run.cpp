@@ -7,6 +7,7 @@
 #include "cli/cli.h"
 #include "cli/run_arguments.h"
 #include "image/error.h"
+#include "image/folder_claim.h"
 #include "report/format.h"
 
 namespace aa {
@@ -151,6 +152,7 @@ void execute(const Options& o, Context& context) {
     addBaseline(run.methods, o);
     run.debugLayers = o.debugLayers;
     const ShotReader shot = openShot(o.run, run);
+    const FolderClaim claim(run.out);
     RunResults results;
     withThreads(o.run.work.threads, [&] {
         TerminalProgress progress(shot.manifest().name, stepsOf(run, shot.manifest()), o.run.quiet);

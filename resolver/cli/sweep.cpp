@@ -6,6 +6,7 @@
 
 #include "cli/choose.h"
 #include "cli/run_arguments.h"
+#include "image/folder_claim.h"
 
 namespace aa {
 namespace {
@@ -26,6 +27,7 @@ void execute(const Options& o, Context& context) {
     if (o.sweep.with != std::vector<std::string>{"none"}) sweeping.with = textsOf(chosenFor(o.run.shot, o.sweep.with));
     run.methods = variantsOf(sweeping);
     const ShotReader shot = openShot(o.run, run);
+    const FolderClaim claim(run.out);
     RunResults all;
     size_t passes = 0;
     withThreads(o.run.work.threads, [&] {

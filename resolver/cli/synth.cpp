@@ -8,6 +8,7 @@
 #include "cli/cli.h"
 #include "cli/progress.h"
 #include "image/error.h"
+#include "image/folder_claim.h"
 #include "methods/method.h"
 #include "methods/spec.h"
 #include "shot/manifest.h"
@@ -71,6 +72,7 @@ int synth(Options& o) {
     if (!o.nanPixel.empty()) o.synth.nanPixel = glm::ivec2(o.nanPixel[0], o.nanPixel[1]);
     o.synth.premultiplied = o.jitterProjection == "pre";
     if (!o.methods.empty()) planFor(o.methods, o.synth);
+    const FolderClaim claim(o.out);
     Manifest m;
     bool stopped = false;
     withThreads(o.threads, [&] {

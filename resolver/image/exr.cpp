@@ -35,6 +35,19 @@ namespace {
 // The same image must give the same file, so the date of every file is this one.
 constexpr const char* kNoDate = "2000:01:01 00:00:00";
 
+// A damaged size must not ask for the machine's memory: bytes of planes per byte of the file, at most, half values
+// doubled. ZIP packs a thousandfold; what unpacks furthest is DWA: an 8 x 8 block of one colour is two bytes, which are
+// zipped.
+constexpr uint64_t kAlwaysBytes = 16u << 20;
+uint64_t mostBytesPerByte(std::string_view compression) {
+    constexpr uint64_t kDeflate = 1032;
+    if (compression == "none") return 2;
+    if (compression == "rle") return 2 * 128;
+    if (compression == "b44" || compression == "b44a") return 2 * 16;
+    if (compression == "zip" || compression == "zips" || compression == "pxr24") return 2 * kDeflate;
+    return 256 * kDeflate;
+}
+
 // OpenEXR's words without the file's name, which our messages begin with: 'Cannot read image file "a.exr". Early end.'
 std::string whyOf(const std::exception& e) {
     const std::string text = e.what(), line = text.substr(0, text.find('\n'));
@@ -257,6 +270,12 @@ void ExrFile::read(const ExrPart& part, std::vector<ChannelTarget>& targets) {
         throw InputError(where + ": " + std::to_string(part.width) + " x " + std::to_string(part.height) +
                          " pixels; expected 1..16384 a side");
     if (part.deep) throw InputError(where + ": deep pixels; expected one value per pixel" + advice_);
+    const uint64_t asked = uint64_t(part.width) * uint64_t(part.height) * sizeof(float) * targets.size();
+    std::error_code ignored;
+    const uint64_t stored = fs::file_size(path_, ignored);
+    if (asked > kAlwaysBytes && asked / mostBytesPerByte(part.compression) > stored)
+        throw InputError(where + ": " + std::to_string(part.width) + " x " + std::to_string(part.height) +
+                         " pixels cannot be in a file of " + std::to_string(stored) + " bytes" + advice_);
     const int index = int(&part - parts_.data());
     const Imath::Box2i window = input_->file.header(index).dataWindow();
     Imf::FrameBuffer samples;

@@ -1,11 +1,15 @@
 #include "image/io.h"
 
+#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <fstream>
+#include <sstream>
+#include <string_view>
 #include <system_error>
 
 #include "image/error.h"
@@ -18,10 +22,41 @@ namespace aa {
 namespace fs = std::filesystem;
 constexpr const char* kDisplayReferred = "aaresolve:displayReferred";  // attribute of an EXR: 1 or 0
 
+namespace {
+constexpr std::string_view kPartial = ".partial";
+// Between a file's stem and kPartial: who writes it. Two processes never share a temporary file, and what a killed one
+// left behind is known for what it is.
+std::string writerOf(const std::string& process) {
+    char host[256] = {};
+    ::gethostname(host, sizeof host - 1);
+    std::ostringstream text;
+    text << "." << std::hex << (std::hash<std::string_view>()(host) & 0xffffffff) << "-" << process;
+    return text.str();
+}
+bool isRunning(long process) { return ::kill(pid_t(process), 0) == 0 || errno != ESRCH; }
+
+// Removes the temporary files of processes of this machine that have ended.
+void removePartials(const fs::path& folder) {
+    std::error_code failed;
+    const std::string mark = writerOf("");
+    for (const auto& entry : fs::directory_iterator(folder, failed)) {
+        const std::string name = entry.path().filename().string();
+        const size_t partial = name.rfind(kPartial), writer = name.rfind(mark, partial);
+        if (!name.starts_with(".") || partial == std::string::npos || writer == std::string::npos) continue;
+        const std::string process = name.substr(writer + mark.size(), partial - writer - mark.size());
+        long number = 0;
+        const auto read = std::from_chars(process.data(), process.data() + process.size(), number);
+        if (read.ec == std::errc() && read.ptr == process.data() + process.size() && number > 0 && !isRunning(number))
+            fs::remove(entry.path(), failed);
+    }
+}
+}  // namespace
+
 fs::path temporaryName(const fs::path& file) {
     std::string name = ".";
     name += file.stem().string();
-    name += ".partial";
+    name += writerOf(std::to_string(::getpid()));
+    name += kPartial;
     name += file.extension().string();
     return file.parent_path() / name;
 }
@@ -40,6 +75,7 @@ void makeWritableFolder(const fs::path& folder) {
     if (failed || ::access(folder.c_str(), W_OK) != 0)
         throw OutputError(folder.string() + ": not a writable folder" + (failed ? " (" + failed.message() + ")" : "") +
                           "; choose another output folder or change its permissions");
+    removePartials(folder);
 }
 
 void giveUpWriting(const fs::path& file, const std::string& why) {

@@ -36,7 +36,7 @@ void writePng(const std::filesystem::path& file, const Rgb& encoded);
 // As one float EXR: channels NAME, or NAME.R/.G/.B.
 void writeLayers(const std::filesystem::path& file, const std::vector<NamedPlanes>& layers);
 
-// A path next to `file` to write to before renaming over it.
+// A path next to `file` to write to before renaming over it; another one in every process.
 std::filesystem::path temporaryName(const std::filesystem::path& file);
 void renameInto(const std::filesystem::path& temporary, const std::filesystem::path& file);  // throws InputError
 // Removes the temporary file and throws InputError.
@@ -44,7 +44,7 @@ void renameInto(const std::filesystem::path& temporary, const std::filesystem::p
 // Writes a file through a temporary name. Throws InputError when it cannot.
 void writeBytes(const std::filesystem::path& file, std::span<const unsigned char> bytes);
 void writeText(const std::filesystem::path& file, const std::string& text);
-// Creates a folder (and its parents) and makes sure that files can be written there. Throws InputError.
+// Makes a folder (and its parents) to write to; clears what killed processes left in it. Throws InputError.
 void makeWritableFolder(const std::filesystem::path& folder);
 
 }  // namespace aa

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <png.h>
+#include <zlib.h>
 
 #include <cmath>
 #include <cstring>
@@ -14,6 +15,7 @@
 
 #include "image/error.h"
 #include "image/exr.h"
+#include "image/io_testing.h"
 #include "image/png.h"
 
 namespace aa {
@@ -303,6 +305,42 @@ TEST_F(ImageFiles, DamageIsNamed) {
     wide.format = TypeDesc::HALF;
     writeByOther(folder / "wide.exr", wide);
     EXPECT_THAT(errorOf(folder / "wide.exr"), HasSubstr("16385 x 1 pixels"));
+}
+
+void patch(const fs::path& file, size_t at, std::string_view bytes) {
+    std::fstream(file, std::ios::in | std::ios::out | std::ios::binary).seekp(std::streamoff(at)) << bytes;
+}
+TEST_F(ImageFiles, ASizeThatTheFileCannotHoldAsksForNoMemory) {
+    const fs::path png = folder / "a.png", exr = folder / "a.exr";
+    writePng(png, ramp());
+    constexpr size_t kSize = 16, kCrc = 29;  // of the header's chunk
+    const std::string header("IHDR\0\0\x40\0\0\0\x40\0\x08\x02\0\0\0", 17);
+    const auto crc = uint32_t(crc32(0, reinterpret_cast<const Bytef*>(header.data()), uInt(header.size())));
+    patch(png, kSize, std::string_view(header).substr(4));
+    patch(png, kCrc, std::string{char(crc >> 24), char(crc >> 16), char(crc >> 8), char(crc)});
+    EXPECT_THAT(errorOf(png), HasSubstr("16384 x 16384 pixels cannot be in a file of "));
+
+    Rgb noise(120, 90);  // of rows that no compression shortens: the table of blocks of the false size fits in
+    for (PlaneF& plane : noise.c)
+        for (int y = 0; y < noise.height(); y++)
+            for (int x = 0; x < noise.width(); x++) plane.at(x, y) = std::sin(float(x * 977 + y * y * 131));
+    writeExr(exr, noise, false);
+    std::string content(fs::file_size(exr), '\0');
+    std::ifstream(exr, std::ios::binary).read(content.data(), std::streamsize(content.size()));
+    const size_t window = content.find("dataWindow");
+    ASSERT_NE(window, std::string::npos);
+    constexpr size_t kCorner = sizeof("dataWindow") + sizeof("box2i") + 4 + 8;  // names, length, the first corner
+    patch(exr, window + kCorner, std::string_view("\xff\x3f\0\0\xff\x3f\0\0", 8));
+    EXPECT_THAT(errorOf(exr), HasSubstr("16384 x 16384 pixels cannot be in a file of "));
+}
+
+TEST_F(ImageFiles, WhatKilledProcessesLeftIsRemovedAndWhatLivingOnesWriteIsNot) {
+    const fs::path dead = leftover(folder / "a.exr"), alive = temporaryName(folder / "b.exr");
+    const fs::path foreign = folder / ".c.1234567-99999999.partial.exr", own = folder / "d.partial.exr";
+    for (const fs::path& file : {dead, alive, foreign, own}) std::ofstream(file) << "x";
+    makeWritableFolder(folder);
+    EXPECT_FALSE(fs::exists(dead));
+    for (const fs::path& file : {alive, foreign, own}) EXPECT_TRUE(fs::exists(file)) << file;
 }
 
 TEST_F(ImageFiles, WhatCannotBeWrittenIsSaidAndLeavesNothing) {

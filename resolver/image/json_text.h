@@ -1,15 +1,19 @@
-// JSON as it is written: a text that is no UTF-8 (a path in another encoding) gets U+FFFD for what cannot be read, as
-// JSON holds nothing else.
+// JSON as it is written and read: shot.json, results, surveys and their answers.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
 
 namespace aa {
 
+// A text that is no UTF-8 (a path in another encoding) gets U+FFFD for what cannot be read, as JSON holds nothing else.
 // indent -1: on one line.
 template <class Json>
 std::string jsonText(const Json& value, int indent = 1) {
     return value.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
+
+// `file` begins the message of an error and `advice` ends it. Throws InputError, one line: not JSON (with line and
+// column), nested too deep, a number beyond a double.
+nlohmann::json parseJson(const std::string& text, const std::string& file, const std::string& advice);
 
 }  // namespace aa

@@ -151,7 +151,14 @@ Rgb readPng(const fs::path& file) {
         throw InputError(file.string() + ": " + std::to_string(in.width()) + " x " + std::to_string(in.height()) +
                          " pixels; expected 1..16384 a side");
     const int width = int(in.width()), height = int(in.height());
-    std::vector<unsigned char> codes(in.rowBytes() * size_t(height));
+    constexpr size_t kDeflate = 1032,
+                     kSlack = 1 << 20;  // bytes out per byte in, at most; small pictures go as they are
+    std::error_code ignored;
+    const size_t stored = size_t(fs::file_size(file, ignored)), unpacked = in.rowBytes() * size_t(height);
+    if (unpacked > kSlack && unpacked / kDeflate > stored)
+        throw InputError(file.string() + ": " + std::to_string(width) + " x " + std::to_string(height) +
+                         " pixels cannot be in a file of " + std::to_string(stored) + " bytes; write the file again");
+    std::vector<unsigned char> codes(unpacked);
     std::vector<png_bytep> rows;
     for (int y = 0; y < height; y++) rows.push_back(codes.data() + in.rowBytes() * size_t(y));
     if (!in.readPixels(rows.data())) throw damaged("truncated or damaged");

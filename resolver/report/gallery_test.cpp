@@ -6,6 +6,7 @@
 
 #include "image/error.h"
 #include "image/io.h"
+#include "image/io_testing.h"
 #include "metrics/maps.h"
 #include "report/canvas.h"
 #include "report/sheet.h"
@@ -142,7 +143,7 @@ TEST(Sheet, DrawsEverySize) {
             const LoadedImage sheet = readImage(r.folder / "sheet.png");
             EXPECT_LE(sheet.rgb.width(), 2400);
             EXPECT_GT(sheet.rgb.height(), 3 * 216);
-            EXPECT_FALSE(fs::exists(r.folder / ".sheet.partial.png"));
+            EXPECT_FALSE(hasTemporaryFiles(r.folder));
         }
 }
 TEST(Sheet, ShowsThePixelsAndTheirErrors) {

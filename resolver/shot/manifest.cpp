@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 namespace {
-constexpr int kMaxDepth = 64;  // nesting of shot.json; the format needs 5
+constexpr const char* kAdvice = "correct it or export the shot again";
 
 // What an error quotes of a value: short and on one line.
 std::string quoted(const json& value) {
@@ -264,30 +264,6 @@ json toJson(const FrameEntry& f) {
     return j;
 }
 
-std::string lineAndColumn(const std::string& text, size_t byte) {
-    const size_t at = std::min(byte > 0 ? byte - 1 : 0, text.size());
-    const auto line = 1 + std::count(text.begin(), text.begin() + ptrdiff_t(at), '\n');
-    const size_t lineStart = at == 0 ? std::string::npos : text.rfind('\n', at - 1);
-    return "line " + std::to_string(line) + ", column " +
-           std::to_string(at - (lineStart == std::string::npos ? 0 : lineStart + 1) + 1);
-}
-json parseJson(const std::string& text, const std::string& name) {
-    try {
-        return json::parse(text, [&](int depth, json::parse_event_t, json&) {
-            if (depth > kMaxDepth)
-                throw InputError(name + ": nested deeper than " + std::to_string(kMaxDepth) +
-                                 " levels; export the shot again");
-            return true;
-        });
-    } catch (const json::parse_error& e) {
-        throw InputError(name + ": not valid JSON at " + lineAndColumn(text, e.byte) +
-                         "; correct it or export the shot again");
-    } catch (const json::exception&) {
-        throw InputError(name +
-                         ": holds a number that does not fit into a double; correct it or export the shot again");
-    }
-}
-
 std::string readText(const fs::path& file) {
     std::error_code ignored;
     std::ifstream in(file, std::ios::binary);
@@ -307,7 +283,7 @@ const FrameEntry* Manifest::find(int frame) const {
 
 Manifest parseManifest(const std::string& text, const fs::path& file) {
     const std::string name = file.string();
-    const json doc = parseJson(text, name);
+    const json doc = parseJson(text, name, kAdvice);
     Manifest m = parseDocument(Member(doc, "", name));
     m.folder = file.parent_path();
     return m;
@@ -325,7 +301,7 @@ FrameNotes readFrameNotes(const fs::path& file) {
     std::error_code ignored;
     if (!fs::exists(file, ignored)) throw InputError(file.string() + ": no such file");
     const std::string name = file.string();
-    const json document = parseJson(readText(file), name);
+    const json document = parseJson(readText(file), name, kAdvice);
     const Member doc(document, "", name);
     FrameNotes notes;
     if (const auto j = doc.find("jitter")) {

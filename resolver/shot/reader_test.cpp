@@ -9,6 +9,7 @@
 
 #include "image/error.h"
 #include "image/exr.h"
+#include "image/io_testing.h"
 #include "shot/frame_stream.h"
 #include "shot/segments.h"
 #include "shot/writer.h"
@@ -134,7 +135,7 @@ TEST_F(ReaderTest, EveryPassComesBackBitForBit) {
     EXPECT_EQ(f.segments, e.segments);
     EXPECT_EQ(f.depthView.at(-kBorderX, -kBorderY), f.depthView.at(0, 0));  // borders repeat the edge
     EXPECT_EQ(f.objectId.at(kWidth, kHeight + kBorderY - 1), f.objectId.at(kWidth - 1, kHeight - 1));
-    EXPECT_EQ(fs::exists(folder / ".1.partial.exr"), false);
+    EXPECT_FALSE(hasTemporaryFiles(folder));
 }
 
 TEST_F(ReaderTest, OnlyWhatIsWantedIsDecoded) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "image/error.h"
 #include "image/io.h"
@@ -395,7 +396,9 @@ RunResults readResults(const fs::path& folder) {
                          ": no such file; expected the output folder of `aaresolve run SHOT -m ... -o OUT`");
     RunResults run;
     try {
-        const json j = json::parse(in);
+        std::ostringstream text;
+        text << in.rdbuf();
+        const json j = parseJson(text.str(), file.string(), "run the shot again");
         if (j.at("format") != "aaresolve-results" || j.at("version") != 1)
             throw InputError(file.string() + ": not results of this program's version; run the shot again");
         members(Reader(j), run);

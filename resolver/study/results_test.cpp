@@ -8,6 +8,7 @@
 
 #include "image/error.h"
 #include "image/io.h"
+#include "image/io_testing.h"
 
 namespace aa {
 namespace {
@@ -133,7 +134,7 @@ TEST(Results, RoundTrip) {
     EXPECT_EQ(back.pairs.size(), 1u);
     EXPECT_TRUE(back.pairs[0].comparison.resolved);
     EXPECT_FALSE(back.jitterCentred());
-    EXPECT_FALSE(fs::exists(folder / ".results.partial.json"));
+    EXPECT_FALSE(hasTemporaryFiles(folder));
     fs::remove_all(folder);
 }
 TEST(Results, ProtocolIsKeptAndOldRunsHaveTheDefault) {

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "image/error.h"
 #include "image/json_text.h"
@@ -78,11 +79,9 @@ class Place {
 json parsed(const fs::path& file, const std::string& what) {
     std::ifstream in(file);
     if (!in || fs::is_directory(file)) throw InputError(file.string() + ": no such file; expected " + what);
-    try {
-        return json::parse(in);
-    } catch (const json::parse_error& e) {
-        throw InputError(file.string() + ": damaged JSON at byte " + std::to_string(e.byte) + "; expected " + what);
-    }
+    std::ostringstream text;
+    text << in.rdbuf();
+    return parseJson(text.str(), file.string(), "expected " + what);
 }
 void checkFormat(const Place& top, const char* format, const std::string& what) {
     top.at("format").mustBe(format, ", " + what);

@@ -378,7 +378,7 @@ TEST_F(SurveyFiles, BadAnswersAreNamed) {
     EXPECT_EQ(said([](json& j) { j.erase("participant"); }), file + ": expected a member \"participant\", found none");
     EXPECT_THAT(said([](json& j) { j["format"] = "aaresolve-results"; }), HasSubstr("format: expected"));
     EXPECT_EQ(saidOf(good_.dump().substr(0, 100)),
-              file + ": damaged JSON at byte 101; expected answers that the survey's page saved");
+              file + ": not valid JSON at line 1, column 101; expected answers that the survey's page saved");
     EXPECT_THAT(saidOf("[]"), HasSubstr("expected an object with \"format\", found []"));
 }
 TEST_F(SurveyFiles, AParticipantCountsOnce) {

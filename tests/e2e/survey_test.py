@@ -189,7 +189,7 @@ class Survey(ProgramTest):
             bad.write_text(text)
             self.refused(3, "survey", "score", first, bad, "--survey", page, says=(str(bad), *says))
 
-        refused(json.dumps(good)[:50], "damaged JSON at byte 51")
+        refused(json.dumps(good)[:50], "not valid JSON at line 1, column 51")
         refused(json.dumps({**good, "survey": "0"}), "survey: expected", 'found "0"')
         refused(json.dumps({**good, "answers": good["answers"][:1]}), "none to q2")
         good["answers"][1]["better"] = codes[0]

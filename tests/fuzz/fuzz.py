@@ -4,6 +4,7 @@ comparison may find something) and, when refused, with one line that says why.
     python3 tests/fuzz/fuzz.py build/aaresolve --runs 120             a fixed set of cases
     python3 tests/fuzz/fuzz.py build/aaresolve --seconds 300 --seed 7 as many as there is time for
     python3 tests/fuzz/fuzz.py build/aaresolve --case 4711 --seed 7   one case again, its files kept
+    python3 tests/fuzz/fuzz.py build/aaresolve --seeds FOLDER         whole inputs for the targets of targets.h
 
 Each case is made from (seed, number) alone, so it is the same on every machine. Standard library only.
 """
@@ -32,7 +33,7 @@ METHODS = [
     "smaa1x:preset=HIGH",
     "uncharted",
     "taaSimplest",
-    "rsaa:S=2",
+    "rsaa:measure=depth",
     "unchartedNorm+fill=fxaa311",
 ]
 # A run needs some memory even for small pictures; a damaged size must not take the machine's.
@@ -68,6 +69,8 @@ class Corpus:
             "-q",
             "--write",
             "exr,png",
+            "--write-frames",
+            "all",
         )
         values = [0.01 * i for i in range(24 * 16)]
         names = [
@@ -125,6 +128,81 @@ class Corpus:
             ],
         }
         (folder / "answers.json").write_text(json.dumps(answers, indent=1))
+
+    def write_seeds(self, to: Path) -> None:
+        """A folder of whole inputs per target (targets.h)."""
+
+        def keep(target: str, name: str, content: bytes | str) -> None:
+            folder = to / target
+            folder.mkdir(parents=True, exist_ok=True)
+            folder.joinpath(name).write_bytes(
+                content if isinstance(content, bytes) else content.encode()
+            )
+
+        def keep_file(target: str, path: Path) -> None:
+            keep(target, path.name, path.read_bytes())
+
+        for target, path in (
+            ("manifest", "shot/shot.json"),
+            ("notes", "notes.json"),
+            ("results", "run/results.json"),
+            ("key", "survey/survey.key.json"),
+            ("blender", "native/0001.exr"),
+            ("png", "run/noaa/000001.png"),
+            ("parts", "run/noaa/000001.exr"),
+        ):
+            keep_file(target, self.folder / path)
+        keep_file("frame", min((self.folder / "shot/frames").iterdir()))
+        truth = min((self.folder / "shot/truth").iterdir())
+        keep_file("parts", truth)
+        keep_file("truth", truth)
+        key = {"format": "aaresolve-survey-answers", "version": 1, "survey": "s1"}
+        given = ({"ranks": {"aa": 1, "bb": 2}}, {"better": "aa"}, {"ratings": {"aa": 4, "bb": 5}})
+        answers = [
+            {"question": f"q{i + 1}", "shown": ["aa", "bb"], "seconds": 1.5, **own}
+            for i, own in enumerate(given)
+        ]
+        keep("answers", "answers.json", json.dumps(key | {"participant": "p", "answers": answers}))
+        for i, method in enumerate(METHODS):
+            keep("method", f"{i}.txt", method)
+        keep("vary", "one.txt", "kmin=0.5,0.9")
+        keep("question", "rank.txt", "rank noaa fxaa311 frames=1-2 fps=8 region=2,3,16,8 zoom=2")
+        keep("question", "pairs.txt", "pairs noaa smaa1x region=auto:120x80 text=Which is better?")
+        self._write_kinds(keep)
+
+    @staticmethod
+    def _write_kinds(keep) -> None:
+        """EXRs of every compression and PNGs of every kind, by OpenImageIO."""
+        try:
+            import OpenImageIO as oiio  # noqa: PLC0415
+        except ModuleNotFoundError:
+            print("no seeds of every compression: this Python has no OpenImageIO")
+            return
+
+        def written(name: str, channels: tuple[str, ...], kind: str, **attributes) -> bytes:
+            spec = oiio.ImageSpec(17, 9, len(channels), kind)
+            spec.channelnames = channels
+            for key, value in attributes.items():
+                spec.attribute(key.replace("_", ":"), value)
+            image = oiio.ImageBuf(spec)
+            for y in range(9):
+                for x in range(17):
+                    image.setpixel(x, y, [(x * y + c) % 7 / 7 for c in range(len(channels))])
+            with tempfile.TemporaryDirectory() as folder:
+                path = Path(folder, name)
+                if not image.write(str(path)):
+                    raise RuntimeError(image.geterror())
+                return path.read_bytes()
+
+        for compression in ("none", "rle", "zips", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"):
+            name = f"{compression}.exr"
+            keep(
+                "parts", name, written(name, ("R", "G", "B", "Z"), "half", compression=compression)
+            )
+        for kind, bits in (("uint8", 8), ("uint16", 16)):
+            for channels in (("Y",), ("Y", "A"), ("R", "G", "B"), ("R", "G", "B", "A")):
+                name = f"{''.join(channels)}{bits}.png"
+                keep("png", name, written(name, channels, kind))
 
     def _call(self, *arguments) -> None:
         subprocess.run([self.program, *map(str, arguments)], check=True, stdout=subprocess.DEVNULL)
@@ -365,6 +443,7 @@ def main() -> int:
         "--timeout", type=float, default=60, help="seconds until a case counts as hanging"
     )
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--seeds", type=Path, help="only write whole inputs there")
     parser.add_argument(
         "--no-memory-limit", action="store_true", help="for programs built with sanitisers"
     )
@@ -378,6 +457,10 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as root:
         (Path(root) / "corpus").mkdir()
         corpus = Corpus(program, Path(root) / "corpus")
+        if o.seeds:
+            shutil.rmtree(o.seeds, ignore_errors=True)
+            corpus.write_seeds(o.seeds)
+            return 0
 
         def work() -> None:
             nonlocal count

@@ -12,6 +12,7 @@
 
 #include "image/error.h"
 #include "image/io.h"
+#include "image/io_testing.h"
 #include "shot/check/check.h"
 #include "shot/import/blender_exr.h"
 #include "shot/import/blender_motion.h"
@@ -331,9 +332,9 @@ TEST_F(ImportTest, AStoppedImportGoesOnToTheSameFiles) {
     ImportReport r = importBlender(options, [](int frame) { return frame < 2; });
     EXPECT_FALSE(r.complete);
     EXPECT_EQ(ShotReader(options.out).manifest().frames.size(), 2u);
-    fs::remove(options.out / "frames" / "000001.exr");                   // lost,
-    fs::resize_file(options.out / "truth" / "000002.exr", 1000);         // cut short
-    std::ofstream(options.out / "frames" / ".000003.partial.exr") << 1;  // and what a killed import leaves
+    fs::remove(options.out / "frames" / "000001.exr");                    // lost,
+    fs::resize_file(options.out / "truth" / "000002.exr", 1000);          // cut short
+    std::ofstream(leftover(options.out / "frames" / "000003.exr")) << 1;  // and what a killed import leaves
     r = importBlender(options);
     EXPECT_EQ(r.kept, 1u);
     EXPECT_EQ(r.imported, 3u);

@@ -1,0 +1,53 @@
+#include "image/folder_claim.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <string>
+#include <system_error>
+
+#include "image/error.h"
+#include "image/io.h"
+#include "image/output_error.h"
+
+namespace aa {
+namespace fs = std::filesystem;
+
+namespace {
+// The one who held the lock before may have removed its file since we opened it.
+bool isStillThere(int file, const fs::path& path) {
+    struct stat opened = {}, named = {};
+    return ::fstat(file, &opened) == 0 && ::stat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
+           opened.st_dev == named.st_dev;
+}
+}  // namespace
+
+FolderClaim::FolderClaim(const fs::path& folder)
+    : folder_(folder), lock_(folder / ".aaresolve.lock"), isNew_(!fs::exists(folder)) {
+    makeWritableFolder(folder);
+    while (true) {
+        file_ = ::open(lock_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+        if (file_ < 0)
+            throw OutputError(folder.string() + ": not a writable folder (" + std::generic_category().message(errno) +
+                              "); choose another output folder or change its permissions");
+        // A file system without locks has no claims either; temporary names are unique all the same.
+        if (::flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+            ::close(file_);
+            throw InputError(folder.string() +
+                             ": another process writes there; wait for its end or choose another output folder");
+        }
+        if (isStillThere(file_, lock_)) return;
+        ::close(file_);
+    }
+}
+FolderClaim::~FolderClaim() {
+    ::unlink(lock_.c_str());
+    ::close(file_);
+    std::error_code isFull;
+    if (isNew_) fs::remove(folder_, isFull);
+}
+
+}  // namespace aa

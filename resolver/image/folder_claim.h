@@ -1,0 +1,24 @@
+// One writer per folder.
+#pragma once
+#include <filesystem>
+
+namespace aa {
+
+// While it lives no other process of this program claims the folder. The claim ends with the process, however that
+// ends.
+class FolderClaim {
+  public:
+    // Makes the folder where there is none. Throws InputError: another process writes there;
+    // OutputError: not a writable folder.
+    explicit FolderClaim(const std::filesystem::path& folder);
+    ~FolderClaim();  // a folder that it made and that nothing was written to is removed again
+    FolderClaim(const FolderClaim&) = delete;
+    FolderClaim& operator=(const FolderClaim&) = delete;
+
+  private:
+    std::filesystem::path folder_, lock_;
+    bool isNew_;
+    int file_ = -1;
+};
+
+}  // namespace aa

@@ -1,0 +1,216 @@
+"""faults_test.py PROGRAM ROOT SHIM: a full disk at each write, kills at random moments, cut files, two writers. After each,
+nothing is taken for good that is not, earlier results stand, and the same command again gives the same bytes.
+
+AA_FAULTS=N: so many kills and full disks of every command (default 6); AA_FAULTS_SEED=S."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import unittest
+from pathlib import Path
+
+SHIM = Path(sys.argv[3]).resolve()
+sys.path.insert(0, str(Path(sys.argv[2]).resolve() / "tests/e2e"))
+del sys.argv[3]  # unittest reads the rest
+
+from program import PROGRAM, ProgramTest, main  # noqa: E402
+
+COUNT = int(os.environ.get("AA_FAULTS", "6"))
+SEED = int(os.environ.get("AA_FAULTS_SEED", "1"))
+LOCK = ".aaresolve.lock"
+# What a second run may tell otherwise.
+OF_THE_MOMENT = (
+    "seconds",
+    "nsPerPixel",
+    "time",
+    "date",
+    "load",
+    "machine",
+    "command",
+    "provenance",
+)
+
+
+def without_the_moment(node: object) -> object:
+    """A document without times and whatever else is of one run alone."""
+    if isinstance(node, dict):
+        return {
+            key: without_the_moment(value)
+            for key, value in node.items()
+            if not any(word.lower() in key.lower() for word in OF_THE_MOMENT)
+        }
+    return [without_the_moment(item) for item in node] if isinstance(node, list) else node
+
+
+def content(path: Path) -> object:
+    """A file as it is compared: its bytes, of results what is not of the moment."""
+    if path.suffix == ".json":
+        return without_the_moment(json.loads(path.read_text()))
+    if path.name in ("results.csv", "sweep.csv"):
+        return path.read_text().splitlines()[0]  # times are in its lines
+    return path.read_bytes()
+
+
+def contents(folder: Path) -> dict[str, object]:
+    return {
+        str(path.relative_to(folder)): content(path)
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    }
+
+
+class FaultsTest(ProgramTest):
+    def setUp(self) -> None:
+        super().setUp()
+        self.shot = self.folder / "shot"
+        self.synth("two_planes", self.shot, (48, 32), 3, "-q")
+        self.random = random.Random(f"{SEED}/{self.id()}")
+
+    # Each makes everything in `out` and is told its folder alone.
+    def commands(self) -> dict[str, list[str]]:
+        run = str(self.folder / "run")
+        self.aaresolve("run", self.shot, "-m", "noaa", "-m", "taaSimplest", "-o", run, "-q")
+        return {
+            "synth": ["synth", "two_planes", "--resolution", "48x32", "--frames", "3", "-q", "-o", "OUT"],
+            "run": ["run", str(self.shot), "-m", "noaa", "-m", "fxaa311", "-m", "uncharted", "-q", "-o", "OUT",
+                    "--write", "exr,png"],
+            "sweep": ["sweep", str(self.shot), "-m", "uncharted", "--vary", "kmin=0.5,0.9", "-q", "-o", "OUT"],
+            "report": ["report", run, "-o", "OUT/report.html"],
+            "sheet": ["sheet", run, "-o", "OUT/sheet.png"],
+        }  # fmt: skip
+
+    def start(self, command: list[str], out: Path, **environment: str) -> subprocess.Popen:
+        out.mkdir(exist_ok=True)
+        return subprocess.Popen(
+            [str(PROGRAM), *(part.replace("OUT", str(out)) for part in command)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env=os.environ | environment,
+        )
+
+    def finished(self, command: list[str], out: Path) -> dict[str, object]:
+        process = self.start(command, out)
+        said = process.communicate(timeout=300)
+        self.assertEqual(process.returncode, 0, said)
+        return contents(out)
+
+    def check_whole(self, out: Path, whole: dict[str, object], what: str) -> None:
+        """Every file under its own name is one of the whole result."""
+        for path in sorted(out.rglob("*")):
+            if path.is_file() and ".partial" not in path.name and path.name != LOCK:
+                name = str(path.relative_to(out))
+                self.assertIn(name, whole, what)
+                if path.name != "results.json" or self.is_complete(path):
+                    self.assertEqual(content(path), whole[name], f"{what}: {name}")
+
+    @staticmethod
+    def is_complete(results: Path) -> bool:
+        return json.loads(results.read_text()).get("complete", True)
+
+    def check_repeats(self, command: list[str], out: Path, whole: dict, what: str) -> None:
+        again = self.finished(command, out)
+        self.assertEqual(sorted(again), sorted(whole), what)
+        for name, value in whole.items():
+            self.assertEqual(again[name], value, f"{what}, again: {name}")
+
+    def test_a_full_disk_at_each_write(self) -> None:
+        for name, command in self.commands().items():
+            counted = self.folder / "writes"
+            out = self.folder / f"{name}-whole"
+            process = self.start(command, out, LD_PRELOAD=str(SHIM), AA_COUNT_WRITES=str(counted))
+            self.assertEqual(process.wait(300), 0, process.stderr.read())
+            process.communicate()
+            whole, writes = contents(out), int(counted.read_text())
+            self.assertGreater(writes, 0, name)
+            moments = range(1, writes + 1)
+            if len(moments) > COUNT:
+                moments = sorted({1, 2, writes, *self.random.sample(moments, COUNT - 2)})
+            for at in moments:
+                with self.subTest(name, write=at):
+                    out = self.folder / f"{name}-{at}"
+                    process = self.start(command, out, LD_PRELOAD=str(SHIM), AA_FULL_AT=str(at))
+                    said = process.communicate(timeout=300)[1]
+                    what = f"{name}, full at write {at} of {writes}"
+                    self.assertEqual(process.returncode, 1, f"{what}: {said}")
+                    lines = [line for line in said.splitlines() if line.startswith("aaresolve: ")]
+                    self.assertEqual(len(lines), 1, f"{what}: {said}")
+                    self.assertIn("No space left on device", lines[0])
+                    self.assertEqual([], [p for p in out.rglob("*.partial*")], what)
+                    self.check_whole(out, whole, what)
+                    self.check_repeats(command, out, whole, what)
+                    shutil.rmtree(out)
+
+    def test_a_kill_at_any_moment(self) -> None:
+        for name, command in self.commands().items():
+            out = self.folder / f"{name}-whole"
+            whole = self.finished(command, out)
+            start = time.monotonic()
+            self.finished(command, out)
+            lasts = time.monotonic() - start
+            for number in range(COUNT):
+                with self.subTest(name, kill=number):
+                    out = self.folder / f"{name}-{number}"
+                    after = self.random.uniform(0, lasts)
+                    process = self.start(command, out)
+                    time.sleep(after)
+                    process.send_signal(signal.SIGKILL)
+                    process.communicate()
+                    what = f"{name}, killed after {after:.3f} of {lasts:.3f} s"
+                    self.check_whole(out, whole, what)
+                    self.check_repeats(command, out, whole, what)
+                    shutil.rmtree(out)
+
+    def test_earlier_results_outlive_a_full_disk(self) -> None:
+        out = self.folder / "out"
+        first = ["run", str(self.shot), "-m", "noaa", "-m", "fxaa311", "-q", "-o", "OUT"]
+        whole = self.finished(first, out)
+        process = self.start(first, out, LD_PRELOAD=str(SHIM), AA_FULL_AT="1")
+        process.communicate()
+        self.assertEqual(process.returncode, 1)
+        self.check_whole(out, whole, "a second run on a full disk")
+        self.aaresolve("report", out, "-o", self.folder / "report.html")
+
+    def test_a_cut_frame_in_the_middle_is_named(self) -> None:
+        frame = self.shot / "frames/000002.exr"
+        whole = frame.read_bytes()
+        frame.write_bytes(whole[: len(whole) // 3])
+        self.refused(
+            3, "run", self.shot, "-m", "uncharted", "-o", self.folder / "out", "-q",
+            says=("000002.exr", "truncated or damaged"),
+        )  # fmt: skip
+
+    def test_two_writers_of_one_folder_give_one_whole_result(self) -> None:
+        out = self.folder / "out"
+        command = self.commands()["run"]
+        whole = self.finished(command, out)
+        shutil.rmtree(out)
+        for _ in range(COUNT):
+            both = [self.start(command, out) for _ in range(2)]
+            said = [process.communicate(timeout=300)[1] for process in both]
+            codes = sorted(process.returncode for process in both)
+            self.assertIn(codes, ([0, 0], [0, 3]), said)
+            if codes == [0, 3]:
+                self.assertTrue(any("another process" in text for text in said), said)
+            now = contents(out)
+            self.assertEqual(sorted(now), sorted(whole))
+            self.check_whole(out, whole, "two writers")
+
+    @unittest.skipIf(os.geteuid() == 0, "root may write everywhere")
+    def test_a_read_only_folder_is_named(self) -> None:
+        out = self.folder / "out"
+        out.mkdir(mode=0o555)
+        self.refused(
+            1, "run", self.shot, "-m", "noaa", "-o", out, "-q", says=("not a writable folder",)
+        )
+
+
+if __name__ == "__main__":
+    main()
