@@ -6,6 +6,7 @@
 #include <set>
 
 #include "cli/cli.h"
+#include "cli/frame_pairs.h"
 #include "gpu/metrics.h"
 #include "image/colour.h"
 #include "image/error.h"
@@ -22,49 +23,12 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-    std::string a, b, map, mapOf, region, display = "srgb";
+    std::string a, b, pair = "auto", map, mapOf, region, display = "srgb";
     std::vector<std::string> metrics = {"mse", "psnr", "ssimLuma"}, thresholds;
     double exposure = 0;
     bool json = false, q8 = false;
     WorkOptions work;
 };
-
-struct Pair {
-    std::string name;
-    fs::path a, b;
-};
-bool isImage(const fs::path& p) {
-    const std::string e = p.extension().string();
-    return (e == ".png" || e == ".exr" || e == ".PNG" || e == ".EXR") && !p.filename().string().starts_with('.') &&
-           p.stem().extension() != ".layers";
-}
-// Two images, or the images of two folders by equal names (000001.exr matches 000001.png).
-std::vector<Pair> pairsOf(const Options& o) {
-    for (const auto& p : {o.a, o.b})
-        if (!fs::exists(p)) throw InputError(p + ": no such file or folder");
-    if (fs::is_directory(o.a) != fs::is_directory(o.b))
-        throw UsageError("compare: '" + o.a + "' and '" + o.b + "' must both be images or both be folders of frames");
-    if (!fs::is_directory(o.a)) return {{fs::path(o.a).filename().string(), o.a, o.b}};
-    const auto list = [](const fs::path& folder) {
-        std::map<std::string, fs::path> files;
-        for (const auto& e : fs::directory_iterator(folder))
-            if (e.is_regular_file() && isImage(e.path()) && !files.emplace(e.path().stem().string(), e.path()).second)
-                throw InputError(folder.string() + ": frame " + e.path().stem().string() +
-                                 " is there as PNG and as EXR; keep one kind");
-        return files;
-    };
-    const auto a = list(o.a), b = list(o.b);
-    if (a.empty()) throw InputError(o.a + ": no PNG or EXR frames in this folder");
-    std::vector<Pair> pairs;
-    for (const auto& [name, file] : a) {
-        const auto other = b.find(name);
-        if (other == b.end()) throw InputError(o.b + ": no frame '" + name + "', which " + o.a + " has");
-        pairs.push_back({name, file, other->second});
-    }
-    for (const auto& [name, file] : b)
-        if (!a.count(name)) throw InputError(o.a + ": no frame '" + name + "', which " + o.b + " has");
-    return pairs;
-}
 
 struct Threshold {
     const Figure* figure;
@@ -90,7 +54,7 @@ std::vector<Threshold> thresholdsOf(const Options& o) {
 struct Both {
     Rgb encodedA, encodedB, linearA, linearB;  // linear: empty for 8-bit images
 };
-Both loadBoth(const Pair& pair, const Options& o, const Exec& exec) {
+Both loadBoth(const FramePair& pair, const Options& o, const Exec& exec) {
     LoadedImage a = readImage(pair.a), b = readImage(pair.b);
     if (a.rgb.width() != b.rgb.width() || a.rgb.height() != b.rgb.height())
         throw InputError(pair.b.string() + ": expected " + std::to_string(a.rgb.width()) + "x" +
@@ -179,7 +143,8 @@ void compare(const Options& o, Context& context) {
     for (const auto& t : thresholds) wanted.insert(findFigure(t.figure->name).metric);
     if (o.map.empty() && !o.mapOf.empty()) throw UsageError("--map-of: no effect without --map FILE");
     const MapKind& map = mapKindByName(o.mapOf.empty() ? "error" : o.mapOf);
-    const auto pairs = pairsOf(o);
+    const FramePairs paired = pairFrames(o.a, o.b, o.pair);
+    const auto& pairs = paired.pairs;
     if (!o.map.empty() && pairs.size() > 1) makeWritableFolder(o.map);
     Measuring device{.session = o.work.session()};
     if (device.session && device.session->fast())
@@ -214,6 +179,7 @@ void compare(const Options& o, Context& context) {
             {"a", o.a}, {"b", o.b}, {"frames", pairs.size()}, {"pooled", numbers(pooled, figures)}};
         for (size_t i = 0; i < pairs.size() && pairs.size() > 1; i++)
             j["perFrame"][pairs[i].name] = numbers(frames[i], figures);
+        if (!paired.by.empty()) j["pairedBy"] = paired.by;
         if (!o.region.empty()) j["region"] = o.region;
         if (!o.map.empty()) j["map"] = {{"of", map.name}, {"scale", map.scale}};
         if (device.session) j["device"]["name"] = device.name();
@@ -230,6 +196,9 @@ void compare(const Options& o, Context& context) {
         if (pairs.size() > 1)
             for (size_t i = 0; i < pairs.size(); i++) line(pairs[i].name, frames[i]);
         line(pairs.size() > 1 ? "pooled" : pairs[0].name, pooled);
+        if (!paired.by.empty() && paired.by != "name")
+            std::printf("paired by %s: %s with %s\n", paired.by.c_str(), pairs[0].a.filename().c_str(),
+                        pairs[0].b.filename().c_str());
         if (!o.map.empty()) std::printf("map %s: %s\n", o.map.c_str(), std::string(map.scale).c_str());
         if (!o.region.empty()) std::printf("figures of the region %s\n", o.region.c_str());
         if (device.session) {
@@ -248,6 +217,10 @@ void addCompare(CommandLine& line, Context& context) {
     Command c = line.command("compare", "Metrics of two images or of two folders of frames; B is the reference");
     c.option("A", o->a, "PNG (sRGB codes), EXR (linear), or a folder of frames").required();
     c.option("B", o->b, "the reference, of the same size or with the same frames").required();
+    c.option("--pair", o->pair,
+             "frames of two folders that belong together: name = equal but for the extension, number = by the last "
+             "number of the name, order = the first with the first; auto = by name where all agree, else by number")
+        .oneOf({"auto", "name", "number", "order"});
     c.option("--metrics", o->metrics, "comma-separated; `ssim` is ssimLuma:" + listOfFigures()).separatedBy(',');
     c.option("--map", o->map, "picture of the difference on a fixed scale: a PNG, of folders a folder");
     c.option("--map-of", o->mapOf, "what it shows; default error:" + listOfMapKinds());
