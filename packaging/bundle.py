@@ -39,7 +39,7 @@ UNLESS_NEWER = {"libstdc++.so.6": ("libgcc_s.so.1",), "libz.so.1": ()}
 FONTS = ("DejaVuSans.ttf", "DejaVuSans-Bold.ttf")
 FONT_PACKAGE = "fonts-dejavu-core"
 # Read while compiling, of which the program then holds parts.
-HEADERS = ("libglm-dev", "nlohmann-json3-dev", "libcli11-dev", "libvulkan-dev")
+HEADERS = ("libglm-dev", "nlohmann-json3-dev", "libcli11-dev", "libxxhash-dev", "libvulkan-dev")
 PAGES = ("README.md", "CHANGELOG.md", "LICENSE", "docs/methods.md", "docs/install.md")
 
 

@@ -17,7 +17,8 @@ class Session;
 }
 
 struct Context {
-    int exitCode = 0;  // set by a command's callback
+    int exitCode = 0;                    // set by a command's callback
+    std::vector<std::string> arguments;  // of the program, its name first
 };
 
 // Work options shared by every command that computes.

@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
         "Exit codes: 0 ok, 1 a check failed, a difference was found or the output could not be written, 2 wrong usage, "
         "3 bad input.",
         AA_VERSION);
-    aa::Context context;
+    aa::Context context{.exitCode = 0, .arguments = {argv, argv + argc}};
     const auto commands = {
         aa::addList,   aa::addPlan,    aa::addCheck,  aa::addRun,       aa::addFilter,     aa::addBench, aa::addSheet,
         aa::addReport, aa::addCompare, aa::addSynth,  aa::addLearnRsaa, aa::addImport,     aa::addSweep, aa::addAngles,

@@ -16,10 +16,18 @@ namespace {
 struct Options {
     RunArguments run;
     std::vector<std::string> methods;
+    bool resume = false, add = false;
     bool debugLayers = false, overFrames = false, withoutBaseline = false;
 };
 constexpr const char* kBaseline = "noaa";
 }  // namespace
+
+void printReplaced(const RunResults& r, const std::filesystem::path& out) {
+    for (const auto& method : r.replacedMethods)
+        std::fprintf(stderr, "%s: removed the pictures of %s, which this run has not\n", out.c_str(), method.c_str());
+    for (const auto& file : r.outdatedFiles)
+        std::fprintf(stderr, "%s: is of the earlier run; make it again\n", (out / file).c_str());
+}
 
 void printTable(const RunResults& r) {
     std::vector<const MethodResult*> rows;
@@ -53,6 +61,9 @@ void printTable(const RunResults& r) {
         if (m->deviceSecondsMedian) std::printf(" %10.4f", 1e3 * *m->deviceSecondsMedian);
         std::puts("");
     }
+    if (!r.complete)
+        std::printf("%s: these figures are not those of the whole shot; the same command with --resume goes on\n",
+                    incompleteInWords(r).c_str());
     if (r.device)
         std::printf("device: %s (%s), %s%s\n", r.device->name.c_str(), r.device->kind.c_str(),
                     r.device->precision.c_str(),
@@ -148,17 +159,25 @@ void addBaseline(std::vector<MethodSpec>& methods, const Options& o) {
 
 void execute(const Options& o, Context& context) {
     RunOptions run;
-    run.methods = chosenFor(o.run.shot, o.methods);
-    addBaseline(run.methods, o);
+    if (o.methods.empty() && o.run.externals.empty())
+        throw UsageError("run: no method; give one by -m (`aaresolve list` shows them), or pictures by --external");
+    if (!o.methods.empty()) run.methods = chosenFor(o.run.shot, o.methods);
+    if (!o.add) addBaseline(run.methods, o);  // what is added to has its own
     run.debugLayers = o.debugLayers;
+    run.provenance =
+        provenanceOf(context.arguments, {"-m", "--method", "-o", "--out", "--external"}, {"--resume", "--add"});
     const ShotReader shot = openShot(o.run, run);
     const FolderClaim claim(run.out);
+    const bool goesOn = o.add || (o.resume && std::filesystem::exists(run.out / "results.json"));
+    if (o.resume && !goesOn)
+        std::fprintf(stderr, "--resume: %s holds no results yet; run from the start\n", run.out.c_str());
     RunResults results;
     withThreads(o.run.work.threads, [&] {
         TerminalProgress progress(shot.manifest().name, stepsOf(run, shot.manifest()), o.run.quiet);
-        results = aa::run(shot, run, progress.callbacks());
+        results = goesOn ? aa::resume(shot, run, progress.callbacks()) : aa::run(shot, run, progress.callbacks());
         if (progress.interrupted()) context.exitCode = 130;
     });
+    printReplaced(results, run.out);
     if (o.run.json)
         std::cout << toJsonText(results) << "\n";
     else
@@ -171,9 +190,15 @@ void execute(const Options& o, Context& context) {
 void addRun(CommandLine& line, Context& context) {
     auto o = std::make_shared<Options>();
     Command c = line.command("run", "Run methods on a shot and measure them against its ground truth");
-    addMethodOption(c, o->methods, "a method", true).required();
+    addMethodOption(c, o->methods, "a method", true);
     c.flag("--no-noaa", o->withoutBaseline, "do not add noaa where it is not named; then there are no gains");
+    c.option("--external", o->run.externals,
+             "NAME=FOLDER: a row of frames that were made elsewhere, one EXR (linear) or PNG (encoded) each; the last "
+             "number of a name is its frame; repeat for more")
+        .oneEach();
     addRunArguments(c, o->run);
+    c.flag("--resume", o->resume, "go on with an interrupted run in OUT; the same command, and this");
+    c.flag("--add", o->add, "add these methods to the run in OUT, whose options must be the same; its methods stay");
     c.flag("--over-frames", o->overFrames,
            "print best, worst and average over the frames of every figure, not of PSNR alone");
     c.flag("--debug-layers", o->debugLayers, "also write each method's intermediate images");

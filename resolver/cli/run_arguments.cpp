@@ -1,9 +1,11 @@
 #include "cli/run_arguments.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "image/error.h"
 #include "image/io.h"
+#include "study/external.h"
 #include "study/prepare.h"
 
 namespace aa {
@@ -66,6 +68,17 @@ ShotReader openShot(const RunArguments& a, RunOptions& run) {
     run.protocol = {.display = {float(a.exposure), toneMapByName(a.toneMap), transferByName(a.display)},
                     .history = historyByName(a.history),
                     .eightBit = a.quantise == 8};
+    for (const auto& text : a.externals) {
+        run.methods.push_back(externalMethod(text, run.protocol.display));
+        const auto same = [&](const MethodSpec& m) { return m.text == run.methods.back().text; };
+        if (std::count_if(run.methods.begin(), run.methods.end(), same) > 1)
+            throw UsageError("--external: '" + run.methods.back().text + "' is given twice");
+        const std::filesystem::path from = std::filesystem::weakly_canonical(run.methods.back().method->source);
+        const std::filesystem::path below = from.lexically_relative(std::filesystem::weakly_canonical(a.out));
+        if (!below.empty() && *below.begin() != "..")
+            throw UsageError("--external: " + from.string() + " lies in " + a.out +
+                             ", where this run writes and clears; give the run another folder");
+    }
     run.out = a.out;
     run.writeExr = a.write.find("exr") != std::string::npos;
     run.writePng = a.write.find("png") != std::string::npos;

@@ -13,7 +13,8 @@ struct RunArguments {
                                    history = "first", input = "sanitise", region, reference;
     double exposure = 0;
     std::vector<std::string> metrics, maps;
-    int quantise = 0;  // 0: off
+    std::vector<std::string> externals;  // NAME=FOLDER: rows of pictures made elsewhere
+    int quantise = 0;                    // 0: off
     bool timeOnly = false, dither = false;
     bool json = false, quiet = false;
     WorkOptions work;
@@ -22,6 +23,8 @@ void addRunArguments(Command& command, RunArguments& arguments);
 // Opens the shot and fills everything in `options` but the methods, which must be there already: they are made to fit
 // the history. Throws UsageError, InputError.
 ShotReader openShot(const RunArguments& arguments, RunOptions& options);
+// What of an earlier run in that folder is gone or outdated, on stderr.
+void printReplaced(const RunResults& results, const std::filesystem::path& out);
 // Methods by PSNR, the truth's error bar, what the sanitiser replaced.
 void printTable(const RunResults& results);
 

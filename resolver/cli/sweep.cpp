@@ -1,6 +1,7 @@
 // `sweep`: every combination of some parameters' values.
 #include "study/sweep.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 
@@ -26,6 +27,11 @@ void execute(const Options& o, Context& context) {
     sweeping.methods = textsOf(chosenFor(o.run.shot, o.sweep.methods));
     if (o.sweep.with != std::vector<std::string>{"none"}) sweeping.with = textsOf(chosenFor(o.run.shot, o.sweep.with));
     run.methods = variantsOf(sweeping);
+    const std::set<std::string> unlike = {"-m", "--method", "-o", "--out", "--vary", "--with", "--memory"};
+    run.provenance = provenanceOf(context.arguments, unlike);
+    std::vector<std::string> asRun = context.arguments;
+    std::replace(asRun.begin(), asRun.end(), std::string("sweep"), std::string("run"));
+    run.provenance.rerun = provenanceOf(asRun, unlike).rerun;
     const ShotReader shot = openShot(o.run, run);
     const FolderClaim claim(run.out);
     RunResults all;
@@ -37,6 +43,7 @@ void execute(const Options& o, Context& context) {
         all = sweep.run(progress.callbacks());
         if (progress.interrupted()) context.exitCode = 130;
     });
+    printReplaced(all, run.out);
     if (o.run.json) {
         std::cout << toJsonText(all) << "\n";
         return;

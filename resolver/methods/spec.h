@@ -19,6 +19,7 @@ struct MethodSpec {
     const MethodDescriptor* method = nullptr;
     std::vector<std::pair<std::string, std::string>> given;
     std::vector<StageSpec> stages;
+    std::shared_ptr<const void> owner{};  // of `method`, where it is of no registry
     Params params() const { return Params(method->id, method->params, given, method->writtenAt); }
     PassSet passes() const;
     Space outputSpace() const;  // of the method; stages keep it

@@ -184,8 +184,14 @@ std::string truthSentence(const RunResults& run, const std::vector<size_t>& orde
 
 std::vector<std::string> captions(const RunResults& run) {
     const auto order = ranking(run);
-    if (order.empty()) return {"This run has no ground truth: only times and pictures can be compared."};
     std::vector<std::string> all;
+    if (!run.complete)
+        all.push_back("This run was " + incompleteInWords(run) +
+                      ": its figures are not those of the whole shot. `run --resume` goes on with it.");
+    if (order.empty()) {
+        all.push_back("This run has no ground truth: only times and pictures can be compared.");
+        return all;
+    }
     if (const std::string& method = run.protocol.reference; !method.empty())
         all.push_back("The figures hold every method against " + method +
                       ", another method of this run, and not against the truth: what " + method +

@@ -42,8 +42,9 @@ std::string shown(const Figure& figure, double v) {
 }
 
 std::string runLine(const RunResults& run) {
-    std::string line =
-        std::to_string(run.width) + " x " + std::to_string(run.height) + (run.isStatic ? ", static" : ", moving");
+    const std::string incomplete = incompleteInWords(run);
+    std::string line = (incomplete.empty() ? "" : incomplete + "; ") + std::to_string(run.width) + " x " +
+                       std::to_string(run.height) + (run.isStatic ? ", static" : ", moving");
     if (run.jitterSequence == "none" || run.jitterPeriod <= 1)
         line += "; no jitter";
     else

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "image/error.h"
+
 namespace aa {
 
 Judge::Judge(const Manifest& manifest, const RunOptions& o, bool overTime)
@@ -63,7 +65,18 @@ void Judge::look(const Frame& frame, const std::shared_ptr<const Truth>& truth, 
     if (manifest_.isStatic) errors_.assign(errors_.size(), {});
 }
 
-FrameResult Judge::judge(size_t k, const RunningMethod& method, double seconds) {
+// Known figures, once the image has been seen to be the one that they are of.
+FrameMetrics Judge::again(const FrameMetrics& known, const Rgb& encoded, const Reference& reference,
+                          TileErrors& pool) const {
+    const TileErrors errors = tileErrors(encoded, reference.encoded, options_.exec);
+    pool += errors;
+    if (errors.squaredError().mse != known.mse)
+        throw InputError("frame " + std::to_string(number_) +
+                         ": its image is not the one that results.json has figures of; run again without --resume");
+    return known;
+}
+
+FrameResult Judge::judge(size_t k, const RunningMethod& method, double seconds, const FrameResult* known) {
     FrameResult result;
     result.frame = number_;
     result.seconds = seconds;
@@ -71,6 +84,7 @@ FrameResult Judge::judge(size_t k, const RunningMethod& method, double seconds) 
     if (reference_) {
         const bool linear = method.spec.outputSpace() == Space::linear;
         const auto take = [&](const Rgb& encoded, const Rgb& out) {
+            if (known && known->metrics) return again(*known->metrics, encoded, measured(), errors_[k]);
             return measure(encoded, linear ? &out : nullptr, measured(), options_.measure, options_.exec, errors_[k]);
         };
         const auto& region = options_.protocol.region;

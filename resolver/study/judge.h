@@ -20,7 +20,9 @@ class Judge {
     // What is measured of it: all, or the region. Only where there is one.
     const Reference& measured() const { return region_ ? *region_ : *reference_; }
     // Figures of what method `k` gave for it; of the stand-in none, which would be held against itself.
-    FrameResult judge(size_t k, const RunningMethod& method, double seconds);
+    // Where its figures are `known`, only the sums that the whole run needs are made again. Throws InputError where
+    // they are not those of this image.
+    FrameResult judge(size_t k, const RunningMethod& method, double seconds, const FrameResult* known = nullptr);
     // Once all methods are judged: squared error where history was rejected, of every method that keeps the mask (one
     // with a fill) and of its peers without or with another fill, which reject the same pixels.
     void judgeRejected(const std::vector<RunningMethod>& methods, std::vector<MethodResult>& results) const;
@@ -29,6 +31,8 @@ class Judge {
     const std::vector<TileErrors>& errors() const { return errors_; }
 
   private:
+    FrameMetrics again(const FrameMetrics& known, const Rgb& encoded, const Reference& reference,
+                       TileErrors& pool) const;
     void lookAtTruth();
     void lookAtMethod(const RunningMethod& standIn);
     const Manifest& manifest_;

@@ -12,6 +12,7 @@
 #include "image/io.h"
 #include "methods/spec.h"
 #include "metrics/temporal.h"
+#include "study/external.h"
 
 namespace aa {
 namespace {
@@ -89,7 +90,7 @@ std::vector<std::string> applyHistory(RunOptions& o, const Manifest& manifest) {
         const auto& table = spec.method->params;
         const auto named = [](const auto& p) { return p.first == "warmup"; };
         if (std::none_of(table.begin(), table.end(), [](const auto& p) { return p.name == "warmup"; })) {
-            if (spec.method->temporal) without.push_back(spec.text);
+            if (spec.method->temporal && !isExternal(spec)) without.push_back(spec.text);
         } else if (std::none_of(spec.given.begin(), spec.given.end(), named)) {
             spec.given.emplace_back("warmup", "ramp");
         }
@@ -98,7 +99,9 @@ std::vector<std::string> applyHistory(RunOptions& o, const Manifest& manifest) {
 }
 
 void judgeAgainst(RunOptions& o, const std::string& method) {
-    const MethodSpec reference = parseMethod(method);
+    const auto external = std::find_if(o.methods.begin(), o.methods.end(),
+                                       [&](const auto& m) { return isExternal(m) && m.text == method; });
+    const MethodSpec reference = external == o.methods.end() ? parseMethod(method) : *external;
     const auto same = std::find_if(o.methods.begin(), o.methods.end(),
                                    [&](const auto& m) { return m.folderName() == reference.folderName(); });
     o.protocol.reference = same == o.methods.end() ? reference.text : same->text;
@@ -110,9 +113,11 @@ void judgeAgainst(RunOptions& o, const std::string& method) {
 InputPlan planInput(const ShotReader& shot, const RunOptions& o) {
     InputPlan plan;
     plan.split = shot.hasCentreFrames();
-    plan.jittered = plan.split ? passesOf(o.methods, Sampling::jittered) : passesOf(o.methods);
-    if (plan.split) plan.centre = passesOf(o.methods, Sampling::centre);
-    plan.overTime = o.frames.size() > 1 && !passesOf(o.methods, Sampling::jittered).empty();
+    plan.jittered = plan.split ? passesOf(o.every(), Sampling::jittered) : passesOf(o.every());
+    if (plan.split) plan.centre = passesOf(o.every(), Sampling::centre);
+    const auto accumulates = [](const MethodSpec& m) { return m.method->sampling() == Sampling::jittered; };
+    plan.overTime = o.frames.size() > 1 && std::any_of(o.every().begin(), o.every().end(), accumulates);
+    if (plan.overTime) plan.jittered |= Pass::color;
     if (plan.overTime && !shot.manifest().isStatic)
         plan.jittered |= passesThatAreThere(temporalMetricPasses(), shot.offered());
     return plan;
@@ -123,7 +128,8 @@ std::vector<RunningMethod> startMethods(const ShotReader& shot, const RunOptions
     std::vector<RunningMethod> methods;
     for (const auto& spec : o.methods) {
         const ShotInfo info = shotInfo(shot.manifest());
-        methods.emplace_back(spec, o.device && !o.timeOnly ? gpu::create(*o.device, spec, info) : spec.create(info));
+        methods.emplace_back(spec, o.device && !o.timeOnly && !isExternal(spec) ? gpu::create(*o.device, spec, info)
+                                                                                : spec.create(info));
         methods.back().method->keepDebugLayers = o.debugLayers;
     }
     makeWritableFolder(o.out);
@@ -134,15 +140,22 @@ std::vector<RunningMethod> startMethods(const ShotReader& shot, const RunOptions
     return methods;
 }
 
-std::string machineName() {
-    std::ifstream cpus("/proc/cpuinfo");
-    for (std::string line; std::getline(cpus, line);)
-        if (line.starts_with("model name")) {
-            const size_t colon = line.find(':');
-            if (colon != std::string::npos) return line.substr(std::min(line.size(), colon + 2));
-        }
-    return "unknown processor";
+namespace {
+std::string asked(const RunOptions& o) {
+    std::string metrics;
+    for (const Metric* m : o.measure.metrics)
+        metrics += (metrics.empty() ? "metrics=" : ",") + std::string(m->figures[0].name);
+    std::string maps;
+    for (const MapKind* kind : o.maps) maps += (maps.empty() ? " maps=" : ",") + std::string(kind->name);
+    return metrics + maps + (metrics.empty() && maps.empty() ? "" : " ") + "write=" +
+           (o.writeExr && o.writePng ? "exr,png"
+            : o.writeExr             ? "exr"
+            : o.writePng             ? "png"
+                                     : "none") +
+           " frames=" + (o.writeAllFrames ? "all" : "truth") + (o.debugLayers ? " layers" : "") +
+           (o.dither ? " dither" : "");
 }
+}  // namespace
 
 RunResults describeRun(const Manifest& m, const RunOptions& o) {
     RunResults r;
@@ -167,7 +180,13 @@ RunResults describeRun(const Manifest& m, const RunOptions& o) {
     r.precision = o.exec.precision == Precision::fast     ? "fast"
                   : o.exec.precision == Precision::scalar ? "scalar"
                                                           : "double";
-    r.machine = machineName();
+    r.provenance = o.provenance;
+    if (r.provenance.machine.processor.empty()) r.provenance = provenanceOf({}, {});
+    r.provenance.shotPath = std::filesystem::weakly_canonical(m.folder).string();
+    r.machine = r.provenance.machine.processor;
+    r.shotHash = contentHash(m, o.frames);
+    r.framesAsked = o.frames.size();
+    r.asked = asked(o);
     if (o.device) {
         const gpu::DeviceInfo& d = o.device->device().info();
         r.device = {d.name, d.kind, d.driver, o.device->fast() ? "fast" : "exact", !o.timeOnly};

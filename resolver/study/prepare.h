@@ -37,6 +37,5 @@ InputPlan planInput(const ShotReader& shot, const RunOptions& options);
 std::vector<RunningMethod> startMethods(const ShotReader& shot, const RunOptions& options);
 // Everything that is known before the first frame.
 RunResults describeRun(const Manifest& manifest, const RunOptions& options);
-std::string machineName();  // the processor, as the system names it
 
 }  // namespace aa

@@ -12,6 +12,7 @@
 #include "metrics/measure.h"
 #include "metrics/temporal.h"
 #include "study/protocol.h"
+#include "study/provenance.h"
 
 namespace aa {
 
@@ -60,6 +61,10 @@ struct MethodResult {
     std::optional<double> rejectedMse, rejectedShare;
 };
 
+struct RunResults;
+// Sums over tiles as the results keep them; of a method without figures empty.
+TileErrors tileErrorsOf(const RunResults& run, const MethodResult& method);
+
 // A figure over the judged frames, as [Oliveros 2018, 5.9] prints it: the frames are those where the best and the worst
 // first occur. The mean of an infinite PSNR is infinite, which is why the pooled figure stands beside it.
 struct FigureRange {
@@ -93,7 +98,8 @@ struct RunDevice {
 
 struct RunResults {
     // The shot
-    std::string shot;  // its name
+    std::string shot;      // its name
+    std::string shotHash;  // of the frames of this run (study/provenance.h); empty in results of older programs
     int width = 0, height = 0;
     bool isStatic = false;
     std::string jitterSequence = "none";
@@ -108,6 +114,13 @@ struct RunResults {
     std::map<int, std::string> truthImages;     // frame -> relative path; of a reference method its own images
     std::optional<ClippedPixels> truthClipped;  // only with the identity transfer
     // The run
+    Provenance provenance;
+    bool complete = true;    // false: it was interrupted, and its figures are of fewer frames than it was asked for
+    size_t framesAsked = 0;  // 0 in results of older programs, which do not say
+    std::string asked;       // what was measured and written: "metrics=flip write=exr,png frames=truth"
+    // Of an earlier run in the same folder, named once and not kept: methods that this one has not and whose pictures
+    // are gone; files that were made from it and are left.
+    std::vector<std::string> replacedMethods, outdatedFiles;
     std::string programVersion, isa, precision, machine;
     int threads = 1;
     std::optional<RunDevice> device;
@@ -119,10 +132,16 @@ struct RunResults {
     std::vector<MethodResult> methods;
     std::vector<PairResult> pairs;  // every pair of methods with truth
 
+    size_t framesDone() const { return methods.empty() ? 0 : methods[0].frames.size(); }
     bool jitterCentred() const;  // |mean| below 1e-4 px
     // The method that the others are held against: it has time and pictures, and no figures.
     bool isReference(const MethodResult& m) const { return m.text == protocol.reference; }
 };
+
+// The line that makes a method's row again; empty where the results do not say.
+std::string rerunLine(const RunResults& run, const MethodResult& method);
+// "interrupted after 8 of 16 frames"; empty for a run that is complete.
+std::string incompleteInWords(const RunResults& run);
 
 // Fills medians, ns/px, pooled figures, gains and pairs. `errors[m]` are the tile errors of methods[m] summed over the
 // frames with truth (empty TileErrors when there is none).
@@ -134,7 +153,8 @@ std::string toJsonText(const RunResults& run);
 std::string toCsvText(const RunResults& run);
 // The figures that a run holds, in the order of tables: mse, psnr and snr, those that every run has, those asked for.
 std::vector<const Figure*> figuresIn(const RunResults& run);
-// Reads OUT/results.json. Throws InputError: no run there, damaged, wrong type of a member (named).
-RunResults readResults(const std::filesystem::path& folder);
+// Reads OUT/results.json, or that file under any name. Throws InputError: no run there, damaged, wrong type of a member
+// (named).
+RunResults readResults(const std::filesystem::path& path);
 
 }  // namespace aa

@@ -317,10 +317,28 @@ void members(V v, S& d) {
     v.value("precision", d.precision);
     v.value("judged", d.judged);
 }
+template <class V, Is<Provenance> S>
+void members(V v, S& p) {
+    v.value("date", p.date);
+    v.sparse("command", p.command, !p.command.empty());
+    v.sparse("rerun", p.rerun, !p.rerun.empty());
+    v.value("folder", p.folder);
+    v.value("shotPath", p.shotPath);
+    v.sparse("commit", p.commit, !p.commit.empty());
+    v.group("machine", [&](auto m) {
+        m.value("processor", p.machine.processor);
+        m.value("cores", p.machine.cores);
+        m.value("instructionSets", p.machine.instructionSets);
+        m.value("system", p.machine.system);
+        m.value("load", p.machine.load);
+    });
+}
 template <class V, Is<RunResults> S>
 void members(V all, S& run) {
+    all.groupIf(!run.provenance.date.empty(), "provenance", [&](auto v) { members(v, run.provenance); });
     all.group("shot", [&](auto v) {
         v.value("name", run.shot);
+        v.sparse("hash", run.shotHash, !run.shotHash.empty());
         v.array("resolution", run.width, run.height);
         v.value("static", run.isStatic);
         v.group("jitter", [&](auto j) {
@@ -343,6 +361,9 @@ void members(V all, S& run) {
     });
     // Runs before the protocol could be chosen have none of it but exposure and tone map.
     all.group("run", [&](auto v) {
+        v.sparse("complete", run.complete, true);
+        v.sparse("framesAsked", run.framesAsked, run.framesAsked > 0);
+        v.sparse("asked", run.asked, !run.asked.empty());
         v.value("program", run.programVersion);
         v.value("instructionSet", run.isa);
         v.value("precision", run.precision);
@@ -376,6 +397,8 @@ void members(V all, S& run) {
 std::string toJsonText(const RunResults& run) {
     json j = {{"format", "aaresolve-results"}, {"version", 1}};
     members(Writer(j), run);
+    for (size_t i = 0; i < run.methods.size(); i++)
+        if (const std::string line = rerunLine(run, run.methods[i]); !line.empty()) j["methods"][i]["rerun"] = line;
     for (size_t i = 0; i < run.pairs.size(); i++) {  // for those who read the file without counting
         j["pairs"][i]["first"] = run.methods[run.pairs[i].first].text;
         j["pairs"][i]["second"] = run.methods[run.pairs[i].second].text;
@@ -388,8 +411,9 @@ void writeResults(const RunResults& run, const fs::path& folder) {
     writeText(folder / "results.csv", toCsvText(run));
 }
 
-RunResults readResults(const fs::path& folder) {
-    const fs::path file = folder / "results.json";
+RunResults readResults(const fs::path& path) {
+    std::error_code ignored;
+    const fs::path file = fs::is_regular_file(path, ignored) ? path : path / "results.json";
     std::ifstream in(file);
     if (!in)
         throw InputError(file.string() +

@@ -3,6 +3,8 @@
 // files here: prepare -> (warm_up) -> resolve -> judge -> images, results.
 #pragma once
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
 
 #include "methods/spec.h"
@@ -20,6 +22,7 @@ struct RunOptions {
     std::vector<MethodSpec> methods;
     std::vector<size_t> frames;  // indices into the manifest, ascending; the methods see them all, in order
     Protocol protocol;
+    Provenance provenance;  // of the command line; empty: found where the run begins
     Exec exec;
     std::shared_ptr<gpu::Session> device;  // null: the processor
     bool timeOnly = false;                 // the methods run on the processor, and on the device for its time beside
@@ -30,14 +33,24 @@ struct RunOptions {
     bool dither = false;          // codes of PNG files are rounded up or down by chance (metrics/metrics.h)
     bool writeAllFrames = false;  // otherwise: frames with ground truth of their own; of a static shot, the last
     bool debugLayers = false;
+    // Of a run that goes on with an earlier one (study/resume.h): every method of the results, of which `methods` run
+    // now, and what is known of the frames of these. Empty: `methods` are all.
+    std::vector<MethodSpec> allMethods;
+    std::map<std::string, std::vector<FrameResult>> known;
+    const std::vector<MethodSpec>& every() const { return allMethods.empty() ? methods : allMethods; }
+    // Told what is there before the first frame and after each one.
+    std::function<void(const RunResults&)> checkpoint;
 };
 
 // Steps that a run shows as progress: its frames, before them those of a full history.
 size_t stepsOf(const RunOptions& options, const Manifest& manifest);
 
 // Runs, measures and writes OUT/<method>/<frame>.*, OUT/truth/<frame>.exr, results.json and results.csv. When
-// interrupted, the results cover the frames that were finished. Throws InputError, UsageError.
+// interrupted, the results cover the frames that were finished and say so. They are written as it goes, so that a run
+// which is ended without asking leaves them, too. Throws InputError, UsageError.
 RunResults run(const ShotReader& shot, const RunOptions& options, const Progress& progress);
+// Goes on with the results in options.out: finishes what was interrupted and adds the methods that are new.
+RunResults resume(const ShotReader& shot, const RunOptions& options, const Progress& progress);
 // The same without what needs all methods together: figures are not pooled, no results are written. `errors` receives
 // the tile errors that finish() asks for.
 RunResults runMethods(const ShotReader& shot, const RunOptions& options, const Progress& progress,

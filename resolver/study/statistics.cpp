@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "methods/spec.h"
+#include "study/external.h"
 #include "study/results.h"
 
 namespace aa {
@@ -116,6 +116,35 @@ std::optional<FigureRange> rangeOverFrames(const MethodResult& method, const Fig
     }
     if (range) range->mean = sum / count;
     return range;
+}
+
+TileErrors tileErrorsOf(const RunResults& run, const MethodResult& m) {
+    TileErrors tiles;
+    if (!m.pooled || m.tileSquares.empty()) return tiles;
+    tiles.sum = m.tileSquares;
+    const Window area = run.protocol.region.value_or(Window{0, 0, run.width, run.height});
+    for (int y = 0; y < area.height; y += TileErrors::kTilePx)
+        for (int x = 0; x < area.width; x += TileErrors::kTilePx)
+            tiles.values.push_back(3.0 * std::min(TileErrors::kTilePx, area.width - x) *
+                                   std::min(TileErrors::kTilePx, area.height - y) * m.pooled->frames);
+    tiles.referenceSum = m.pooled->mean.reference * tiles.totalValues();
+    return tiles;
+}
+
+std::string rerunLine(const RunResults& run, const MethodResult& m) {
+    const std::string& line = run.provenance.rerun;
+    if (line.empty()) return {};
+    const std::string row =
+        m.family == kExternalFamily ? "--external " + shellQuoted(m.id + "=" + m.source) : "-m " + shellQuoted(m.text);
+    return line + " " + row + " -o " + shellQuoted(m.folder + "_again");
+}
+
+std::string incompleteInWords(const RunResults& run) {
+    if (run.complete) return {};
+    const std::string asked = run.framesAsked > 0 ? " of " + std::to_string(run.framesAsked) : "";
+    const bool manyMethods = run.framesAsked > 0 && run.framesDone() == run.framesAsked;
+    return manyMethods ? "interrupted before its last method"
+                       : "interrupted after " + std::to_string(run.framesDone()) + asked + " frames";
 }
 
 bool RunResults::jitterCentred() const { return std::abs(jitterMeanPx[0]) < 1e-4 && std::abs(jitterMeanPx[1]) < 1e-4; }

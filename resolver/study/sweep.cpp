@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <iterator>
 #include <set>
+#include <utility>
 
 #include "image/error.h"
 #include "methods/driver.h"
 #include "study/prepare.h"
+#include "study/resume.h"
 
 namespace aa {
 namespace {
@@ -123,6 +125,15 @@ Sweep::Sweep(const ShotReader& shot, const RunOptions& run, const SweepOptions& 
 RunResults Sweep::run(const Progress& progress) {
     RunResults all;
     std::vector<TileErrors> errors;
+    Earlier earlier;
+    bool started = false;
+    run_.checkpoint = [&](const RunResults& sofar) {  // nothing of an earlier run is taken for this one's
+        if (std::exchange(started, true)) return;
+        RunOptions every = run_;
+        for (const auto& part : parts_) every.allMethods.insert(every.allMethods.end(), part.begin(), part.end());
+        earlier = clearEarlier(every);
+        writeResults(sofar, run_.out);
+    };
     for (size_t i = 0; i < parts_.size() && !progress.interrupted(); i++) {
         run_.methods = parts_[i];
         std::vector<TileErrors> some;
@@ -137,6 +148,9 @@ RunResults Sweep::run(const Progress& progress) {
             std::move(some.begin(), some.end(), std::back_inserter(errors));
         }
     }
+    all.complete = all.complete && !progress.interrupted();
+    run_.checkpoint = nullptr;
+    all.replacedMethods = earlier.methods, all.outdatedFiles = earlier.files;
     finish(all, errors);
     writeResults(all, run_.out);
     return all;

@@ -23,7 +23,7 @@ int numberInPass(int number, size_t passesLeft, const RunOptions& o, const Manif
 }  // namespace
 
 size_t warmUpPasses(const RunOptions& o, const Manifest& m) {
-    if (o.protocol.history != History::full || o.frames.empty() || withHistory(o.methods).empty()) return 0;
+    if (o.protocol.history != History::full || o.frames.empty() || withHistory(o.every()).empty()) return 0;
     const size_t frames = kHistoryPeriods * size_t(std::max(m.jitterPeriod, 1));
     return (frames + o.frames.size() - 1) / o.frames.size();
 }

@@ -394,6 +394,18 @@ def test_results_are_found_on_disk() -> None:
     bpy.ops.wm.open_mainfile(filepath=blend)
     scene = bpy.context.scene
     assert len(watch.look_now(scene).outcome.best) == 3, "found again"
+    content = ranking(results)
+    content["run"] = {"complete": False, "framesAsked": 16}
+    content["methods"][0]["frames"] = [{}, {}, {}]
+    content["methods"][1]["pooled"] = None
+    with open(os.path.join(results, "results.json"), "w", encoding="utf-8") as file:
+        json.dump(content, file)
+    found = watch.look_now(scene).outcome
+    assert found.trouble == "not finished: 3 of 16 frames; press Compare again" and not found.best
+    content["run"]["complete"] = True
+    with open(os.path.join(results, "results.json"), "w", encoding="utf-8") as file:
+        json.dump(content, file)
+    assert len(watch.look_now(scene).outcome.best) == 3, "a method without figures has no place"
     with open(os.path.join(results, "results.json"), "w", encoding="utf-8") as file:
         file.write('{"methods": [')
     assert "cannot be read" in watch.look_now(scene).outcome.trouble

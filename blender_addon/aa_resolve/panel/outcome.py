@@ -57,22 +57,34 @@ def read(folder: str, shot: str) -> Outcome | None:
     try:
         with open(path, encoding="utf-8") as file:
             content = json.load(file)
-        best = tuple(_ranking(content))
+        unfinished = _unfinished(content)
+        best = () if unfinished else tuple(_ranking(content))
         count = len(content["methods"])
     except FileNotFoundError:
         return None
     except (OSError, ValueError, KeyError, TypeError, IndexError) as error:
         return Outcome(folder, (), 0, f"{path} cannot be read ({error}); press Compare again")
-    trouble = "" if best else "no method could be measured: the shot has no truth"
+    trouble = unfinished
+    if not best and not unfinished:
+        trouble = "no method could be measured: the shot has no truth"
     older = _time(os.path.join(shot, "shot.json")) > _time(path)
     files = tuple(name for name in _FILES if _time(os.path.join(folder, name)))
     return Outcome(folder, best, count, trouble, older, files)
 
 
+def _unfinished(content: dict) -> str:
+    """Says that a run was interrupted, or still goes on: its figures are not those of the whole shot."""
+    run = content.get("run", {})
+    if run.get("complete", True):
+        return ""
+    done = len(content["methods"][0]["frames"]) if content["methods"] else 0
+    return f"not finished: {done} of {run.get('framesAsked', '?')} frames; press Compare again"
+
+
 def _ranking(content: dict) -> list[Rank]:
     """The methods nearest to the truth. References (those that need what no renderer has in time) compete only where
     there is nothing else."""
-    judged = [method for method in content["methods"] if "pooled" in method]
+    judged = [method for method in content["methods"] if method.get("pooled")]
     methods = [method for method in judged if method["family"] != "reference"] or judged
     methods.sort(key=lambda method: _number(method["pooled"]["psnr"]), reverse=True)
     ranks: list[Rank] = []

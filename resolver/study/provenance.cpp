@@ -1,0 +1,151 @@
+#include "study/provenance.h"
+
+#include <sched.h>
+#include <sys/utsname.h>
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+
+#include "commit.h"
+#include "image/error.h"
+#include "kernels/dispatch.h"
+#define XXH_INLINE_ALL  // nothing to link
+#include <xxhash.h>
+
+namespace aa {
+namespace fs = std::filesystem;
+namespace {
+
+std::string utcNow() {
+    const std::time_t now = std::time(nullptr);
+    std::tm parts{};
+    gmtime_r(&now, &parts);
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+    return text;
+}
+std::string processorName() {
+    std::ifstream cpus("/proc/cpuinfo");
+    for (std::string line; std::getline(cpus, line);)
+        if (line.starts_with("model name"))
+            if (const size_t colon = line.find(':'); colon != std::string::npos)
+                return line.substr(std::min(line.size(), colon + 2));
+    return "unknown processor";
+}
+int usableCores() {
+    cpu_set_t set;
+    return sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 0;
+}
+std::string joined(const std::vector<std::string>& words) {
+    std::string line;
+    for (const auto& word : words) line += (line.empty() ? "" : " ") + shellQuoted(word);
+    return line;
+}
+
+class Hash {
+  public:
+    Hash() : state_(XXH3_createState()) { XXH3_128bits_reset(state_); }
+    ~Hash() { XXH3_freeState(state_); }
+    Hash(const Hash&) = delete;
+    Hash& operator=(const Hash&) = delete;
+    void add(const void* bytes, size_t size) { XXH3_128bits_update(state_, bytes, size); }
+    void add(const std::string& text) { add(text.data(), text.size()); }
+    std::string digits() const {
+        XXH128_canonical_t bytes;
+        XXH128_canonicalFromHash(&bytes, XXH3_128bits_digest(state_));
+        std::string text;
+        for (const unsigned char b : bytes.digest)
+            for (const int half : {b >> 4, b & 15}) text += "0123456789abcdef"[half];
+        return text;
+    }
+
+  private:
+    XXH3_state_t* state_;
+};
+std::string hashOfFile(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    if (!in) throw InputError(file.string() + ": cannot be read; export the frame again");
+    Hash hash;
+    std::vector<char> block(1 << 20);
+    while (in.read(block.data(), std::streamsize(block.size())) || in.gcount() > 0)
+        hash.add(block.data(), size_t(in.gcount()));
+    if (in.bad()) throw InputError(file.string() + ": cannot be read to its end; export the frame again");
+    return hash.digits();
+}
+}  // namespace
+
+Machine thisMachine() {
+    Machine m;
+    m.processor = processorName();
+    m.cores = usableCores();
+    for (const Isa isa : {Isa::v2, Isa::v3, Isa::v4})
+        if (isaSupported(isa)) m.instructionSets.emplace_back(name(isa));
+    utsname system{};
+    if (uname(&system) == 0) m.system = std::string(system.sysname) + " " + system.release + " " + system.machine;
+    double load = 0;
+    if (getloadavg(&load, 1) == 1) m.load = load;
+    return m;
+}
+
+std::string shellQuoted(const std::string& word) {
+    const auto plain = [](unsigned char c) {
+        return std::isalnum(c) || std::string_view("_@%+=:,./-").find(char(c)) != std::string_view::npos;
+    };
+    if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
+    std::string quoted = "'";
+    for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return quoted + "'";
+}
+
+Provenance provenanceOf(const std::vector<std::string>& arguments, const std::set<std::string>& unlike,
+                        const std::set<std::string>& flags) {
+    Provenance p;
+    p.command = joined(arguments);
+    std::vector<std::string> kept;
+    for (size_t i = 0; i < arguments.size(); i++) {
+        const std::string& word = arguments[i];
+        const std::string name = word.substr(0, word.starts_with("--") ? word.find('=') : 2);
+        if (flags.contains(word)) continue;
+        if (unlike.contains(name)) {
+            if (name == word) i++;  // the value is the next word
+            continue;
+        }
+        kept.push_back(word);
+    }
+    p.rerun = joined(kept);
+    std::error_code ignored;
+    p.folder = fs::current_path(ignored).string();
+    p.date = utcNow();
+    p.commit = programCommit();
+    p.machine = thisMachine();
+    return p;
+}
+std::string programCommit() { return AA_COMMIT; }
+
+std::string contentHash(const Manifest& manifest, const std::vector<size_t>& frames) {
+    nlohmann::json document = toJson(manifest);
+    document.erase("producer");
+    std::map<std::string, std::string> files;  // in the order of their names, each once
+    nlohmann::json chosen = nlohmann::json::array();
+    for (const size_t i : frames) {
+        const FrameEntry& f = manifest.frames.at(i);
+        for (const auto& file : {f.file, f.centre, f.truth})
+            if (!file.empty()) files[file];
+        chosen.push_back(document.at("frames").at(i));
+        chosen.back().erase("render_seconds");
+    }
+    document["frames"] = std::move(chosen);
+    std::vector<std::pair<const std::string, std::string>*> all;
+    for (auto& file : files) all.push_back(&file);
+    tbb::parallel_for(size_t(0), all.size(),
+                      [&](size_t i) { all[i]->second = hashOfFile(manifest.folder / all[i]->first); });
+    Hash hash;
+    hash.add(document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    for (const auto& [file, digits] : files) hash.add(digits);
+    return hash.digits();
+}
+
+}  // namespace aa

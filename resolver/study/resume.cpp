@@ -1,0 +1,142 @@
+#include "study/resume.h"
+
+#include <algorithm>
+#include <set>
+
+#include "image/error.h"
+#include "study/external.h"
+#include "study/prepare.h"
+#include "study/warm_up.h"
+
+namespace aa {
+namespace fs = std::filesystem;
+namespace {
+
+void requireSame(const RunResults& a, const RunResults& b, const RunOptions& o) {
+    const auto same = [&](const std::string& what, const std::string& before, const std::string& now) {
+        if (before != now)
+            throw InputError((o.out / "results.json").string() + ": cannot go on: " + what + " was " + before +
+                             " and is " + now + "; run as before, or without --resume and --add");
+    };
+    const auto program = [](const RunResults& r) { return r.programVersion + " " + r.provenance.commit; };
+    same("the program", program(a), program(b));
+    same("the precision", a.precision, b.precision);
+    const auto device = [](const RunResults& r) {
+        return r.device ? r.device->name + " " + r.device->precision : "none";
+    };
+    same("the device", device(a), device(b));
+    same("the shot's content", a.shotHash, b.shotHash);
+    same("the protocol", "'" + inOneField(a.protocol) + "'", "'" + inOneField(b.protocol) + "'");
+    same("the number of frames", std::to_string(a.framesAsked), std::to_string(b.framesAsked));
+    same("what is measured and written", "'" + a.asked + "'", "'" + b.asked + "'");
+}
+const MethodResult* find(const RunResults& run, const std::string& text) {
+    const auto it = std::find_if(run.methods.begin(), run.methods.end(), [&](const auto& m) { return m.text == text; });
+    return it == run.methods.end() ? nullptr : &*it;
+}
+MethodSpec specOf(const MethodResult& m, const Protocol& protocol) {
+    return m.family == kExternalFamily ? externalMethod(m.id, m.source, protocol.display) : parseMethod(m.text);
+}
+bool isPictureName(const std::string& name) {
+    const size_t digits = std::min(name.find_first_not_of("0123456789", name.starts_with('-') ? 1 : 0), name.size());
+    const std::string end = name.substr(digits);
+    return digits >= 6 && (end == ".exr" || end == ".png" || end == ".layers.exr");
+}
+}  // namespace
+
+Resumption goOnWith(RunResults earlier, const ShotReader& shot, RunOptions& o) {
+    Resumption r{std::move(earlier), {}, {}};
+    std::vector<MethodSpec> given = o.methods;
+    for (const MethodResult& m : r.before.methods) {
+        const auto again =
+            std::find_if(given.begin(), given.end(), [&](const auto& s) { return s.folderName() == m.folder; });
+        r.all.push_back(again == given.end() ? specOf(m, o.protocol) : *again);
+        if (again != given.end()) given.erase(again);
+    }
+    r.all.insert(r.all.end(), given.begin(), given.end());
+    o.allMethods = o.methods = r.all;
+    requireSame(r.before, describeRun(shot.manifest(), o), o);
+
+    // What the whole set of methods decides for each of them must be what it was when it ran.
+    const size_t warmUp = warmUpPasses(o, shot.manifest()) * o.frames.size();
+    const bool overTime = planInput(shot, o).overTime;
+    std::set<std::string> running;  // and whose peers have to
+    const auto isFinished = [&](const MethodSpec& spec) {
+        const MethodResult* m = find(r.before, spec.text);
+        return m && m->frames.size() == o.frames.size() && r.before.warmUpFrames == warmUp &&
+               (m->temporal.has_value() == overTime || r.before.isReference(*m));
+    };
+    for (const MethodSpec& spec : r.all)
+        if (!isFinished(spec)) running.insert(withoutStages(spec.text));
+    o.methods.clear();
+    for (const MethodSpec& spec : r.all) {
+        const bool isNeeded = !running.empty() && spec.text == o.protocol.reference;
+        // Methods that differ in their stages alone share the mask of rejected history.
+        if (isNeeded || running.contains(withoutStages(spec.text)))
+            o.methods.push_back(spec);
+        else
+            r.kept.push_back(spec.text);
+    }
+    for (const MethodSpec& spec : o.methods)
+        if (const MethodResult* m = find(r.before, spec.text)) o.known[spec.text] = m->frames;
+    return r;
+}
+
+void merge(const Resumption& r, RunResults& results, std::vector<TileErrors>& errors) {
+    if (results.methods.empty()) results = r.before;  // nothing had to run
+    std::vector<MethodResult> methods;
+    std::vector<TileErrors> tiles;
+    for (const MethodSpec& spec : r.all) {
+        const auto ran = std::find_if(results.methods.begin(), results.methods.end(),
+                                      [&](const auto& m) { return m.text == spec.text; });
+        const bool isKept = std::find(r.kept.begin(), r.kept.end(), spec.text) != r.kept.end();
+        if (isKept) {
+            methods.push_back(*find(r.before, spec.text));
+            tiles.push_back(tileErrorsOf(r.before, methods.back()));
+        } else {
+            const auto k = size_t(ran - results.methods.begin());
+            methods.push_back(*ran);
+            tiles.push_back(k < errors.size() ? errors[k] : TileErrors{});
+        }
+    }
+    results.methods = std::move(methods);
+    errors = std::move(tiles);
+    results.complete = std::all_of(results.methods.begin(), results.methods.end(),
+                                   [&](const auto& m) { return m.frames.size() == results.framesAsked; });
+}
+
+Earlier clearEarlier(const RunOptions& o) {
+    Earlier found;
+    std::error_code ignored;
+    if (!fs::exists(o.out / "results.json", ignored)) return found;
+    RunResults before;
+    try {
+        before = readResults(o.out);
+    } catch (const InputError&) {
+        return found;  // nobody knows what it names
+    }
+    std::set<std::string> runs, folders = {"truth"};
+    for (const MethodSpec& spec : o.every()) runs.insert(spec.folderName());
+    if (o.protocol.reference.empty()) runs.insert("truth");
+    for (const MethodResult& m : before.methods) {
+        if (!runs.contains(m.folder)) found.methods.push_back(m.text);
+        if (fs::path(m.folder).filename() == m.folder && m.folder != "..") folders.insert(m.folder);
+    }
+    const auto clear = [&](const fs::path& folder, bool stays) {
+        for (fs::directory_iterator it(folder, ignored), end; !ignored && it != end; it.increment(ignored))
+            if (it->is_regular_file(ignored) && isPictureName(it->path().filename().string()))
+                fs::remove(it->path(), ignored);
+        ignored.clear();
+        if (!stays) fs::remove(folder, ignored);  // where nothing else lies in it
+        ignored.clear();
+    };
+    for (const auto& folder : folders) {
+        clear(o.out / folder, runs.contains(folder));
+        for (const auto& kind : before.maps) clear(o.out / "maps" / kind.first / folder, false);
+    }
+    for (const char* file : {"sheet.png", "report.html"})
+        if (fs::exists(o.out / file, ignored)) found.files.emplace_back(file);
+    return found;
+}
+
+}  // namespace aa
