@@ -10,6 +10,7 @@
 #include "image/folder_claim.h"
 #include "image/json_text.h"
 #include "methods/method.h"
+#include "shot/import/engine.h"
 #include "shot/import/folder.h"
 #include "shot/manifest.h"
 
@@ -17,7 +18,7 @@ namespace aa {
 namespace {
 struct Options {
     ImportOptions import;
-    std::string from, out, jitter = "none", camera;
+    std::string from, out, layout, jitter = "none", camera;
     std::vector<std::string> truth;
     std::string truthFilter = "unknown";
     bool json = false, quiet = false;
@@ -82,14 +83,16 @@ int import(Options& o) {
     const FolderClaim claim(o.import.out);
     ImportReport report;
     bool interrupted = false;
+    const EngineImportOptions engine{o.from, o.layout, o.out, o.import.name};
     withThreads(o.threads, [&] {
-        const size_t files = renderedFrames(o.import.from).size();
+        const size_t files = o.layout.empty() ? renderedFrames(o.import.from).size() : engineFrames(engine);
         TerminalProgress progress("import", files, o.quiet);
-        report = importBlender(o.import, [&](int frame) {
+        const auto goOn = [&](int frame) {
             progress.step("frame " + std::to_string(frame));
             interrupted = progress.interrupted();
             return !interrupted;
-        });
+        };
+        report = o.layout.empty() ? importBlender(o.import, goOn) : importEngine(engine, goOn);
     });
     for (const auto& w : report.warnings) std::fprintf(stderr, "warning: %s\n", w.c_str());
     if (o.json)
@@ -102,8 +105,11 @@ int import(Options& o) {
 
 void addImport(CommandLine& line, Context& context) {
     auto o = std::make_shared<Options>();
-    Command c = line.command("import", "A folder of Blender's own multilayer EXRs to a shot");
-    c.option("DIR", o->from, "folder of rendered frames, OpenEXR MultiLayer; the last number of a name is its frame")
+    Command c =
+        line.command("import", "A folder of Blender's own multilayer EXRs, or of an engine's frames, to a shot");
+    c.option("DIR", o->from,
+             "folder of rendered frames: OpenEXR MultiLayer, the last number of a name is its frame; or what --layout "
+             "describes")
         .required();
     c.option("-o,--out", o->out, "folder of the shot; an interrupted import goes on there").required();
     c.option("--view-layer", o->import.viewLayer, "which view layer, where there are several");
@@ -122,7 +128,14 @@ void addImport(CommandLine& line, Context& context) {
     c.option("--ids", o->import.ids, "object ids: from the pass index, Cryptomatte, or the better of them")
         .oneOf({"auto", "index", "cryptomatte"});
     c.flag("--static", o->import.isStatic, "camera and objects rest; without it, the pixels tell");
-    c.option("--name", o->import.name, "of the shot; default the folder's");
+    Option layout = c.option("--layout", o->layout,
+                             "JSON that says how an engine writes its frames: files, channels, units and signs "
+                             "(docs/format.md); it takes the place of all options but --name");
+    layout.typeName("FILE");
+    for (const char* other :
+         {"--view-layer", "--view", "--truth", "--truth-filter", "--jitter", "--camera", "--ids", "--static"})
+        layout.excludes(other);
+    c.option("--name", o->import.name, "of the shot; default the folder's, or the layout's");
     c.option("--fps", o->import.fps, "frames per second").range(1e-3, 1e6);
     c.option("-j,--threads", o->threads, "threads; 0 = all processors").range(0, 1024);
     c.flag("--json", o->json, "the summary as JSON");

@@ -17,6 +17,8 @@ struct FrameNotes {
     int jitterStart = 0, jitterPeriod = 1;
     bool jitterPremultiplied = false;
 };
+// The same from a document that is part of `file`, which errors name.
+FrameNotes parseFrameNotes(const nlohmann::json& document, const std::filesystem::path& file);
 FrameNotes readFrameNotes(const std::filesystem::path& file);  // throws InputError
 
 }  // namespace aa

@@ -300,8 +300,11 @@ Manifest readManifest(const fs::path& shot) {
 FrameNotes readFrameNotes(const fs::path& file) {
     std::error_code ignored;
     if (!fs::exists(file, ignored)) throw InputError(file.string() + ": no such file");
+    return parseFrameNotes(parseJson(readText(file), file.string(), kAdvice), file);
+}
+
+FrameNotes parseFrameNotes(const json& document, const fs::path& file) {
     const std::string name = file.string();
-    const json document = parseJson(readText(file), name, kAdvice);
     const Member doc(document, "", name);
     FrameNotes notes;
     if (const auto j = doc.find("jitter")) {
