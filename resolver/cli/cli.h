@@ -56,6 +56,7 @@ void addSweep(CommandLine& line, Context& context);
 void addAngles(CommandLine& line, Context& context);
 void addDevices(CommandLine& line, Context& context);
 void addSurvey(CommandLine& line, Context& context);
+void addGate(CommandLine& line, Context& context);
 void addVerify(CommandLine& line, Context& context);
 void addHelp(CommandLine& line, Context& context);
 void addCompletion(CommandLine& line, Context& context);

@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
     const auto commands = {
         aa::addList,   aa::addPlan,    aa::addCheck,  aa::addRun,       aa::addFilter,     aa::addBench, aa::addSheet,
         aa::addReport, aa::addCompare, aa::addSynth,  aa::addLearnRsaa, aa::addImport,     aa::addSweep, aa::addAngles,
-        aa::addSurvey, aa::addDevices, aa::addVerify, aa::addHelp,      aa::addCompletion,
+        aa::addSurvey, aa::addDevices, aa::addVerify, aa::addHelp,      aa::addCompletion, aa::addGate,
     };
     for (const auto add : commands) add(line, context);
     try {

@@ -349,7 +349,17 @@ class Case:
             encoding="utf-8",
             errors="surrogateescape",
         )
-        command = self.rng.choice(["report", "sheet"])
+        command = self.rng.choice(["report", "sheet", "gate"])
+        if command == "gate":
+            self.allowed.add(1)  # damage may make a figure worse
+            self.arguments = [
+                "gate",
+                str(self.corpus.folder / "run"),
+                str(run),
+                "--tol",
+                "time=50%",
+            ]
+            return
         self.arguments = [
             command,
             str(run),
