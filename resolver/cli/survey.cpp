@@ -4,9 +4,11 @@
 #include <cstdio>
 #include <fstream>
 #include <iostream>
+#include <optional>
 #include <sstream>
 
 #include "cli/cli.h"
+#include "cli/progress.h"
 #include "image/error.h"
 #include "image/io.h"
 
@@ -33,7 +35,7 @@ struct MakeOptions {
     SurveyOptions survey;
     std::vector<std::string> questions;
     std::string out, file, introFile, seed;
-    bool overwrite = false;
+    bool overwrite = false, quiet = false;
     WorkOptions work;
 };
 // A key that is lost leaves the answers to its survey without a meaning.
@@ -48,7 +50,7 @@ void refuseAnotherKey(const fs::path& file, const std::string& survey) {
         throw InputError(file.string() + ": expected no other survey's key, found that of " + found +
                          ", which its answers need; give another -o, or --overwrite");
 }
-void make(MakeOptions& o) {
+void make(MakeOptions& o, Context& context) {
     const Exec exec = o.work.exec();
     for (const auto& q : o.questions) o.survey.questions.push_back({q, "--question '" + q + "'", false});
     if (!o.file.empty()) {
@@ -71,7 +73,17 @@ void make(MakeOptions& o) {
     fs::path page = o.out;
     if (page.extension() != ".html") page /= "survey.html";
     Survey survey;
-    withThreads(o.work.threads, [&] { survey = makeSurvey(o.survey, exec); });
+    {
+        std::optional<TerminalProgress> progress;  // ends its line before the results
+        withThreads(o.work.threads, [&] {
+            survey = makeSurvey(o.survey, exec,
+                                [&](size_t steps) { return progress.emplace("survey", steps, o.quiet).callbacks(); });
+        });
+    }
+    if (survey.page.empty()) {  // Ctrl-C: part of a survey is none
+        context.exitCode = 130;
+        return;
+    }
     if (!o.overwrite) refuseAnotherKey(keyBeside(page), survey.key.survey);
     if (page.has_parent_path()) makeWritableFolder(page.parent_path());
     writeText(page, survey.page);
@@ -189,7 +201,7 @@ void score(const ScoreOptions& o) {
     for (const auto& file : written) std::printf("%s%s\n", &file == &written[0] ? "\n" : "", file.c_str());
 }
 
-void addMake(Command& survey) {
+void addMake(Command& survey, Context& context) {
     auto o = std::make_shared<MakeOptions>();
     Command c = survey.command("make", "A page on which viewers judge pictures of runs, and its key");
     o->survey.title = "Which picture is better?";
@@ -204,8 +216,9 @@ void addMake(Command& survey) {
     c.option("--intro", o->introFile, "a text file in place of the page's introduction, a paragraph per line");
     c.option("--seed", o->seed, "number from which the codes of pictures follow; default by chance");
     c.flag("--overwrite", o->overwrite, "replace the key of another survey: answers to it can then not be scored");
+    c.flag("--quiet", o->quiet, "no progress");
     addWorkOptions(c, o->work);
-    c.run([o] { make(*o); });
+    c.run([o, &context] { make(*o, context); });
 }
 void addScore(Command& survey) {
     auto o = std::make_shared<ScoreOptions>();
@@ -220,9 +233,9 @@ void addScore(Command& survey) {
 }
 }  // namespace
 
-void addSurvey(CommandLine& line, Context&) {
+void addSurvey(CommandLine& line, Context& context) {
     Command survey = line.command("survey", "What viewers say: make a survey of a run's pictures, score its answers");
-    addMake(survey);
+    addMake(survey, context);
     addScore(survey);
 }
 

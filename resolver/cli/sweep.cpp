@@ -8,6 +8,8 @@
 #include "cli/choose.h"
 #include "cli/run_arguments.h"
 #include "image/folder_claim.h"
+#include "image/io.h"
+#include "report/sweep.h"
 
 namespace aa {
 namespace {
@@ -44,21 +46,28 @@ void execute(const Options& o, Context& context) {
         if (progress.interrupted()) context.exitCode = 130;
     });
     printReplaced(all, run.out);
+    const std::filesystem::path page = run.out / "sweep.html";
+    writeText(page, sweepHtml(all, sweeping));
     if (o.run.json) {
         std::cout << toJsonText(all) << "\n";
         return;
     }
     printTable(all);
-    std::printf("%zu variants in %zu pass%s over the frames\nresults: %s\n", all.methods.size(), passes,
-                passes == 1 ? "" : "es", (run.out / "results.json").c_str());
+    for (const auto& sentence : sweepWords(all, sweeping)) std::printf("%s\n", sentence.c_str());
+    std::printf("%zu variants in %zu pass%s over the frames\nresults: %s\ncurves: %s\n", all.methods.size(), passes,
+                passes == 1 ? "" : "es", (run.out / "results.json").c_str(), page.c_str());
 }
 }  // namespace
 
 void addSweep(CommandLine& line, Context& context) {
     auto o = std::make_shared<Options>();
-    Command c = line.command("sweep", "Run every combination of some parameters' values");
+    Command c = line.command(
+        "sweep", "Run every combination of some parameters' values: the best in words, curves and heat maps");
     addMethodOption(c, o->sweep.methods, "the method, with what stays the same", true).required();
-    c.option("--vary", o->sweep.vary, "NAME=VALUE,VALUE,...: a parameter and its values; repeat for more parameters")
+    c.option(
+         "--vary", o->sweep.vary,
+         "NAME=VALUE,VALUE,...: a parameter and its values, FIRST..LAST:STEP among them, as in 0.8..0.98:0.02; repeat "
+         "for more parameters")
         .required()
         .oneEach();
     c.option("--with", o->sweep.with, "methods to compare with, as they are, with commas; none = without")

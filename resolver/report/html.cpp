@@ -79,9 +79,7 @@ std::string reportHtml(const RunResults& run, const ViewerData& viewer, const st
             if (p.subSamples == 0 || p.subSamples == run.subSamples)
                 data["publishedMemory"][std::string(m.id)] = {{"megabytes", p.megabytes}, {"source", p.source}};
     data["viewer"] = viewerJson(viewer, run, {});
-    return filled(web::html, {{"title", forHtml("AA Resolve: " + run.shot)},
-                              {"css", web::css},
-                              {"viewerCss", web::viewerCss},
+    return filled(web::html, {{"head", pageHead("AA Resolve: " + run.shot, {web::css, web::viewerCss})},
                               {"chart", web::chart},
                               {"common", web::common},
                               {"viewer", viewerScripts()},

@@ -1,16 +1,25 @@
 #include "report/page.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "image/json_text.h"
+#include "report/web/web_files.h"
 
 namespace aa {
 
 std::string filled(std::string_view page, std::initializer_list<std::pair<std::string_view, std::string_view>> places) {
-    std::string text(page);
-    for (const auto& [name, with] : places) {
-        const std::string place = "{{" + std::string(name) + "}}";
-        text.replace(text.find(place), place.size(), with);
+    std::string text;
+    for (size_t at = 0; at < page.size();) {
+        const size_t open = page.find("{{", at);
+        text += page.substr(at, open == std::string_view::npos ? open : open - at);
+        if (open == std::string_view::npos) break;
+        const size_t close = page.find("}}", open);
+        const auto place = std::find_if(places.begin(), places.end(), [&](const auto& p) {
+            return close != std::string_view::npos && p.first == page.substr(open + 2, close - open - 2);
+        });
+        text += place == places.end() ? std::string_view("{{") : place->second;
+        at = place == places.end() ? open + 2 : close + 2;
     }
     return text;
 }
@@ -30,6 +39,12 @@ std::string forHtml(const std::string& text) {
     std::string safe;
     for (const char c : text) safe += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
     return safe;
+}
+
+std::string pageHead(const std::string& title, std::initializer_list<std::string_view> styles) {
+    std::string all;
+    for (const auto style : styles) all += "<style>" + std::string(style) + "</style>\n";
+    return filled(web::head, {{"title", forHtml(title)}, {"styles", all}});
 }
 
 }  // namespace aa

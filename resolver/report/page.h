@@ -8,10 +8,13 @@
 
 namespace aa {
 
-// `page` with each {{name}} replaced, in this order; a place is filled once.
+// `page` with each {{name}} replaced. What is put in is not searched for places again.
 std::string filled(std::string_view page, std::initializer_list<std::pair<std::string_view, std::string_view>> places);
 // Inside <script>, "</" would end it; "<\/" is the same JSON string.
 std::string forScript(const nlohmann::ordered_json& j);
 std::string forHtml(const std::string& text);
+
+// Everything before <body>, the same on every page: `title` is text, `styles` are inlined in this order.
+std::string pageHead(const std::string& title, std::initializer_list<std::string_view> styles);
 
 }  // namespace aa

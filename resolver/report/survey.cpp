@@ -110,26 +110,40 @@ class Maker {
             runs_.push_back({name, folder, std::move(results), std::move(frames)});
         }
     }
-    Survey made() {
+    // Pictures that will be read and measured. What is wrong with a question is said before the long work.
+    size_t steps() {
+        size_t steps = 0;
+        forQuestions([&](const QuestionWish& wish, const SurveyRun& run) {
+            steps += methodsOf(wish, run, options_.methods).size() * framesOf(wish, run).size();
+        });
+        return steps;
+    }
+    Survey made(const Progress& progress) {
+        progress_ = &progress;
+        forQuestions([&](const QuestionWish& wish, const SurveyRun& run) { askOf(wish, run); });
+        return progress.interrupted() ? Survey{} : finished();
+    }
+
+  private:
+    template <class Ask>
+    void forQuestions(Ask ask) {
         for (const auto& q : options_.questions) {
             try {
-                ask(wishOf(q.text));
+                forRuns(wishOf(q.text), ask);
             } catch (const UsageError& e) {
                 const std::string message = q.place + ": " + e.what();
                 if (q.inFile) throw InputError(message);
                 throw UsageError(message);
             }
         }
-        if (options_.questions.empty()) ask({});
-        return finished();
+        if (options_.questions.empty()) forRuns({}, ask);
     }
-
-  private:
-    void ask(const QuestionWish& wish) {
+    template <class Ask>
+    void forRuns(const QuestionWish& wish, Ask ask) {
         bool asked = false;
         for (size_t r = 0; r < runs_.size(); r++)
             if (wish.run.empty() || wish.run == runs_[r].name || wish.run == std::to_string(r + 1))
-                askOf(wish, runs_[r]), asked = true;
+                ask(wish, runs_[r]), asked = true;
         if (asked) return;
         std::vector<std::string> names;
         for (const SurveyRun& r : runs_) names.push_back(r.name);
@@ -154,6 +168,7 @@ class Maker {
         Window region;
         bool allHaveTruth = true;
         for (const int frame : frames) {
+            if (progress_->interrupted()) return;
             const Pictures p = loadPictures(few, run.folder, frame, exec_);
             if (frame == frames[0]) region = regionOf(wish.region, p);
             if (p.truth.empty() && withTruth)
@@ -168,6 +183,7 @@ class Maker {
                 if (found != few.methods.end() && !truth.empty() && !few.isReference(*found))
                     figures[i].add(shown, truth, exec_);
                 files[m].push_back("data:image/png;base64," + base64(pngBytes(shown)));
+                progress_->step(run.name + ", frame " + std::to_string(frame) + ", " + methods[m]);
             }
         }
         std::map<std::string, SurveyPicture> pictures;
@@ -257,9 +273,7 @@ class Maker {
         std::string& id = key.survey;
         for (; int(id.size()) < kDigits; all <<= 4) id += "0123456789abcdef"[all >> 60];
         page["survey"] = id;
-        survey_.page = filled(web::surveyHtml, {{"title", forHtml(options_.title)},
-                                                {"css", web::css},
-                                                {"surveyCss", web::surveyCss},
+        survey_.page = filled(web::surveyHtml, {{"head", pageHead(options_.title, {web::css, web::surveyCss})},
                                                 {"common", web::common},
                                                 {"surveyJs", web::surveyJs},
                                                 {"data", forScript(page)}});
@@ -271,6 +285,7 @@ class Maker {
 
     const SurveyOptions& options_;
     const Exec& exec_;
+    const Progress* progress_ = nullptr;
     Codes codes_;
     std::vector<SurveyRun> runs_;
     Survey survey_;
@@ -279,6 +294,10 @@ class Maker {
 };
 }  // namespace
 
-Survey makeSurvey(const SurveyOptions& options, const Exec& exec) { return Maker(options, exec).made(); }
+Survey makeSurvey(const SurveyOptions& options, const Exec& exec, const std::function<Progress(size_t)>& progressOf) {
+    Maker maker(options, exec);
+    const Progress progress = progressOf ? progressOf(maker.steps()) : Progress{};
+    return maker.made(progress);
+}
 
 }  // namespace aa

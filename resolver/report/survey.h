@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "report/gallery.h"
+#include "study/progress.h"
 #include "study/survey_scores.h"
 
 namespace aa {
@@ -41,8 +42,10 @@ struct Survey {
     size_t pictures = 0, bytes = 0;  // embedded files
     std::vector<std::string> notes;  // what would mislead: same pixels, a method named in a text, a large page
 };
-// Throws UsageError (a question on the command line), InputError (in a file; a run, method, frame that is not there).
-Survey makeSurvey(const SurveyOptions& options, const Exec& exec);
+// `progressOf` is told how many pictures there are to read. When interrupted, the page is empty. Throws UsageError (a
+// question on the command line), InputError (in a file; a run, method, frame that is not there).
+Survey makeSurvey(const SurveyOptions& options, const Exec& exec,
+                  const std::function<Progress(size_t steps)>& progressOf = {});
 
 // The page of the scores. With the survey's own page (empty: without) it shows the pictures beside them.
 std::string scoresHtml(const SurveyScores& scores, const std::string& surveyPage);

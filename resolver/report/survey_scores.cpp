@@ -27,8 +27,7 @@ json picturesOf(const std::string& page, const std::string& survey) {
 std::string scoresHtml(const SurveyScores& scores, const std::string& surveyPage) {
     const json data = {{"scores", json::parse(toJsonText(scores))},
                        {"pictures", picturesOf(surveyPage, scores.key->survey)}};
-    return filled(web::scoresHtml, {{"title", forHtml("Scores: " + scores.key->title)},
-                                    {"css", web::css},
+    return filled(web::scoresHtml, {{"head", pageHead("Scores: " + scores.key->title, {web::css})},
                                     {"chart", web::chart},
                                     {"common", web::common},
                                     {"js", web::scoresJs},

@@ -1,8 +1,11 @@
 #include "study/sweep.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <iterator>
+#include <optional>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "image/error.h"
@@ -14,28 +17,90 @@ namespace aa {
 namespace {
 constexpr size_t kMostVariants = 256;  // every pair of variants is compared
 
-struct Variation {
-    std::string name;
-    std::vector<std::string> values;
+// A number as it is written, so that 0.8 + 0.02 is 0.82: units of 10^-places.
+struct Decimal {
+    long long units = 0;
+    int places = 0;
+    // Of more places, so that two can be added.
+    long long at(int more) const {
+        long long scaled = units;
+        for (int i = places; i < more; i++) scaled *= 10;
+        return scaled;
+    }
 };
+std::optional<Decimal> decimalFrom(std::string_view text) {
+    constexpr size_t kDigits = 9;  // of both sides of the point: float has no more
+    Decimal d;
+    const bool negative = text.starts_with('-');
+    if (negative) text.remove_prefix(1);
+    bool point = false;
+    size_t digits = 0;
+    for (const char c : text) {
+        if (c == '.' && !point) {
+            point = true;
+        } else if (c >= '0' && c <= '9' && digits < kDigits) {
+            d.units = 10 * d.units + (c - '0'), digits++;
+            if (point) d.places++;
+        } else {
+            return {};
+        }
+    }
+    if (digits == 0) return {};
+    if (negative) d.units = -d.units;
+    return d;
+}
+std::string textOf(Decimal d) {
+    while (d.places > 0 && d.units % 10 == 0) d.units /= 10, d.places--;
+    std::string digits = std::to_string(std::abs(d.units));
+    if (int(digits.size()) <= d.places) digits.insert(0, size_t(d.places) + 1 - digits.size(), '0');
+    if (d.places > 0) digits.insert(digits.size() - size_t(d.places), ".");
+    return (d.units < 0 ? "-" : "") + digits;
+}
 
-// "kmin=0.5,0.8,1"
-Variation parseVariation(const std::string& text) {
+// "0.8..0.98:0.02", of whole numbers "1..8"; another text is a value itself.
+std::vector<std::string> valuesOf(const std::string& text) {
+    const size_t dots = text.find("..");
+    if (dots == std::string::npos) return {text};
+    const size_t colon = text.find(':', dots);
+    const std::string_view all = text;
+    const auto first = decimalFrom(all.substr(0, dots)), last = decimalFrom(all.substr(dots + 2, colon - dots - 2));
+    auto step = colon == std::string::npos ? std::optional<Decimal>() : decimalFrom(all.substr(colon + 1));
+    if (colon == std::string::npos && first && last && first->places == 0 && last->places == 0) step = Decimal{1, 0};
+    if (!first || !last || !step || step->units <= 0)
+        throw UsageError(
+            "--vary: expected FIRST..LAST:STEP with a step above 0, as in 0.8..0.98:0.02 or, of whole numbers, 1..8, "
+            "found '" +
+            text + "'");
+    const int places = std::max({first->places, last->places, step->places});
+    if (first->at(places) > last->at(places))
+        throw UsageError("--vary: expected FIRST..LAST:STEP that ascends, found '" + text + "'");
+    std::vector<std::string> values;
+    for (long long v = first->at(places); v <= last->at(places) && values.size() <= kMostVariants;
+         v += step->at(places))
+        values.push_back(textOf({v, places}));
+    return values;
+}
+
+// "kmin=0.5,0.8..1:0.1"
+SweepAxis parseVariation(const std::string& text) {
     const size_t equals = text.find('=');
-    Variation v{text.substr(0, equals), {}};
+    SweepAxis v{text.substr(0, equals), {}};
     for (size_t at = equals; at != std::string::npos; at = text.find(',', at + 1)) {
         const size_t end = text.find(',', at + 1);
-        v.values.push_back(text.substr(at + 1, end == std::string::npos ? end : end - at - 1));
+        for (auto& value : valuesOf(text.substr(at + 1, end == std::string::npos ? end : end - at - 1)))
+            v.values.push_back(std::move(value));
     }
     const std::set<std::string> different(v.values.begin(), v.values.end());
     if (v.name.empty() || different.contains("") || different.size() != v.values.size() || v.values.empty())
-        throw UsageError("--vary: expected NAME=VALUE,VALUE,... with different values, found '" + text + "'");
+        throw UsageError(
+            "--vary: expected NAME=VALUE,VALUE,... or NAME=FIRST..LAST:STEP with different values, found '" + text +
+            "'");
     return v;
 }
 
-std::vector<std::string> combinations(const std::string& method, const std::vector<Variation>& variations) {
+std::vector<std::string> combinations(const std::string& method, const std::vector<SweepAxis>& variations) {
     std::vector<std::string> all = {""};
-    for (const Variation& v : variations) {
+    for (const SweepAxis& v : variations) {
         std::vector<std::string> longer;
         for (const auto& before : all)
             for (const auto& value : v.values)
@@ -65,15 +130,19 @@ size_t bytesOf(const MethodSpec& spec, const ShotReader& shot, const RunOptions&
 }
 }  // namespace
 
+std::vector<SweepAxis> axesOf(const SweepOptions& o) {
+    std::vector<SweepAxis> axes;
+    for (const auto& text : o.vary) axes.push_back(parseVariation(text));
+    return axes;
+}
+
 std::vector<MethodSpec> variantsOf(const SweepOptions& o) {
-    std::vector<Variation> variations;
+    const std::vector<SweepAxis> variations = axesOf(o);
     size_t count = 1;
     std::set<std::string> varied;
-    for (const auto& text : o.vary) {
-        variations.push_back(parseVariation(text));
-        count *= variations.back().values.size();
-        if (!varied.insert(variations.back().name).second)
-            throw UsageError("--vary: parameter '" + variations.back().name + "' is varied twice");
+    for (const SweepAxis& axis : variations) {
+        count *= axis.values.size();
+        if (!varied.insert(axis.name).second) throw UsageError("--vary: parameter '" + axis.name + "' is varied twice");
         if (count * o.methods.size() > kMostVariants)
             throw UsageError("--vary: more than " + std::to_string(kMostVariants) +
                              " combinations; vary fewer parameters at a time");
@@ -153,6 +222,26 @@ RunResults Sweep::run(const Progress& progress) {
     all.replacedMethods = earlier.methods, all.outdatedFiles = earlier.files;
     finish(all, errors);
     writeResults(all, run_.out);
+    return all;
+}
+
+std::vector<SweepVariant> sweepVariants(const RunResults& run, const SweepOptions& o) {
+    const std::vector<SweepAxis> axes = axesOf(o);
+    std::vector<SweepVariant> all;
+    for (const auto& method : o.methods) {
+        SweepVariant v{0, method, std::vector<size_t>(axes.size())};
+        for (const auto& text : combinations(method, axes)) {
+            const auto found = std::find_if(run.methods.begin(), run.methods.end(),
+                                            [&](const MethodResult& m) { return m.text == text; });
+            v.method = size_t(found - run.methods.begin());
+            if (found != run.methods.end()) all.push_back(v);
+            // The last axis runs fastest, as in combinations().
+            for (size_t a = axes.size(); a-- > 0;) {
+                if (++v.at[a] < axes[a].values.size()) break;
+                v.at[a] = 0;
+            }
+        }
+    }
     return all;
 }
 

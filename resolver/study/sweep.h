@@ -10,10 +10,16 @@ namespace aa {
 
 struct SweepOptions {
     std::vector<std::string> methods;          // with what stays the same
-    std::vector<std::string> vary;             // "NAME=VALUE,VALUE,..."
+    std::vector<std::string> vary;             // "NAME=VALUE,VALUE,...", a value also FIRST..LAST:STEP
     std::vector<std::string> with = {"noaa"};  // methods to compare with, as they are; none = without
     double memoryMb = 2048;                    // that all variants may hold at a time
 };
+// A parameter and its values, as they are written.
+struct SweepAxis {
+    std::string name;
+    std::vector<std::string> values;
+};
+std::vector<SweepAxis> axesOf(const SweepOptions& options);  // throws UsageError: malformed
 // Throws UsageError: malformed, a parameter varied twice or fixed and varied, more than 256 combinations, a value that
 // the method refuses.
 std::vector<MethodSpec> variantsOf(const SweepOptions& options);
@@ -36,5 +42,14 @@ class Sweep {
     std::vector<std::vector<MethodSpec>> parts_;
     size_t steps_ = 0;
 };
+
+// A variant among the results.
+struct SweepVariant {
+    size_t method;           // in RunResults::methods
+    std::string base;        // as SweepOptions::methods gives it
+    std::vector<size_t> at;  // its value on every axis
+};
+// Those that the results hold, which of an interrupted sweep are not all.
+std::vector<SweepVariant> sweepVariants(const RunResults& run, const SweepOptions& options);
 
 }  // namespace aa

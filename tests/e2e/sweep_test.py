@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 
 from program import ProgramTest, main
 
@@ -69,7 +70,7 @@ class Sweep(ProgramTest):
                 "--memory",
                 memory,
             )
-            said.append(done.stdout.splitlines()[-2])
+            said.append(next(x for x in done.stdout.splitlines() if " variants in " in x))
         self.assertIn("6 variants in 1 pass ", said[0])
         self.assertNotIn("1 pass ", said[1])
         self.assertEqual(
@@ -82,6 +83,77 @@ class Sweep(ProgramTest):
         ]
         self.assertEqual(images[0], images[1])
 
+    def test_ranges_and_the_best_in_words(self) -> None:
+        out = self.folder / "ranges"
+        done = self.aaresolve(
+            "sweep",
+            self.shot,
+            "-m",
+            "uncharted",
+            "--vary",
+            "kmin=0.1,0.8..0.95:0.05",
+            "-o",
+            out,
+            "-q",
+        )
+        texts = [m["text"] for m in self.results(out)["methods"]]
+        self.assertEqual(
+            texts,
+            ["noaa", *(f"uncharted:kmin={k}" for k in ("0.1", "0.8", "0.85", "0.9", "0.95"))],
+        )
+        results = self.results(out)
+        best = max(results["methods"][1:], key=lambda m: m["pooled"]["psnr"])
+        words = next(
+            line for line in done.stdout.splitlines() if line.startswith("uncharted: kmin=")
+        )
+        self.assertIn(best["text"].split(":")[1] + " is best", words)
+        self.assertRegex(words, r"over no anti-aliasing \(95 %: [+-]\d+\.\d\d to [+-]\d+\.\d\d\)")
+        # Those that its words say cannot be told apart from it are those of the pairs.
+        index = texts.index(best["text"])
+        alike = {
+            texts[p["first"] + p["second"] - index]
+            for p in results["pairs"]
+            if index in (p["first"], p["second"]) and not p["resolved"]
+        } - {"noaa"}
+        for text in texts[1:]:
+            value = text.split("=")[1]
+            told = re.search(
+                rf"(?<![\d.]){re.escape(value)}(?![\d.])", words.split(" over no anti")[1]
+            )
+            if len(alike) < 3 and text != best["text"]:
+                self.assertEqual(bool(told), text in alike, words)
+        page = (out / "sweep.html").read_text()
+        self.assertIn(f"curves: {out}/sweep.html", done.stdout)
+        data = json.loads(page.split('id="data">')[1].split("</script>")[0].replace("<\\/", "</"))
+        self.assertEqual(data["axes"][0]["values"], ["0.1", "0.8", "0.85", "0.9", "0.95"])
+        self.assertEqual([v["best"] for v in data["variants"]].count(True), 1)
+        self.assertEqual({v["text"] for v in data["variants"] if v["alike"]}, alike)
+        # Here less is better: at the end of what was tried one is told to go on, at the parameter's own end not.
+        self.assertEqual(best["text"], "uncharted:kmin=0.1")
+        self.assertIn("go on beyond 0.1", done.stdout)
+        limit = self.aaresolve(
+            "sweep", self.shot, "-m", "uncharted", "--vary", "kmin=0,0.4,0.9", "-o", out, "-q"
+        )
+        self.assertIn("uncharted: kmin=0 is best", limit.stdout)
+        self.assertNotIn("go on beyond", limit.stdout)
+        whole = self.folder / "whole"
+        self.aaresolve(
+            "sweep",
+            self.shot,
+            "-m",
+            "uncharted",
+            "--vary",
+            "kmin=0..1",
+            "-o",
+            whole,
+            "-q",
+            "--json",
+        )
+        self.assertEqual(
+            [m["text"] for m in self.results(whole)["methods"][1:]],
+            ["uncharted:kmin=0", "uncharted:kmin=1"],
+        )
+
     def test_usage(self) -> None:
         def refuse(says: str, *vary: str, method: str = "uncharted") -> None:
             words = [w for v in vary for w in ("--vary", v)]
@@ -92,6 +164,13 @@ class Sweep(ProgramTest):
         refuse("NAME=VALUE", "kmin")
         refuse("NAME=VALUE", "kmin=")
         refuse("NAME=VALUE", "kmin=0.5,0.5")
+        refuse("FIRST..LAST:STEP", "kmin=0.5..0.9")
+        refuse("FIRST..LAST:STEP", "kmin=0.5..0.9:0")
+        refuse("FIRST..LAST:STEP", "kmin=0.5..0.9:-0.1")
+        refuse("FIRST..LAST:STEP", "kmin=a..b:c")
+        refuse("that ascends", "kmin=0.9..0.5:0.1")
+        refuse("different values", "kmin=0.5,0.4..0.6:0.1")
+        refuse("more than 256", "kmin=0..1:0.0001")
         refuse("varied twice", "kmin=0.1,0.2", "kmin=0.3")
         refuse("did you mean 'kmin'", "kmni=0.5")
         refuse("0 to 1", "kmin=0.5,2")

@@ -9,4 +9,6 @@ extern const std::string_view viewerCss, viewerCodec, viewerPictures, viewerMeas
     viewerState, viewerStage, viewerInput, viewerFigures, viewerControls, viewerCrops, viewerMain;
 extern const std::string_view surveyHtml, surveyCss, surveyJs;  // the survey's page
 extern const std::string_view scoresHtml, scoresJs;             // and that of its scores
+extern const std::string_view head;                             // of every page
+extern const std::string_view sweepHtml, sweepJs;               // the page of a sweep
 }  // namespace aa::web

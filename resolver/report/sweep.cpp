@@ -1,0 +1,228 @@
+#include "report/sweep.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "image/colour_map.h"
+#include "methods/spec.h"
+#include "report/format.h"
+#include "report/page.h"
+#include "report/web/web_files.h"
+#include "study/non_finite.h"
+
+namespace aa {
+namespace {
+using json = nlohmann::ordered_json;
+
+std::string joined(const std::vector<std::string>& parts) {
+    std::string all;
+    for (size_t i = 0; i < parts.size(); i++) all += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
+    return all;
+}
+bool isNumber(const std::string& text) {
+    char* end = nullptr;
+    std::strtod(text.c_str(), &end);
+    return !text.empty() && *end == 0;
+}
+bool isNumeric(const SweepAxis& axis) { return std::all_of(axis.values.begin(), axis.values.end(), isNumber); }
+
+// PSNR of one method less that of another, with its interval.
+struct Gain {
+    double value, low, high;
+    bool resolved;
+};
+std::optional<Gain> gainOf(const RunResults& run, size_t a, size_t b) {
+    for (const auto& p : run.pairs) {
+        const Comparison& c = p.comparison;
+        if (p.first == a && p.second == b) return Gain{c.gainDb, c.gainLow, c.gainHigh, c.resolved};
+        if (p.first == b && p.second == a) return Gain{-c.gainDb, -c.gainHigh, -c.gainLow, c.resolved};
+    }
+    return {};
+}
+
+// A swept method's variants that have figures, best first.
+struct Base {
+    std::string text;
+    std::vector<SweepVariant> ranked;
+    std::vector<SweepVariant> alike;  // that cannot be told apart from the best
+};
+double mseOf(const RunResults& run, const SweepVariant& v) { return run.methods[v.method].pooled->mean.mse; }
+std::vector<Base> basesOf(const RunResults& run, const SweepOptions& o) {
+    std::vector<Base> bases;
+    for (const auto& text : o.methods) bases.push_back({text, {}, {}});
+    for (const SweepVariant& v : sweepVariants(run, o))
+        for (Base& b : bases)
+            if (b.text == v.base && run.methods[v.method].pooled && !run.isReference(run.methods[v.method]))
+                b.ranked.push_back(v);
+    for (Base& b : bases) {
+        std::stable_sort(b.ranked.begin(), b.ranked.end(),
+                         [&](const auto& x, const auto& y) { return mseOf(run, x) < mseOf(run, y); });
+        for (size_t i = 1; i < b.ranked.size(); i++)
+            if (const Comparison* c = comparisonOf(run, b.ranked[0].method, b.ranked[i].method); c && !c->resolved)
+                b.alike.push_back(b.ranked[i]);
+    }
+    return bases;
+}
+std::string valuesAt(const std::vector<SweepAxis>& axes, const SweepVariant& v) {
+    std::string all;
+    for (size_t a = 0; a < axes.size(); a++) all += (a ? ", " : "") + axes[a].name + "=" + axes[a].values[v.at[a]];
+    return all;
+}
+// "kmin=0.86 and 0.88"; of several parameters each in full.
+std::string alikeInWords(const std::vector<SweepAxis>& axes, std::vector<SweepVariant> alike) {
+    std::sort(alike.begin(), alike.end(), [](const auto& x, const auto& y) { return x.at < y.at; });
+    std::vector<std::string> parts;
+    constexpr size_t kListed = 6;
+    // A run of neighbours on a single axis is a range.
+    const bool range =
+        axes.size() == 1 && alike.size() > 2 && alike.back().at[0] - alike.front().at[0] + 1 == alike.size();
+    if (range)
+        return axes[0].name + "=" + axes[0].values[alike.front().at[0]] + " to " + axes[0].values[alike.back().at[0]] +
+               " (" + std::to_string(alike.size()) + " values)";
+    for (size_t i = 0; i < std::min(alike.size(), kListed); i++)
+        parts.push_back(axes.size() > 1 ? "(" + valuesAt(axes, alike[i]) + ")"
+                                        : (i == 0 ? axes[0].name + "=" : "") + axes[0].values[alike[i].at[0]]);
+    if (alike.size() > kListed) parts.push_back(std::to_string(alike.size() - kListed) + " more");
+    return joined(parts);
+}
+size_t noaaOf(const RunResults& run) {
+    const auto found =
+        std::find_if(run.methods.begin(), run.methods.end(), [](const auto& m) { return m.id == "noaa"; });
+    return size_t(found - run.methods.begin());
+}
+
+// Whether the parameter takes no value beyond this one.
+bool isLimit(const std::string& method, const std::string& name, double value) {
+    const MethodSpec spec = parseMethod(method);
+    for (const ParamSpec& p : spec.method->params)
+        if (p.name == name) return value <= p.min || value >= p.max;
+    return false;
+}
+
+void tell(const RunResults& run, const std::vector<SweepAxis>& axes, const Base& b, std::vector<std::string>& words) {
+    const SweepVariant& best = b.ranked.front();
+    const auto& pooled = *run.methods[best.method].pooled;
+    std::string s = b.text + ": " + valuesAt(axes, best) + " is best, PSNR " + decibels(pooled.mean.psnr);
+    if (const auto gain = gainOf(run, best.method, noaaOf(run)))
+        s += ", " + signedDecibelNumber(gain->value) +
+             " dB over no anti-aliasing (95 %: " + signedDecibelNumber(gain->low) + " to " +
+             signedDecibelNumber(gain->high) + ")";
+    if (b.alike.empty())
+        s += b.ranked.size() > 1 ? "; every other value is worse by more than the error bar." : ".";
+    else if (b.alike.size() + 1 == b.ranked.size())
+        s += "; no other value can be told apart from it.";
+    else
+        s += "; " + alikeInWords(axes, b.alike) + " cannot be told apart from it.";
+    words.push_back(s);
+    if (b.ranked.size() > 1)
+        if (const auto loss = gainOf(run, b.ranked.back().method, best.method))
+            words.push_back(b.text + ": the worst is " + valuesAt(axes, b.ranked.back()) + ", " +
+                            signedDecibelNumber(loss->value) + " dB against the best (95 %: " +
+                            signedDecibelNumber(loss->low) + " to " + signedDecibelNumber(loss->high) + ").");
+    for (size_t a = 0; a < axes.size(); a++) {
+        const size_t at = best.at[a], count = axes[a].values.size();
+        if (count < 3 || !isNumeric(axes[a]) || (at > 0 && at + 1 < count)) continue;
+        if (isLimit(b.text, axes[a].name, std::strtod(axes[a].values[at].c_str(), nullptr))) continue;
+        words.push_back(b.text + ": the best " + axes[a].name + " lies at the " + (at == 0 ? "lower" : "upper") +
+                        " end of the values that were tried; go on beyond " + axes[a].values[at] + ".");
+    }
+}
+json numberOrName(double v) {
+    if (const char* word = nonFinite(v)) return word;
+    return v;
+}
+json interval(const std::optional<Gain>& g) {
+    return g ? json{{"value", g->value}, {"low", g->low}, {"high", g->high}} : json();
+}
+
+// Figures that curves and maps can show, besides those with intervals.
+json figuresOf(const MethodResult& m, const RunResults& run, json& legend) {
+    json values = json::object();
+    const auto add = [&](const std::string& name, const std::string& title, const char* better, double v) {
+        if (std::none_of(legend.begin(), legend.end(), [&](const json& f) { return f["name"] == name; }))
+            legend.push_back({{"name", name}, {"title", title}, {"better", better}});
+        values[name] = numberOrName(v);
+    };
+    if (m.pooled)
+        for (const Figure* f : figuresIn(run))
+            if (const auto v = m.pooled->mean.figure(f->name))
+                add(std::string(f->name), std::string(f->title) + (f->form == FigureForm::decibels ? ", dB" : ""),
+                    f->higherIsBetter ? "high" : "low", *v);
+    if (m.nsPerPixel > 0) add("time", "Time, ns per pixel", "low", m.nsPerPixel);
+    if (m.temporal) {
+        const auto flicker = run.isStatic ? m.temporal->flickerStatic : m.temporal->flickerMoving;
+        if (flicker) add("flicker", "Flicker, 8-bit codes", "low", *flicker);
+        if (m.temporal->ghostExcess) add("ghosts", "Ghosts, times no anti-aliasing", "low", *m.temporal->ghostExcess);
+    }
+    return values;
+}
+}  // namespace
+
+std::vector<std::string> sweepWords(const RunResults& run, const SweepOptions& o) {
+    std::vector<std::string> words;
+    const auto axes = axesOf(o);
+    const auto bases = basesOf(run, o);
+    std::vector<const Base*> judged;
+    for (const Base& b : bases)
+        if (!b.ranked.empty()) judged.push_back(&b), tell(run, axes, b, words);
+    if (judged.empty()) return {"There is no ground truth: only times and pictures can be compared."};
+    if (judged.size() < 2) return words;
+    std::stable_sort(judged.begin(), judged.end(),
+                     [&](const Base* x, const Base* y) { return mseOf(run, x->ranked[0]) < mseOf(run, y->ranked[0]); });
+    const auto gain = gainOf(run, judged[0]->ranked[0].method, judged[1]->ranked[0].method);
+    std::string s = "Of the methods at their best, " + judged[0]->text + " is first";
+    if (gain)
+        s += ", " + signedDecibelNumber(gain->value) + " dB against " + judged[1]->text +
+             (gain->resolved ? "" : ", which cannot be told apart from it");
+    words.insert(words.begin(), s + ".");
+    return words;
+}
+
+std::string sweepHtml(const RunResults& run, const SweepOptions& o) {
+    const auto axes = axesOf(o);
+    json data = {{"shot", run.shot},
+                 {"line", runLine(run)},
+                 {"version", run.programVersion},
+                 {"words", sweepWords(run, o)},
+                 {"protocol", inWords(run.protocol)},
+                 {"reference", referenceInWords(run.protocol)}};
+    data["axes"] = json::array();
+    for (const auto& a : axes)
+        data["axes"].push_back({{"name", a.name}, {"values", a.values}, {"numeric", isNumeric(a)}});
+    data["bases"] = o.methods;
+    data["figures"] = json::array();
+    data["variants"] = json::array();
+    const auto bases = basesOf(run, o);
+    const size_t noaa = noaaOf(run);
+    for (const SweepVariant& v : sweepVariants(run, o)) {
+        const auto base = std::find_if(bases.begin(), bases.end(), [&](const Base& b) { return b.text == v.base; });
+        const bool best = !base->ranked.empty() && base->ranked[0].method == v.method;
+        const bool alike =
+            std::any_of(base->alike.begin(), base->alike.end(), [&](const auto& x) { return x.method == v.method; });
+        json one = {{"text", run.methods[v.method].text},
+                    {"base", base - bases.begin()},
+                    {"at", v.at},
+                    {"best", best},
+                    {"alike", alike}};
+        one["gain"] = interval(gainOf(run, v.method, noaa));
+        if (best)
+            one["toBest"] = interval(Gain{0, 0, 0, false});
+        else
+            one["toBest"] =
+                interval(base->ranked.empty() ? std::optional<Gain>() : gainOf(run, v.method, base->ranked[0].method));
+        one["values"] = figuresOf(run.methods[v.method], run, data["figures"]);
+        data["variants"].push_back(std::move(one));
+    }
+    for (int i = 0; i < 256; i++) {
+        const Colour c = errorColour(i / 255.0);
+        data["colours"].push_back({int(255 * c[0] + 0.5f), int(255 * c[1] + 0.5f), int(255 * c[2] + 0.5f)});
+    }
+    return filled(web::sweepHtml, {{"head", pageHead("AA Resolve: sweep of " + run.shot, {web::css})},
+                                   {"chart", web::chart},
+                                   {"common", web::common},
+                                   {"js", web::sweepJs},
+                                   {"data", forScript(data)}});
+}
+
+}  // namespace aa
