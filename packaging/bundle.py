@@ -7,6 +7,8 @@ Makes BUILD/bundle/aaresolve-VERSION-linux-x64/ and BUILD/aaresolve-VERSION-linu
     bin/aaresolve            what is called; it starts the program with the newer of the system's libraries and ours
     libexec/aaresolve        the program, whose run path is ../lib
     lib/                     its libraries, unchanged files of this machine's distribution
+    lib/aaresolve/           its module for PDF, WebP and GIF, and what that alone needs: X11's libraries are among it,
+                             which a graphics driver must find in the system and not here
     lib/unless-newer/        those that a graphics driver may load too: launcher.cpp says why they lie apart
     share/aaresolve/fonts/   the contact sheet's font
     share/man, share/bash-completion, share/zsh, share/fish
@@ -36,6 +38,7 @@ SYSTEMS = re.compile(
 )
 # Which a graphics driver may load as well: see launcher.cpp. Each with those that must come from the same compiler.
 UNLESS_NEWER = {"libstdc++.so.6": ("libgcc_s.so.1",), "libz.so.1": ()}
+DOCUMENTS = "aaresolve_documents.so"
 FONTS = ("DejaVuSans.ttf", "DejaVuSans-Bold.ttf")
 FONT_PACKAGE = "fonts-dejavu-core"
 # Read while compiling, of which the program then holds parts.
@@ -107,6 +110,7 @@ class Bundle:
     def put_programs(self) -> None:
         self.put(self.build / "packaging/aaresolve_launcher", "bin/aaresolve", 0o755)
         self.put(self.build / "packaging/aaresolve_bundled", "libexec/aaresolve", 0o755)
+        self.put(self.build / DOCUMENTS, f"lib/aaresolve/{DOCUMENTS}")
 
     def put_libraries(self) -> None:
         found = libraries(self.folder / "libexec/aaresolve")
@@ -118,6 +122,10 @@ class Bundle:
         for soname, file in found.items():
             self.put(file, apart.get(soname, f"lib/{soname}"))
             self.packages.add(package_of(file))
+        for soname, file in libraries(self.folder / "lib/aaresolve" / DOCUMENTS).items():
+            if soname not in found and soname not in apart:
+                self.put(file, f"lib/aaresolve/{soname}")
+                self.packages.add(package_of(file))
 
     def put_fonts(self) -> None:
         for name in FONTS:

@@ -12,7 +12,14 @@ namespace aa {
 Option& Option::required() { return option_->required(), *this; }
 Option& Option::range(int least, int most) { return option_->check(CLI::Range(least, most)), *this; }
 Option& Option::range(double least, double most) { return option_->check(CLI::Range(least, most)), *this; }
-Option& Option::notNegative() { return option_->check(CLI::NonNegativeNumber), *this; }
+Option& Option::notNegative() {
+    const auto refusal = [](const std::string& text) {
+        double value = 0;
+        if (CLI::detail::lexical_cast(text, value) && value >= 0) return std::string();
+        return "expected a number from 0 on, found '" + text + "'";
+    };
+    return option_->check(CLI::Validator([refusal](std::string& text) { return refusal(text); }, "NUMBER >= 0")), *this;
+}
 Option& Option::oneOf(std::initializer_list<std::string> texts) {
     return option_->check(CLI::IsMember(std::vector<std::string>(texts))), *this;
 }

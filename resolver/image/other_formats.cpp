@@ -1,9 +1,6 @@
 #include "image/other_formats.h"
 
-#include <dlfcn.h>
-
 #include <algorithm>
-#include <cstdlib>
 #include <fstream>
 #include <memory>
 #include <string_view>
@@ -11,7 +8,7 @@
 
 #include "formats/module.h"
 #include "image/error.h"
-#include "image/program_folder.h"
+#include "image/own_module.h"
 
 namespace aa {
 namespace fs = std::filesystem;
@@ -25,33 +22,16 @@ struct Module {
     AaReadPicture read = nullptr;
     AaClosePicture close = nullptr;
     std::string why;  // it cannot be used
+    bool usable() const { return open && read && close; }
 };
 
-std::vector<fs::path> places() {
-    std::vector<fs::path> all;
-    if (const fs::path folder = programFolder(); !folder.empty())
-        all = {folder / kModule, folder.parent_path() / "lib" / "aaresolve" / kModule};
-    if (const char* named = std::getenv(kVariable)) all.push_back(named);
-    return all;
-}
 Module load() {
-    Module m;
-    const auto all = places();
-    std::error_code ignored;
-    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& p) { return fs::exists(p, ignored); });
-    if (found == all.end()) {
-        m.why = "looked for";
-        for (const auto& place : all) m.why += (place == all.front() ? " " : ", ") + place.string();
-        return m;
-    }
-    void* library = dlopen(found->c_str(), RTLD_NOW | RTLD_LOCAL);  // stays loaded: its threads may run
-    if (library) {
-        m.open = reinterpret_cast<AaOpenPicture>(dlsym(library, kAaOpenPicture));
-        m.read = reinterpret_cast<AaReadPicture>(dlsym(library, kAaReadPicture));
-        m.close = reinterpret_cast<AaClosePicture>(dlsym(library, kAaClosePicture));
-    }
-    if (!m.open || !m.read || !m.close)
-        if (const char* why = dlerror()) m.why = why;
+    OwnModule library(kModule, kVariable);
+    Module m{library.function<AaOpenPicture>(kAaOpenPicture),
+             library.function<AaReadPicture>(kAaReadPicture),
+             library.function<AaClosePicture>(kAaClosePicture),
+             {}};
+    if (!m.usable()) m.why = library.whyNot();
     return m;
 }
 
@@ -77,7 +57,7 @@ LoadedImage readOtherFormat(const fs::path& file) {
     if (std::error_code ignored; fs::is_directory(file, ignored))
         throw InputError(file.string() + ": is a folder; expected an image, PNG or EXR");
     static const Module module = load();
-    if (!module.close)
+    if (!module.usable())
         throw InputError(file.string() + ": neither PNG nor EXR but a " + kindOf(file) + ", which needs the module " +
                          kModule + " and OpenImageIO (" + module.why + "); install them, set " + kVariable +
                          " to the module's path, or convert the file to PNG or EXR");

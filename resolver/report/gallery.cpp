@@ -75,42 +75,84 @@ class SummedArea {
     std::vector<double> sum_;
 };
 
-double variance(const std::vector<double>& v) {
-    double mean = 0, sum = 0;
-    for (const double x : v) mean += x / double(v.size());
-    for (const double x : v) sum += (x - mean) * (x - mean);
-    return sum / double(v.size());
+// A window and what tells it from others.
+struct Candidate {
+    Window window;
+    std::vector<double> rms;        // of each method's error, or of all differences alone; later about its mean
+    double interest = 0;            // the spread of these, or the one
+    double alongX = 0, alongY = 0;  // direction of its edges by twice the angle, shorter where there are many
+};
+
+std::vector<Candidate> candidatesOf(const Pictures& p, const Window& within, int width, int height) {
+    std::vector<Candidate> all;
+    // A quarter of the window is a fine enough step: the window around a feature still holds all of it.
+    const int stepX = std::max(1, width / 4), stepY = std::max(1, height / 4);
+    for (int y = within.y; y + height <= within.y + within.height; y += stepY)
+        for (int x = within.x; x + width <= within.x + within.width; x += stepX)
+            all.push_back({{x, y, width, height}, {}});
+    const int w = p.methods[0].width(), h = p.methods[0].height();
+    const auto add = [&](auto squares) {
+        const SummedArea sums(w, h, squares);
+        for (Candidate& c : all) c.rms.push_back(std::sqrt(sums.mean(c.window)));
+    };
+    if (!p.truth.empty()) {
+        for (const Rgb& m : p.methods) add([&](int x, int y) { return squaredDifference(m, p.truth, x, y); });
+    } else {
+        add([&](int x, int y) {
+            double sum = 0;
+            for (size_t i = 0; i < p.methods.size(); i++)
+                for (size_t k = 0; k < i; k++) sum += squaredDifference(p.methods[i], p.methods[k], x, y);
+            return sum;
+        });
+    }
+    for (Candidate& c : all) {
+        if (c.rms.size() == 1) {
+            c.interest = c.rms[0];
+            continue;
+        }
+        double mean = 0, squares = 0;
+        for (const double v : c.rms) mean += v / double(c.rms.size());
+        for (double& v : c.rms) v -= mean, squares += v * v;
+        c.interest = std::sqrt(squares / double(c.rms.size()));
+    }
+    std::erase_if(all, [](const Candidate& c) { return c.interest <= 1e-6; });
+    // The structure tensor of luma [Foerstner 1987].
+    const Rgb& picture = p.truth.empty() ? p.methods[0] : p.truth;
+    const auto luma = [&](int x, int y) {
+        return (picture.c[0].clamped(x, y) + 2 * picture.c[1].clamped(x, y) + picture.c[2].clamped(x, y)) / 4.0;
+    };
+    const auto gradient = [&](int x, int y) {
+        return std::pair(luma(x + 1, y) - luma(x - 1, y), luma(x, y + 1) - luma(x, y - 1));
+    };
+    const auto sums = [&](auto of) {
+        return SummedArea(w, h, [&](int x, int y) {
+            const auto [gx, gy] = gradient(x, y);
+            return of(gx, gy);
+        });
+    };
+    const SummedArea xx = sums([](double gx, double) { return gx * gx; }),
+                     yy = sums([](double, double gy) { return gy * gy; }),
+                     diagonal = sums([](double gx, double gy) { return (gx + gy) * (gx + gy); });
+    for (Candidate& c : all) {
+        const double x = xx.mean(c.window), y = yy.mean(c.window), energy = x + y;
+        if (energy <= 0) continue;
+        c.alongX = (x - y) / energy;
+        c.alongY = (diagonal.mean(c.window) - energy) / energy;
+    }
+    return all;
 }
 
-// How much a window tells; see the header.
-class Interest {
-  public:
-    explicit Interest(const Pictures& p) {
-        const int w = p.methods[0].width(), h = p.methods[0].height();
-        errors_ = !p.truth.empty();
-        if (errors_) {
-            for (const Rgb& m : p.methods)
-                sums_.emplace_back(w, h, [&](int x, int y) { return squaredDifference(m, p.truth, x, y); });
-        } else {
-            sums_.emplace_back(w, h, [&](int x, int y) {
-                double sum = 0;
-                for (size_t i = 0; i < p.methods.size(); i++)
-                    for (size_t k = 0; k < i; k++) sum += squaredDifference(p.methods[i], p.methods[k], x, y);
-                return sum;
-            });
-        }
+// From 0, nothing in common, to 1: by how the methods rank there and by the direction of the edges.
+double likeness(const Candidate& a, const Candidate& b) {
+    double product = 0, squareA = 0, squareB = 0;
+    for (size_t i = 0; i < a.rms.size(); i++) {
+        product += a.rms[i] * b.rms[i];
+        squareA += a.rms[i] * a.rms[i], squareB += b.rms[i] * b.rms[i];
     }
-    double of(const Window& window) const {
-        if (sums_.size() == 1) return sums_[0].mean(window);
-        std::vector<double> rms;
-        for (const auto& s : sums_) rms.push_back(std::sqrt(s.mean(window)));
-        return variance(rms);
-    }
-
-  private:
-    bool errors_ = false;
-    std::vector<SummedArea> sums_;
-};
+    const double ranks = std::max(0.0, product / std::sqrt(squareA * squareB));
+    const double edges = 1 - std::hypot(a.alongX - b.alongX, a.alongY - b.alongY) / 2;
+    return (ranks + edges) / 2;
+}
 }  // namespace
 
 std::vector<int> framesWithPictures(const RunResults& run) {
@@ -145,30 +187,31 @@ std::vector<Window> mostTellingWindows(const Pictures& pictures, int width, int 
     const Window within =
         pictures.region.value_or(Window{0, 0, pictures.methods[0].width(), pictures.methods[0].height()});
     width = std::min(width, within.width), height = std::min(height, within.height);
-    const Interest interest(pictures);
-    struct Candidate {
-        double interest;
-        Window window;
-    };
-    std::vector<Candidate> candidates;
-    // A quarter of the window is a fine enough step: the window around a feature still holds all of it.
-    const int stepX = std::max(1, width / 4), stepY = std::max(1, height / 4);
-    for (int y = within.y; y + height <= within.y + within.height; y += stepY)
-        for (int x = within.x; x + width <= within.x + within.width; x += stepX) {
-            const Window window{x, y, width, height};
-            if (const double i = interest.of(window); i > 1e-12) candidates.push_back({i, window});
-        }
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.interest > b.interest; });
+    std::vector<Candidate> candidates = candidatesOf(pictures, within, width, height);
+    // What is like a window that was chosen, or near it, counts less: a quarter at least of each stays.
+    constexpr double kLeast = 0.25;
+    const double far = std::hypot(within.width, within.height) / 6;
     std::vector<Window> chosen;
-    for (const auto& c : candidates) {
-        if (int(chosen.size()) == count) break;
-        if (std::none_of(chosen.begin(), chosen.end(), [&](const Window& o) { return o.overlaps(c.window); }))
-            chosen.push_back(c.window);
+    while (int(chosen.size()) < count && !candidates.empty()) {
+        const Candidate best =
+            *std::max_element(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
+                return a.interest < b.interest;  // the first of equals
+            });
+        chosen.push_back(best.window);
+        std::erase_if(candidates, [&](const Candidate& c) { return c.window.overlaps(best.window); });
+        for (Candidate& c : candidates) {
+            const double apart = std::hypot(c.window.x - best.window.x, c.window.y - best.window.y) / far;
+            c.interest *= kLeast + (1 - kLeast) * (1 - likeness(c, best));
+            c.interest *= kLeast + (1 - kLeast) * (1 - std::exp(-apart * apart));
+        }
     }
     std::sort(chosen.begin(), chosen.end(),
               [](const Window& a, const Window& b) { return std::pair(a.x, a.y) < std::pair(b.x, b.y); });
     return chosen;
+}
+
+std::vector<Window> tellingCrops(const Pictures& pictures, int count) {
+    return mostTellingWindows(pictures, kTellingCropPx, kTellingCropPx, count);
 }
 
 }  // namespace aa

@@ -32,10 +32,14 @@ struct LinearPictures {
 // Throws InputError as above, and where a file holds 8-bit codes only.
 LinearPictures loadLinearPictures(const RunResults& run, const std::filesystem::path& folder, int frame);
 
-// Up to `count` windows that do not overlap, in which the methods differ most: greatest variance between methods of the
+// Up to `count` windows that do not overlap, in which the methods differ most: greatest spread between methods of the
 // root mean squared error against the truth; without truth, of the colours themselves; of a single method, its error.
-// Only in the region, where there is one. Windows without any difference are left out; left to right, then top to
-// bottom.
+// After the first, those count less that lie near a chosen one or are like it: the same methods are good there, edges
+// run the same way. Only in the region, where there is one. Windows without any difference are left out; left to right,
+// then top to bottom.
 std::vector<Window> mostTellingWindows(const Pictures& pictures, int width, int height, int count);
+// The crops of contact sheet and report.
+inline constexpr int kTellingCrops = 3, kTellingCropPx = 48;
+std::vector<Window> tellingCrops(const Pictures& pictures, int count = kTellingCrops);
 
 }  // namespace aa

@@ -127,6 +127,11 @@ struct RunOnDisk {
         finish(run, errors);
     }
     ~RunOnDisk() { fs::remove_all(folder); }
+    Shown shown() const {
+        const auto order = presentationOrder(run);
+        return {run, order,
+                [this, order](int frame) { return loadPictures(onlyMethods(run, order), folder, frame, {}); }};
+    }
 };
 
 TEST(Sheet, OrderIsBestFirstAndNoaaLast) {
@@ -137,19 +142,20 @@ TEST(Sheet, DrawsEverySize) {
     for (const auto& [w, h] : {std::pair{1, 1}, {3, 200}, {200, 3}, {64, 48}, {700, 500}})
         for (const bool truth : {true, false}) {
             const RunOnDisk r("aaresolve_sheet_sizes", w, h, 3, truth);
-            const Pictures p = loadPictures(r.run, r.folder, 3, {});
-            EXPECT_EQ(p.truth.empty(), !truth);
-            writeSheet(r.run, p, r.folder / "sheet.png", {});
-            const LoadedImage sheet = readImage(r.folder / "sheet.png");
-            EXPECT_LE(sheet.rgb.width(), 2400);
-            EXPECT_GT(sheet.rgb.height(), 3 * 216);
+            EXPECT_EQ(loadPictures(r.run, r.folder, 3, {}).truth.empty(), !truth);
+            const auto pages = sheet(r.shown(), 3, {}, {});
+            ASSERT_EQ(pages.size(), 1u);
+            pages[0].writePng(r.folder / "sheet.png");
+            const LoadedImage drawn = readImage(r.folder / "sheet.png");
+            EXPECT_LE(drawn.rgb.width(), 2400);
+            EXPECT_GT(drawn.rgb.height(), 3 * 100);
             EXPECT_FALSE(hasTemporaryFiles(r.folder));
         }
 }
 TEST(Sheet, ShowsThePixelsAndTheirErrors) {
     const RunOnDisk r("aaresolve_sheet_pixels", 480, 270, 2, true);
-    writeSheet(r.run, loadPictures(r.run, r.folder, 3, {}), r.folder / "sheet.png", {});
-    const Rgb sheet = readImage(r.folder / "sheet.png").rgb;
+    sheet(r.shown(), 3, {}, {})[0].writePng(r.folder / "sheet.png");
+    const Rgb drawn = readImage(r.folder / "sheet.png").rgb;
     // Count the pixels that carry the colour of the wrong block's error: 6 x 6 in each method's error map.
     Rgb exact(480, 270, 0.25f), wrong(480, 270, 0.25f), exactEncoded, wrongEncoded;
     addBlock(wrong, {0, 0, 6, 6}, 0.1f);
@@ -157,10 +163,10 @@ TEST(Sheet, ShowsThePixelsAndTheirErrors) {
     encode(wrong, {}, {}, wrongEncoded);
     const Colour c = errorColour(double(errorMap(wrongEncoded, exactEncoded).at(2, 2)) / kErrorScale);
     int found = 0;
-    for (int y = 0; y < sheet.height(); y++)
-        for (int x = sheet.width() - 520; x < sheet.width(); x++) {
+    for (int y = 0; y < drawn.height(); y++)
+        for (int x = drawn.width() - 520; x < drawn.width(); x++) {
             bool same = true;
-            for (size_t k = 0; k < 3; k++) same &= std::abs(sheet.c[k].at(x, y) - c[k]) < 0.003f;
+            for (size_t k = 0; k < 3; k++) same &= std::abs(drawn.c[k].at(x, y) - c[k]) < 0.003f;
             found += same;
         }
     EXPECT_GE(found, 36);
@@ -187,6 +193,27 @@ TEST(Sheet, MissingPicturesAreNamed) {
     EXPECT_THROW(loadPictures(r.run, r.folder, 3, {}), InputError);
     r.run.methods[1].frames[0].image.clear();
     EXPECT_TRUE(framesWithPictures(r.run).empty());
+}
+TEST(Gallery, CropsDoNotAllShowTheSame) {
+    // An upright edge, most wrong, and a weaker one elsewhere that runs across.
+    Pictures p{.frame = 1, .truth = Rgb(400, 300, 0.2f), .methods = {}};
+    for (auto& plane : p.truth.c) {
+        for (int y = 0; y < 120; y++)
+            for (int x = 60; x < 400; x++) plane.at(x, y) = 0.8f;
+        for (int y = 250; y < 300; y++)
+            for (int x = 200; x < 400; x++) plane.at(x, y) = 0.8f;
+    }
+    p.methods = {p.truth, p.truth, p.truth};
+    for (auto& plane : p.methods[0].c)  // wrong all along the upright edge
+        for (int y = 0; y < 120; y++) plane.at(60, y) = 0.3f;
+    for (auto& plane : p.methods[1].c)  // wrong, less so, along the level one
+        for (int x = 200; x < 400; x++) plane.at(x, 250) = 0.5f;
+    for (auto& m : p.methods) m.fillBorder();
+    const auto two = mostTellingWindows(p, 48, 48, 2);
+    ASSERT_EQ(two.size(), 2u);
+    EXPECT_LT(two[0].x, 61);
+    EXPECT_LT(two[0].y, 120);
+    EXPECT_GT(two[1].y, 200);  // and not the second window of the upright edge
 }
 }  // namespace
 }  // namespace aa

@@ -2,277 +2,496 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
+#include <set>
 
-#include "metrics/maps.h"
-#include "report/canvas.h"
+#include "image/error.h"
 #include "report/format.h"
+#include "report/sheet_label.h"
+#include "report/sheet_layout.h"
 
 namespace aa {
 namespace {
 using Font = Canvas::Font;
 using Align = Canvas::Align;
+constexpr int kLabelWidth = 282, kHeadPx = 15, kHeadStep = 20;
+constexpr int kWidest = 2560;  // px of a free sheet's columns, before they go below each other
 
-// A neutral dark ground: colour judgements need grey around the pictures.
-constexpr Colour kGround{0.105f, 0.105f, 0.108f}, kPanel{0.150f, 0.150f, 0.154f}, kInk{0.925f, 0.925f, 0.92f},
-    kQuiet{0.60f, 0.60f, 0.61f}, kBetter{0.55f, 0.83f, 0.60f}, kWorse{0.93f, 0.56f, 0.50f}, kNote{0.90f, 0.76f, 0.42f};
-constexpr Colour kDetail[] = {{0.30f, 0.78f, 0.95f}, {0.98f, 0.72f, 0.25f}, {0.93f, 0.45f, 0.75f}};
+std::string frameWord(int frame) { return "frame " + std::to_string(frame); }
+std::string placeOf(const Crop& crop) {
+    return "at " + std::to_string(crop.window.x) + ", " + std::to_string(crop.window.y);
+}
+std::string nameOf(const Crop& crop, int magnification) {
+    return (crop.label.empty() ? "" : crop.label + ", ") + placeOf(crop) + "  x" + std::to_string(magnification);
+}
+std::vector<Window> windowsOf(const std::vector<Crop>& crops) {
+    std::vector<Window> all;
+    for (const Crop& c : crops) all.push_back(c.window);
+    return all;
+}
+std::vector<Crop> cropsOf(const Pictures& p, const SheetOptions& o, int most) {
+    if (!o.crops.empty()) return o.crops;
+    std::vector<Crop> crops;
+    for (const Window& w : tellingCrops(p, most)) crops.push_back({w});
+    return crops;
+}
+// Whether the truth is shown too. A reference method is a row of its own.
+bool showsTruth(const Pictures& p) { return !p.truth.empty(); }
 
-constexpr int kMargin = 28, kGap = 14, kLabelWidth = 282, kHeader = 92, kColumnHead = 34, kFooter = 52;
-constexpr int kFrameWidth = 480, kFrameHeight = 320;  // at most; larger frames are shrunk
-constexpr int kDetails = 3, kDetailPx = 48;           // wanted size of a detail in the frame's pixels
-
-struct Layout {
-    int frameWidth, frameHeight, magnification;  // of the full frame; magnification 0 = shrunk
-    int detailSource, detailMagnification;       // px of the frame, px of the sheet per px
-    int rowHeight;
-    std::vector<Window> details;
-    bool errors, overTime;  // overTime: figures of flicker and ghosts in the rows
-    int detailSide() const { return detailSource * detailMagnification; }
-    int frameX() const { return kMargin + kLabelWidth + kGap; }
-    int detailX(size_t i) const { return frameX() + frameWidth + kGap + int(i) * (detailSide() + kGap); }
-    int errorX() const { return detailX(details.size()); }
-    int width() const { return errors ? errorX() + frameWidth + kMargin : errorX() - kGap + kMargin; }
-};
-
-Layout layoutOf(const RunResults& run, const Pictures& p) {
-    Layout l{};
-    l.errors = !p.truth.empty();
-    l.overTime = std::any_of(run.methods.begin(), run.methods.end(), [](const auto& m) { return m.temporal; });
-    const int w = run.width, h = run.height;
-    l.magnification = std::min(kFrameWidth / w, kFrameHeight / h);
-    if (l.magnification > 0) {
-        l.frameWidth = w * l.magnification, l.frameHeight = h * l.magnification;
+std::string titleOf(const RunResults& run) { return "anti-aliasing methods against " + referenceInWords(run.protocol); }
+std::string footOf(const SheetMethods& m, bool figures, bool errors, bool ownCrops) {
+    const RunResults& run = m.run;
+    std::string text = "Best PSNR first, noaa last. Crops: unfiltered pixels";
+    text += ownCrops ? ". " : ", where the methods differ most. ";
+    if (!m.best.empty()) text += "\u2605 best of the methods shown. ";
+    if (errors) text += "Figures and errors: " + inWords(run.protocol) + ". ";
+    if (figures && m.overTime)
+        text += run.isStatic
+                    ? "Flicker: spread over time, 8-bit codes. "
+                    : "Flicker along the motion in 8-bit codes; ghosts: error where something came into view. ";
+    return text;
+}
+SheetLabel truthLabel(const RunResults& run, int width, const Theme& theme, const Canvas& pen, bool brief) {
+    const std::string& method = run.protocol.reference;
+    std::vector<std::string> lines;
+    if (!method.empty()) {
+        lines = {method, "a method of this run, not the truth"};
     } else {
-        const double scale = std::min(double(kFrameWidth) / w, double(kFrameHeight) / h);
-        l.frameWidth = std::max(1, int(std::lround(w * scale))),
-        l.frameHeight = std::max(1, int(std::lround(h * scale)));
+        lines.push_back(run.truthSamplesPerHalf > 0
+                            ? "2 x " + std::to_string(run.truthSamplesPerHalf) + " samples per pixel"
+                            : "exact coverage");
+        if (!run.truthFilter.empty())
+            lines.push_back(run.truthFilter + " filter, " + shortNumber(run.truthFilterWidthPx) + " px");
     }
-    const int side = std::clamp(l.frameHeight, 216, 288);
-    l.detailMagnification = std::max(1, (side + kDetailPx / 2) / kDetailPx);
-    const Window judged = p.region.value_or(Window{0, 0, w, h});
-    l.detailSource = std::min({side / l.detailMagnification, judged.width, judged.height});
-    l.detailMagnification = side / l.detailSource;
-    l.details = mostTellingWindows(p, l.detailSource, l.detailSource, kDetails);
-    l.rowHeight = std::max({l.frameHeight, l.details.empty() ? 0 : l.detailSide(), l.overTime ? 264 : 216});
-    return l;
+    if (brief) return SheetLabel::words(method.empty() ? "Ground truth" : "Reference", {lines[0]}, width, theme, pen);
+    if (run.truthNoise && *run.truthNoise > 0) {
+        lines.push_back("error bar of the MSE " + significant(*run.truthNoise));
+        lines.push_back("(as PSNR " + decibels(psnr(*run.truthNoise)) + ")");
+    }
+    return SheetLabel::words(method.empty() ? "Ground truth" : "Reference", lines, width, theme, pen);
 }
 
-// Whole or shrunk, by the layout.
-Rgb fullFrame(const Rgb& image, const Layout& l, const Exec& exec) {
-    return l.magnification > 0 ? image : shrunk(image, l.frameWidth, l.frameHeight, exec);
+// ---- rows: a method each ----
+// The largest value of a map's scale that is drawn as a bar.
+std::optional<double> scaleOf(const MapKind& kind) {
+    if (kind.name == "error") return kErrorScale;
+    if (kind.name == "flip") return 1.0;
+    return {};
 }
-class Sheet {
+
+class Rows {
   public:
-    Sheet(const RunResults& run, const Pictures& pictures, const Exec& exec)
-        : run_(run),
-          pictures_(pictures),
+    Rows(const Shown& shown, int frame, const SheetOptions& o, const Exec& exec)
+        : shown_(shown),
+          options_(o),
           exec_(exec),
-          order_(presentationOrder(run)),
-          layout_(layoutOf(run, pictures)),
-          canvas_(std::max(layout_.width(), 1100),
-                  kHeader + kColumnHead + int(order_.size() + (layout_.errors ? 1 : 0)) * (layout_.rowHeight + kGap) +
-                      kFooter,
-                  kGround) {}
-
-    void write(const std::filesystem::path& file) {
-        header();
-        columnHeads();
-        int y = kHeader + kColumnHead;
-        if (layout_.errors) {
-            truthRow(y);
-            y += layout_.rowHeight + kGap;
+          theme_(sheetTheme(o.light)),
+          pen_(1, 1, theme_.ground),
+          pictures_(shown.pictures(frame)),
+          methods_(sheetMethods(shown.run, shown.order)) {
+        if (o.cropColumns) crops_ = cropsOf(pictures_, o, kTellingCrops);
+        if (showsTruth(pictures_)) maps_ = o.maps;
+        const PageFormat format = formatOf(o.page);
+        const int room = format.width > 0 ? format.width - 2 * kSheetMargin - kLabelWidth - kSheetGap : 0;
+        layout_ =
+            rowLayout({shown.run.width, shown.run.height, o.frameColumn, windowsOf(crops_), int(maps_.size()), o.zoom},
+                      room, format.name);
+        int x = kSheetMargin + kLabelWidth + kSheetGap;
+        frameX_ = x;
+        if (o.frameColumn) x += layout_.frame.width + kSheetGap;
+        for (const CellSize& c : layout_.crops) cropX_.push_back(x), x += c.width + kSheetGap;
+        for (size_t i = 0; i < maps_.size(); i++) mapX_.push_back(x), x += layout_.frame.width + kSheetGap;
+    }
+    std::vector<Canvas> pages() {
+        SheetSection section;
+        section.lead.push_back(heads());
+        if (showsTruth(pictures_)) {
+            const SheetLabel label = truthLabel(shown_.run, kLabelWidth, theme_, pen_, false);
+            int scales = 0;
+            for (const MapKind* kind : maps_) scales = std::max(scales, scaleHeight(*kind));
+            section.lead.push_back(row(label, pictures_.truth, scales, [this](Canvas& canvas, int y, int height) {
+                for (size_t i = 0; i < maps_.size(); i++) scale(canvas, *maps_[i], mapX_[i], y, height);
+            }));
         }
-        for (size_t i = 0; i < order_.size(); i++, y += layout_.rowHeight + kGap) methodRow(i, y);
-        footer(y);
-        canvas_.writePng(file);
+        for (size_t i = 0; i < methods_.order.size(); i++) {
+            const SheetLabel label = SheetLabel::full(methods_, i, kLabelWidth, theme_, pen_);
+            const Rgb& image = pictures_.methods[i];
+            section.rows.push_back(row(label, image, 0, [this, &image](Canvas& canvas, int y, int height) {
+                for (size_t k = 0; k < maps_.size(); k++)
+                    drawFrame(canvas, map(*maps_[k], image), mapX_[k], y + (height - layout_.frame.height) / 2);
+            }));
+        }
+        return sheetPages({section}, kLabelWidth + kSheetGap + layout_.width, options_.page, theme_,
+                          {shown_.run.shot, titleOf(shown_.run), runLine(shown_.run),
+                           footOf(methods_, true, showsTruth(pictures_), !options_.crops.empty())},
+                          shown_.run.programVersion);
     }
 
   private:
-    void header() {
-        canvas_.text(kMargin, 46, run_.shot, 30, kInk, Font::bold);
-        const int after = kMargin + canvas_.textWidth(run_.shot, 30, Font::bold) + 22;
-        canvas_.text(after, 46,
-                     canvas_.fitted("anti-aliasing methods against " + referenceInWords(run_.protocol),
-                                    canvas_.width() - after - kMargin, 19),
-                     19, kQuiet);
-        canvas_.text(kMargin, 76, canvas_.fitted(runLine(run_), canvas_.width() - 2 * kMargin, 15), 15, kQuiet);
-    }
-    void columnHeads() {
-        const int y = kHeader + 20;
+    SheetItem heads() {
+        struct Head {
+            int x;
+            std::vector<std::string> lines;
+            std::optional<Colour> colour;
+        };
+        std::vector<Head> all;
+        const auto add = [&](int x, int width, const std::string& text, std::optional<Colour> colour = {}) {
+            all.push_back({x, pen_.wrapped(text, width - (colour ? 20 : 0), kHeadPx), colour});
+        };
         int judged = 0;
-        for (const auto& m : run_.methods)
-            if (m.pooled) judged = m.pooled->frames;
-        head(kMargin, kLabelWidth, y, judged > 1 ? "figures over " + std::to_string(judged) + " frames" : "figures");
-        std::string frame = "frame " + std::to_string(pictures_.frame);
-        if (layout_.magnification > 1) frame += ", x" + std::to_string(layout_.magnification);
-        if (layout_.magnification == 0) frame += ", shrunk to " + std::to_string(layout_.frameWidth) + " px";
-        head(layout_.frameX(), layout_.frameWidth, y, frame);
-        for (size_t i = 0; i < layout_.details.size(); i++) {
-            const Window& d = layout_.details[i];
-            canvas_.fill({layout_.detailX(i), y - 11, 12, 12}, kDetail[i]);
-            canvas_.text(layout_.detailX(i) + 20, y,
-                         canvas_.fitted("at " + std::to_string(d.x) + ", " + std::to_string(d.y) + "  x" +
-                                            std::to_string(layout_.detailMagnification),
-                                        layout_.detailSide() - 20, 15),
-                         15, kQuiet);
-        }
-        if (layout_.errors) head(layout_.errorX(), layout_.frameWidth, y, "error");
+        for (const size_t i : methods_.order)
+            if (const auto& pooled = shown_.run.methods[i].pooled) judged = pooled->frames;
+        add(kSheetMargin, kLabelWidth,
+            judged > 1 ? "figures over " + std::to_string(judged) + " frames" : std::string("figures"));
+        std::string frame = frameWord(pictures_.frame);
+        if (layout_.frame.magnification > 1) frame += ", x" + std::to_string(layout_.frame.magnification);
+        if (layout_.frame.magnification == 0) frame += ", shrunk to " + std::to_string(layout_.frame.width) + " px";
+        if (options_.frameColumn) add(frameX_, layout_.frame.width, frame);
+        for (size_t i = 0; i < crops_.size(); i++)
+            add(cropX_[i], layout_.crops[i].width, nameOf(crops_[i], layout_.crops[i].magnification), theme_.ofCrop(i));
+        for (size_t i = 0; i < maps_.size(); i++) add(mapX_[i], layout_.frame.width, std::string(maps_[i]->name));
+        size_t most = 0;
+        for (const Head& h : all) most = std::max(most, h.lines.size());
+        return {int(most) * kHeadStep + 14, [all, most, this](Canvas& canvas, int y) {
+                    for (const Head& h : all) {
+                        int line = y + int(most - h.lines.size()) * kHeadStep + kHeadStep;
+                        if (h.colour) canvas.fill({h.x, line - 11, 12, 12}, *h.colour);
+                        for (const auto& t : h.lines) {
+                            canvas.text(h.x + (h.colour ? 20 : 0), line, t, kHeadPx, theme_.quiet);
+                            line += kHeadStep;
+                        }
+                    }
+                }};
     }
-    void head(int x, int width, int y, const std::string& text) {
-        canvas_.text(x, y, canvas_.fitted(text, width, 15), 15, kQuiet);
+    template <class More>
+    SheetItem row(const SheetLabel& label, const Rgb& image, int least, More more) {
+        const int height = std::max({layout_.height, label.height(), least});
+        return {height + kSheetGap, [this, label, &image, more, height](Canvas& canvas, int y) {
+                    canvas.fill({kSheetMargin, y, kLabelWidth, height}, theme_.panel);
+                    label.draw(canvas, kSheetMargin, y);
+                    pictures(canvas, image, y, height);
+                    more(canvas, y, height);
+                }};
     }
-    void pictureCells(const Rgb& image, int y) {
-        const Rgb full = fullFrame(image, layout_, exec_);
-        const int top = y + (layout_.rowHeight - layout_.frameHeight) / 2;
-        canvas_.draw(full, layout_.frameX(), top, std::max(1, layout_.magnification));
-        const double scale = double(layout_.frameWidth) / run_.width;
-        const auto inFrame = [&](const Window& w) {
-            return Window{layout_.frameX() + int(w.x * scale), top + int(w.y * scale),
-                          std::max(1, int(w.width * scale)), std::max(1, int(w.height * scale))};
-        };
-        if (pictures_.region) canvas_.frame(inFrame(*pictures_.region), kInk, 1);
-        for (size_t i = 0; i < layout_.details.size(); i++) {
-            const Window& d = layout_.details[i];
-            canvas_.frame(inFrame(d), kDetail[i], 1);
-            const Window cell{layout_.detailX(i), y + (layout_.rowHeight - layout_.detailSide()) / 2,
-                              layout_.detailSide(), layout_.detailSide()};
-            canvas_.draw(cropped(image, d), cell.x, cell.y, layout_.detailMagnification);
-            canvas_.fill({cell.x, cell.y + cell.height, cell.width, 3}, kDetail[i]);
+    void drawFrame(Canvas& canvas, const Rgb& image, int x, int y) {
+        canvas.draw(image, x, y, std::max(1, layout_.frame.magnification));
+    }
+    void pictures(Canvas& canvas, const Rgb& image, int y, int height) {
+        if (options_.frameColumn) {
+            const bool isShrunk = layout_.frame.magnification == 0;
+            const int top = y + (height - layout_.frame.height) / 2;
+            drawFrame(canvas, isShrunk ? shrunk(image, layout_.frame.width, layout_.frame.height, exec_) : image,
+                      frameX_, top);
+            const double scale = double(layout_.frame.width) / shown_.run.width;
+            const auto inFrame = [&](const Window& w) {
+                return Window{frameX_ + int(w.x * scale), top + int(w.y * scale), std::max(1, int(w.width * scale)),
+                              std::max(1, int(w.height * scale))};
+            };
+            if (pictures_.region) canvas.frame(inFrame(*pictures_.region), theme_.ink, 1);
+            for (size_t i = 0; i < crops_.size(); i++) canvas.frame(inFrame(crops_[i].window), theme_.ofCrop(i), 1);
+        }
+        for (size_t i = 0; i < crops_.size(); i++) {
+            const CellSize& cell = layout_.crops[i];
+            const int top = y + (height - cell.height) / 2;
+            canvas.draw(cropped(image, crops_[i].window), cropX_[i], top, cell.magnification);
+            canvas.fill({cropX_[i], top + cell.height, cell.width, 3}, theme_.ofCrop(i));
         }
     }
-    void truthRow(int y) {
-        panel(y);
-        const std::string& method = run_.protocol.reference;
-        canvas_.text(kMargin + 14, y + 32, method.empty() ? "Ground truth" : "Reference", 20, kInk, Font::bold);
-        int line = y + 60;
-        const auto put = [&](const std::string& text) {
-            canvas_.text(kMargin + 14, line, canvas_.fitted(text, kLabelWidth - 24, 14), 14, kQuiet);
-            line += 22;
-        };
-        if (!method.empty()) {
-            put(method);
-            put("a method of this run, not the truth");
-        } else {
-            put(run_.truthSamplesPerHalf > 0 ? "2 x " + std::to_string(run_.truthSamplesPerHalf) + " samples per pixel"
-                                             : "exact coverage");
-            if (!run_.truthFilter.empty())
-                put(run_.truthFilter + " filter, " + shortNumber(run_.truthFilterWidthPx) + " px");
-        }
-        if (run_.truthNoise && *run_.truthNoise > 0) {
-            put("error bar of the MSE " + significant(*run_.truthNoise));
-            put("(as PSNR " + decibels(psnr(*run_.truthNoise)) + ")");
-        }
-        pictureCells(pictures_.truth, y);
-        colourBar(y);
+    Rgb map(const MapKind& kind, const Rgb& image) {
+        const bool isShrunk = layout_.frame.magnification == 0;
+        const int width = layout_.frame.width, height = layout_.frame.height;
+        // An error is averaged, not the colour that stands for it.
+        if (kind.name == "error" && isShrunk)
+            return colouredError(shrunk(errorMap(image, pictures_.truth), width, height));
+        const Rgb drawn = kind.draw(image, pictures_.truth, exec_);
+        return isShrunk ? shrunk(drawn, width, height, exec_) : drawn;
     }
-    // The one scale of all error maps, in the truth's own error cell.
-    void colourBar(int y) {
-        const int x = layout_.errorX(), width = layout_.frameWidth;
-        const int barX = x + std::min(24, width / 10), barWidth = width - 2 * std::min(24, width / 10),
-                  barY = y + layout_.rowHeight / 2 - 12;
-        for (int i = 0; i < barWidth; i++) canvas_.fill({barX + i, barY, 1, 24}, errorColour((i + 0.5) / barWidth));
-        canvas_.frame({barX, barY, barWidth, 24}, kQuiet, 1);
-        constexpr int kTicks = 4;
-        for (int i = 0; i <= kTicks; i++) {
-            const int tick = barX + i * (barWidth - 1) / kTicks;
-            canvas_.fill({tick, barY + 25, 1, 6}, kQuiet);
-            if (width < 240 && i % kTicks) continue;
-            canvas_.text(tick, barY + 48, (i == kTicks ? ">= " : "") + shortNumber(kErrorScale * i / kTicks), 14, kInk,
-                         Font::regular,
-                         i == 0        ? Align::left
-                         : i == kTicks ? Align::right
-                                       : Align::centre);
-        }
-        canvas_.text(barX, barY - 14,
-                     canvas_.fitted("error per pixel, " + spaceInWords(run_.protocol) + " 0 to 1", barWidth, 15), 15,
-                     kInk);
-        canvas_.text(barX, barY + 76, canvas_.fitted("RMS over R, G, B; the same scale on every sheet", barWidth, 14),
-                     14, kQuiet);
+    int scaleInset() const { return std::min(24, layout_.frame.width / 10); }
+    std::vector<std::string> scaleWords(const MapKind& kind) const {
+        return pen_.wrapped(kind.name == "error" ? "error per pixel, " + spaceInWords(shown_.run.protocol) +
+                                                       " 0 to 1: RMS over R, G, B; the same scale on every sheet"
+                                                 : std::string(kind.scale),
+                            layout_.frame.width - 2 * scaleInset(), 14);
     }
-    void panel(int y) { canvas_.fill({kMargin, y, kLabelWidth, layout_.rowHeight}, kPanel); }
-    void methodRow(size_t place, int y) {
-        const MethodResult& m = run_.methods[order_[place]];
-        panel(y);
-        // The parameters or the stages on a line of their own: smaa1x / preset=ULTRA, accumReject / +fill=smaa1x.
-        const size_t cut = m.text.find_first_of(":+");
-        const int width = kLabelWidth - 26;
-        canvas_.text(kMargin + 14, y + 32, canvas_.fitted(m.text.substr(0, cut), width, 20, Font::bold), 20, kInk,
-                     Font::bold);
-        int line = y + 54;
-        if (cut != std::string::npos) {
-            const std::string rest = m.text.substr(m.text[cut] == ':' ? cut + 1 : cut);
-            canvas_.text(kMargin + 14, line, canvas_.fitted(rest, width, 14), 14, kInk);
-            line += 20;
-        }
-        canvas_.text(kMargin + 14, line, canvas_.fitted(m.title, width, 13), 13, kQuiet);
-        line += 34;
-        const auto figure = [&](const char* name, const std::string& value, const std::string& unit, Colour colour,
-                                int size) {
-            canvas_.text(kMargin + 14, line, name, 14, kQuiet);
-            canvas_.text(kMargin + 168, line, value, size, colour, size > 16 ? Font::bold : Font::regular,
-                         Align::right);
-            canvas_.text(kMargin + 176, line, unit, 14, kQuiet);
-            line += layout_.overTime ? 22 : 25;
-        };
-        if (run_.isReference(m)) {
-            canvas_.text(kMargin + 14, line, "the reference of the others", 14, kNote);
-            line += 25;
-        }
-        if (m.pooled) {
-            figure("PSNR", decibelNumber(m.pooled->mean.psnr), "dB", kInk, 20);
-            if (m.pooled->gainDb && m.id != "noaa")
-                figure("over noaa", signedDecibelNumber(*m.pooled->gainDb), "dB",
-                       *m.pooled->gainDb >= 0 ? kBetter : kWorse, 16);
-            figure("SSIM", similarity(m.pooled->mean.others.at("ssimLuma")), "", kInk, 16);
-        }
-        if (m.nsPerPixel > 0) figure("time", shortNumber(m.nsPerPixel), "ns/px", kInk, 16);
-        if (m.deviceSecondsMedian)
-            figure(run_.device->isSoftware() ? "software" : "GPU", shortNumber(1e3 * *m.deviceSecondsMedian), "ms",
-                   kInk, 16);
-        if (m.temporal) {
-            const auto flicker = run_.isStatic ? m.temporal->flickerStatic : m.temporal->flickerMoving;
-            if (flicker && (*flicker > 0 || !run_.isStatic))
-                figure("flicker", shortNumber(*flicker), "codes", kInk, 16);
-            if (m.temporal->ghostExcess && m.id != "noaa")
-                figure("ghosts", shortNumber(*m.temporal->ghostExcess), "x noaa",
-                       *m.temporal->ghostExcess <= 1 ? kBetter : kWorse, 16);
-        }
-        if (place > 0)
-            if (const Comparison* c = comparisonOf(run_, order_[place - 1], order_[place]); c && !c->resolved)
-                canvas_.text(kMargin + 14, line, canvas_.fitted("not resolved from the row above", width, 13), 13,
-                             kNote);
-        pictureCells(pictures_.methods[order_[place]], y);
-        if (layout_.errors) errorCell(pictures_.methods[order_[place]], y);
+    int scaleHeight(const MapKind& kind) const {
+        return int(scaleWords(kind).size()) * 19 + (scaleOf(kind) ? 60 : 0) + 10;
     }
-    void errorCell(const Rgb& image, int y) {
-        PlaneF error = errorMap(image, pictures_.truth);
-        if (layout_.magnification == 0) error = shrunk(error, layout_.frameWidth, layout_.frameHeight);
-        canvas_.draw(colouredError(error), layout_.errorX(), y + (layout_.rowHeight - layout_.frameHeight) / 2,
-                     std::max(1, layout_.magnification));
-    }
-    void footer(int y) {
-        std::string text = "Best PSNR first, noaa last. Details: unfiltered pixels, where the methods differ most. ";
-        if (layout_.errors) text += "Figures and errors: " + inWords(run_.protocol) + ". ";
-        if (layout_.overTime)
-            text += run_.isStatic
-                        ? "Flicker: spread over time, 8-bit codes."
-                        : "Flicker along the motion in 8-bit codes; ghosts: error where something came into view.";
-        canvas_.text(kMargin, y + 24, canvas_.fitted(text, canvas_.width() - 2 * kMargin - 220, 14), 14, kQuiet);
-        canvas_.text(canvas_.width() - kMargin, y + 24, "AA Resolve " + run_.programVersion, 14, kQuiet, Font::regular,
-                     Align::right);
+    // The one scale of all maps of a kind, in the truth's own cell.
+    void scale(Canvas& canvas, const MapKind& kind, int x, int y, int height) {
+        const int width = layout_.frame.width, barWidth = width - 2 * scaleInset(), barX = x + scaleInset();
+        const auto most = scaleOf(kind);
+        const auto words = scaleWords(kind);
+        int line = y + (height - int(words.size()) * 19 - (most ? 60 : 0)) / 2;
+        if (most) {
+            for (int i = 0; i < barWidth; i++) canvas.fill({barX + i, line, 1, 24}, errorColour((i + 0.5) / barWidth));
+            canvas.frame({barX, line, barWidth, 24}, theme_.quiet, 1);
+            constexpr int kTicks = 4;
+            for (int i = 0; i <= kTicks; i++) {
+                const int tick = barX + i * (barWidth - 1) / kTicks;
+                canvas.fill({tick, line + 25, 1, 6}, theme_.quiet);
+                if (width < 360 && i % kTicks) continue;  // they would touch
+                canvas.text(tick, line + 48, (i == kTicks ? ">= " : "") + shortNumber(*most * i / kTicks), 14,
+                            theme_.ink, Font::regular,
+                            i == 0        ? Align::left
+                            : i == kTicks ? Align::right
+                                          : Align::centre);
+            }
+            line += 60;
+        }
+        for (const auto& t : words) canvas.text(barX, line += 19, t, 14, theme_.quiet);
     }
 
-    const RunResults& run_;
-    const Pictures& pictures_;
-    Exec exec_;
-    std::vector<size_t> order_;
-    Layout layout_;
-    Canvas canvas_;
+    const Shown& shown_;
+    const SheetOptions& options_;
+    const Exec& exec_;
+    const Theme& theme_;
+    Canvas pen_;
+    Pictures pictures_;
+    SheetMethods methods_;
+    std::vector<Crop> crops_;
+    std::vector<const MapKind*> maps_;
+    RowLayout layout_;
+    int frameX_ = 0;
+    std::vector<int> cropX_, mapX_;
 };
+
+// ---- cells: crops under heads ----
+// The crops of one picture, cut out of it.
+using Cut = std::vector<Rgb>;
+Cut cut(const Rgb& image, const std::vector<Crop>& crops) {
+    Cut all;
+    for (const Crop& c : crops) all.push_back(cropped(image, c.window));
+    return all;
+}
+// Truth first, where there is one, then the methods.
+std::vector<Cut> cutAll(const Pictures& p, const std::vector<Crop>& crops) {
+    std::vector<Cut> all;
+    if (showsTruth(p)) all.push_back(cut(p.truth, crops));
+    for (const Rgb& image : p.methods) all.push_back(cut(image, crops));
+    return all;
+}
+// Brief labels parallel to cutAll.
+std::vector<SheetLabel> briefLabels(const SheetMethods& methods, bool truth, int width, const Theme& theme,
+                                    const Canvas& pen) {
+    std::vector<SheetLabel> labels;
+    if (truth) labels.push_back(truthLabel(methods.run, width, theme, pen, true));
+    for (size_t i = 0; i < methods.order.size(); i++)
+        labels.push_back(SheetLabel::brief(methods, i, width, theme, pen));
+    return labels;
+}
+int tallest(const std::vector<SheetLabel>& labels, size_t first, size_t last) {
+    int height = 0;
+    for (size_t i = first; i < last; i++) height = std::max(height, labels[i].height());
+    return height;
+}
+// What a crop is, in one line above its row.
+SheetItem cropNote(const Crop& crop, size_t index, const CellSize& cell, const Theme& theme, int x) {
+    const std::string text = nameOf(crop, cell.magnification) + "  (" + std::to_string(crop.window.width) + " x " +
+                             std::to_string(crop.window.height) + " px)";
+    return {26, [=, &theme](Canvas& canvas, int y) {
+                canvas.fill({x, y + 8, 12, 12}, theme.ofCrop(index));
+                canvas.text(x + 20, y + 19, text, kHeadPx, theme.quiet);
+            }};
+}
+
+// Methods side by side, in blocks of as many as fit.
+struct Grid {
+    std::vector<SheetSection> blocks;
+    int width;
+};
+Grid gridOf(const std::vector<Cut>& cuts, const SheetMethods& methods, bool truth, const std::vector<Crop>& crops,
+            const SheetOptions& o, const Theme& theme, const Canvas& pen) {
+    const PageFormat format = formatOf(o.page);
+    constexpr int kNote = 26, kHeadsAndFoot = 290;  // px of a page that the crops do not have
+    const int room = format.width > 0 ? format.width - 2 * kSheetMargin : kWidest;
+    const int roomHeight =
+        format.height > 0 ? format.height - kHeadsAndFoot - int(crops.size()) * (kNote + kCellGap) : 0;
+    const GridLayout layout = gridLayout(windowsOf(crops), cuts.size(), o.zoom, room, roomHeight, format.name);
+    const auto labels = briefLabels(methods, truth, layout.cellWidth + 12, theme, pen);
+    Grid grid{{}, layout.columns * (layout.cellWidth + kCellGap) - kCellGap};
+    for (size_t first = 0; first < cuts.size(); first += size_t(layout.columns)) {
+        const size_t last = std::min(cuts.size(), first + size_t(layout.columns));
+        const auto xOf = [=](size_t column) {
+            return kSheetMargin + int(column - first) * (layout.cellWidth + kCellGap);
+        };
+        SheetSection block;
+        const int heads = tallest(labels, first, last);
+        block.lead.push_back({heads, [=, &theme](Canvas& canvas, int y) {
+                                  for (size_t c = first; c < last; c++)
+                                      labels[c].draw(canvas, xOf(c) - 14, y + heads - labels[c].height() + 4);
+                              }});
+        for (size_t k = 0; k < crops.size(); k++) {
+            const CellSize cell = layout.cells[k];
+            const SheetItem note = cropNote(crops[k], k, cell, theme, kSheetMargin);
+            block.rows.push_back({note.height + cell.height + kCellGap + (k + 1 == crops.size() ? 12 : 0),
+                                  [=, &cuts](Canvas& canvas, int y) {
+                                      note.draw(canvas, y);
+                                      for (size_t c = first; c < last; c++)
+                                          canvas.draw(cuts[c][k], xOf(c), y + note.height, cell.magnification);
+                                  }});
+        }
+        grid.blocks.push_back(std::move(block));
+    }
+    return grid;
+}
+
+std::vector<Canvas> gridSheet(const Shown& shown, int frame, const SheetOptions& o) {
+    const Theme& theme = sheetTheme(o.light);
+    const Canvas pen(1, 1, theme.ground);
+    const Pictures pictures = shown.pictures(frame);
+    const SheetMethods methods = sheetMethods(shown.run, shown.order);
+    const auto crops = cropsOf(pictures, o, kTellingCrops);
+    if (crops.empty())
+        throw InputError("the methods differ nowhere in " + frameWord(frame) +
+                         ", so no crop tells them apart; give --crop");
+    const auto cuts = cutAll(pictures, crops);
+    const Grid grid = gridOf(cuts, methods, showsTruth(pictures), crops, o, theme, pen);
+    return sheetPages(grid.blocks, grid.width, o.page, theme,
+                      {shown.run.shot, titleOf(shown.run) + ", " + frameWord(frame), runLine(shown.run),
+                       footOf(methods, false, showsTruth(pictures), !o.crops.empty())},
+                      shown.run.programVersion);
+}
 }  // namespace
 
+std::vector<Canvas> sheet(const Shown& shown, int frame, const SheetOptions& o, const Exec& exec) {
+    return o.arrangement == Arrangement::grid ? gridSheet(shown, frame, o) : Rows(shown, frame, o, exec).pages();
+}
+
+namespace {
+// The crops of all frames, each frame read once.
+struct Cuts {
+    std::vector<Crop> crops;
+    std::vector<std::vector<Cut>> frames;
+    bool truth;
+};
+Cuts cutsOver(const Shown& shown, const std::vector<int>& frames, const SheetOptions& o) {
+    Cuts all{{}, {}, true};
+    // Where the methods differ most, they do at the end, when histories are full.
+    Pictures last = shown.pictures(frames.back());
+    all.crops = cropsOf(last, o, 1);
+    if (all.crops.empty())
+        throw InputError("the methods differ nowhere in " + frameWord(frames.back()) +
+                         ", so no crop tells them apart; give --crop");
+    std::vector<bool> hasTruth;
+    for (const int frame : frames) {
+        Pictures p = frame == frames.back() ? std::move(last) : shown.pictures(frame);
+        all.truth = all.truth && showsTruth(p);
+        hasTruth.push_back(showsTruth(p));
+        all.frames.push_back(cutAll(p, all.crops));
+    }
+    for (size_t f = 0; f < frames.size(); f++)  // rows must be the same in all
+        if (hasTruth[f] && !all.truth) all.frames[f].erase(all.frames[f].begin());
+    return all;
+}
+}  // namespace
+
+std::vector<Canvas> strips(const Shown& shown, const std::vector<int>& frames, const SheetOptions& o) {
+    const Theme& theme = sheetTheme(o.light);
+    const Canvas pen(1, 1, theme.ground);
+    const SheetMethods methods = sheetMethods(shown.run, shown.order);
+    const Cuts cuts = cutsOver(shown, frames, o);
+    const PageFormat format = formatOf(o.page);
+    constexpr int kStripLabel = 190, kCells = kSheetMargin + kStripLabel + kSheetGap;
+    const int room = (format.width > 0 ? format.width - kSheetMargin : kWidest) - kCells;
+    const auto labels = briefLabels(methods, cuts.truth, kStripLabel, theme, pen);
+    std::vector<SheetSection> sections;
+    int width = 0;
+    for (size_t k = 0; k < cuts.crops.size(); k++) {
+        const GridLayout layout = gridLayout({cuts.crops[k].window}, frames.size(), o.zoom, room,
+                                             format.height > 0 ? format.height / 5 : 0, format.name);
+        const CellSize cell = layout.cells[0];
+        width = std::max(width, kCells - kSheetMargin + layout.columns * (layout.cellWidth + kCellGap) - kCellGap);
+        for (size_t first = 0; first < frames.size(); first += size_t(layout.columns)) {
+            const size_t last = std::min(frames.size(), first + size_t(layout.columns));
+            const auto xOf = [=](size_t f) { return kCells + int(f - first) * (layout.cellWidth + kCellGap); };
+            SheetSection section;
+            section.lead.push_back(cropNote(cuts.crops[k], k, cell, theme, kSheetMargin));
+            section.lead.push_back({26, [=, &theme](Canvas& canvas, int y) {
+                                        for (size_t f = first; f < last; f++)
+                                            canvas.text(xOf(f), y + 17, frameWord(frames[f]), kHeadPx, theme.quiet);
+                                    }});
+            for (size_t r = 0; r < labels.size(); r++) {
+                const SheetLabel& label = labels[r];
+                const int height = std::max(cell.height, label.height());
+                section.rows.push_back({height + (r + 1 == labels.size() ? 20 : kCellGap),
+                                        [=, &cuts, &label, &theme](Canvas& canvas, int y) {
+                                            canvas.fill({kSheetMargin, y, kStripLabel, height}, theme.panel);
+                                            label.draw(canvas, kSheetMargin, y);
+                                            for (size_t f = first; f < last; f++)
+                                                canvas.draw(cuts.frames[f][r][k], xOf(f), y, cell.magnification);
+                                        }});
+            }
+            sections.push_back(std::move(section));
+        }
+    }
+    return sheetPages(sections, width, o.page, theme,
+                      {shown.run.shot, titleOf(shown.run) + ", over time", runLine(shown.run),
+                       footOf(methods, false, cuts.truth, !o.crops.empty())},
+                      shown.run.programVersion);
+}
+
+std::vector<Canvas> loopOfMethods(const Shown& shown, int frame, const SheetOptions& o) {
+    const Theme& theme = sheetTheme(o.light);
+    const Canvas pen(1, 1, theme.ground);
+    const SheetMethods methods = sheetMethods(shown.run, shown.order);
+    const Cuts cuts = cutsOver(shown, {frame}, o);
+    std::vector<CellSize> cells;
+    int width = 0, height = 0;
+    constexpr int kLoopHeight = 288, kInset = 14;
+    for (const Crop& c : cuts.crops) {
+        const int magnification = o.zoom > 0 ? o.zoom : std::max(1, kLoopHeight / c.window.height);
+        cells.push_back({c.window.width * magnification, c.window.height * magnification, magnification});
+        width += cells.back().width + kCellGap, height = std::max(height, cells.back().height);
+    }
+    width = std::max(width - kCellGap, 300);
+    const auto labels = briefLabels(methods, cuts.truth, width, theme, pen);
+    const int head = tallest(labels, 0, labels.size());
+    if (std::max(width, height + head) + 200 > kLargestSide)
+        throw UsageError("the loop would have " + std::to_string(width) + " x " + std::to_string(height + head) +
+                         " px; choose smaller crops or a smaller --zoom");
+    std::string note = shown.run.shot + ", " + frameWord(frame);
+    for (size_t k = 0; k < cells.size(); k++) note += "; " + nameOf(cuts.crops[k], cells[k].magnification);
+    const auto notes = pen.wrapped(note, width, 12);
+    std::vector<Canvas> all;
+    for (size_t m = 0; m < labels.size(); m++) {
+        Canvas canvas(width + 2 * kInset, head + height + int(notes.size()) * 17 + 14, theme.ground);
+        labels[m].draw(canvas, 0, 0);
+        int x = kInset;
+        for (size_t k = 0; k < cells.size(); k++) {
+            canvas.draw(cuts.frames[0][m][k], x, head, cells[k].magnification);
+            x += cells[k].width + kCellGap;
+        }
+        int y = head + height + 4;
+        for (const auto& line : notes) canvas.text(kInset, y += 17, line, 12, theme.quiet);
+        all.push_back(std::move(canvas));
+    }
+    return all;
+}
+
+std::vector<Canvas> loopOfFrames(const Shown& shown, const std::vector<int>& frames, const SheetOptions& o) {
+    const Theme& theme = sheetTheme(o.light);
+    const Canvas pen(1, 1, theme.ground);
+    const SheetMethods methods = sheetMethods(shown.run, shown.order);
+    const Cuts cuts = cutsOver(shown, frames, o);
+    std::vector<Canvas> all;
+    for (size_t f = 0; f < frames.size(); f++) {
+        Grid grid = gridOf(cuts.frames[f], methods, cuts.truth, cuts.crops, o, theme, pen);
+        // A line of its own: what changes must not move what follows.
+        const std::string number = frameWord(frames[f]);
+        grid.blocks.insert(grid.blocks.begin(), SheetSection{{}, {{30, [&](Canvas& canvas, int y) {
+                                                                       canvas.text(kSheetMargin, y + 20, number, 17,
+                                                                                   theme.ink, Font::bold);
+                                                                   }}}});
+        auto pages = sheetPages(grid.blocks, grid.width, PageSize::free, theme,
+                                {shown.run.shot, titleOf(shown.run), runLine(shown.run),
+                                 footOf(methods, false, cuts.truth, !o.crops.empty())},
+                                shown.run.programVersion);
+        all.push_back(std::move(pages[0]));
+    }
+    return all;
+}
+
+// ---- what is shown ----
 std::vector<size_t> presentationOrder(const RunResults& run) {
     std::vector<size_t> order(run.methods.size());
     for (size_t i = 0; i < order.size(); i++) order[i] = i;
@@ -285,8 +504,71 @@ std::vector<size_t> presentationOrder(const RunResults& run) {
     return order;
 }
 
-void writeSheet(const RunResults& run, const Pictures& pictures, const std::filesystem::path& file, const Exec& exec) {
-    Sheet(run, pictures, exec).write(file);
+std::vector<size_t> chosenMethods(const RunResults& run, const std::vector<std::string>& names) {
+    std::set<size_t> chosen;
+    const auto add = [&](const std::string& name) {
+        const auto by = [&](auto member) {
+            bool found = false;
+            for (size_t i = 0; i < run.methods.size(); i++)
+                if (run.methods[i].*member == name) chosen.insert(i), found = true;
+            return found;
+        };
+        return by(&MethodResult::text) || by(&MethodResult::id) || by(&MethodResult::family);
+    };
+    for (const auto& list : names) {
+        // A method's own text may hold commas: the longest piece that is known counts.
+        for (size_t at = 0; at <= list.size();) {
+            size_t end = list.size();
+            while (!add(list.substr(at, end - at))) {
+                const size_t shorter = end > at ? list.rfind(',', end - 1) : std::string::npos;
+                if (shorter == std::string::npos || shorter <= at) {
+                    std::string known;
+                    for (const auto& m : run.methods) known += (known.empty() ? "" : " ") + m.text;
+                    throw UsageError("--methods: the run has no method or family '" +
+                                     list.substr(at, list.find(',', at) - at) + "'; it has " + known);
+                }
+                end = shorter;
+            }
+            at = end + 1;
+        }
+    }
+    std::vector<size_t> order = presentationOrder(run);
+    if (!names.empty()) std::erase_if(order, [&](size_t i) { return !chosen.contains(i); });
+    return order;
+}
+
+RunResults onlyMethods(const RunResults& run, const std::vector<size_t>& order) {
+    RunResults few = run;
+    few.methods.clear(), few.pairs.clear();
+    for (const size_t i : order) few.methods.push_back(run.methods[i]);
+    return few;
+}
+
+Crop cropFrom(const std::string& text, const RunResults& run) {
+    const size_t colon = text.find(':');
+    return {windowFrom(text.substr(0, colon), "--crop", "run '" + run.shot + "'", run.width, run.height),
+            colon == std::string::npos ? std::string() : text.substr(colon + 1)};
+}
+
+void chooseColumns(SheetOptions& o, const std::vector<std::string>& names) {
+    if (names.empty()) return;
+    o.frameColumn = o.cropColumns = false;
+    o.maps.clear();
+    for (const auto& name : names) {
+        if (name == "frame") {
+            o.frameColumn = true;
+        } else if (name == "crops") {
+            o.cropColumns = true;
+        } else {
+            std::string maps;
+            for (const MapKind& kind : mapKinds()) {
+                maps += ", " + std::string(kind.name);
+                if (kind.name == name) o.maps.push_back(&kind);
+            }
+            if (o.maps.empty() || o.maps.back()->name != name)
+                throw UsageError("--columns: expected some of frame, crops" + maps + ", found '" + name + "'");
+        }
+    }
 }
 
 }  // namespace aa

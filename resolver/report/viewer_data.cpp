@@ -13,10 +13,9 @@ namespace {
 namespace fs = std::filesystem;
 using json = nlohmann::ordered_json;
 
-constexpr int kDetails = 3, kDetailPx = 48;  // places per frame, and their side
-constexpr int kCropPx = 128;                 // side of an embedded crop: a place with room around it
-constexpr int kChain = 8;                    // frames that are unpacked at most to show one
-constexpr double kTypicalBytes = 0.5;        // per pixel of a picture in the page, for the first guess of what fits
+constexpr int kCropPx = 128;           // side of an embedded crop: a place with room around it
+constexpr int kChain = 8;              // frames that are unpacked at most to show one
+constexpr double kTypicalBytes = 0.5;  // per pixel of a picture in the page, for the first guess of what fits
 
 size_t textLength(size_t bytes) { return (bytes + 2) / 3 * 4; }
 
@@ -186,7 +185,7 @@ Pictures part(const Pictures& p, const Window& w) {
 }
 std::vector<Window> placesIn(const Pictures& whole, const Window& window) {
     const bool all = window.width == whole.methods[0].width() && window.height == whole.methods[0].height();
-    auto places = mostTellingWindows(all ? whole : part(whole, window), kDetailPx, kDetailPx, kDetails);
+    auto places = tellingCrops(all ? whole : part(whole, window));
     if (!all)
         for (Window& w : places) w.x += window.x, w.y += window.y;
     return places;
@@ -217,7 +216,7 @@ ViewerData viewerData(const RunResults& run, const fs::path& folder, const Embed
             if (options.what == Embed::full)
                 windows = {shownPart(p, options.limitBytes, options.floats)};
             else
-                windows = mostTellingWindows(p, kCropPx, kCropPx, kDetails);
+                windows = mostTellingWindows(p, kCropPx, kCropPx, kTellingCrops);
             if (windows.empty()) windows = {{0, 0, std::min(run.width, kCropPx), std::min(run.height, kCropPx)}};
             for (const Window& w : windows) packers.emplace_back(w, exec);
         }

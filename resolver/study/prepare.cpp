@@ -28,6 +28,27 @@ std::string listed(PassSet passes) {
 }
 }  // namespace
 
+std::vector<std::pair<int, int>> frameRanges(const std::string& list) {
+    std::vector<std::pair<int, int>> ranges;
+    std::istringstream parts(list);
+    for (std::string part; std::getline(parts, part, ',');) {
+        int first = 0, last = 0;
+        const char* end = part.data() + part.size();
+        auto [p, failed] = std::from_chars(part.data(), end, first);
+        last = first;
+        const std::string_view rest(p, size_t(end - p));
+        if (failed == std::errc{} && !rest.empty() && (rest[0] == '-' || rest.starts_with(".."))) {
+            const auto second = std::from_chars(p + (rest[0] == '-' ? 1 : 2), end, last);
+            p = second.ptr;
+            failed = second.ec;
+        }
+        if (failed != std::errc{} || p != end || last < first)
+            throw UsageError("--frames: expected numbers and ranges like 1-16,20, found '" + part + "'");
+        ranges.emplace_back(first, last);
+    }
+    return ranges;
+}
+
 std::vector<size_t> selectFrames(const Manifest& manifest, const std::string& list) {
     std::vector<size_t> chosen;
     if (list.empty()) {
@@ -35,26 +56,14 @@ std::vector<size_t> selectFrames(const Manifest& manifest, const std::string& li
         return chosen;
     }
     std::vector<bool> wanted(manifest.frames.size());
-    std::istringstream parts(list);
-    for (std::string part; std::getline(parts, part, ',');) {
-        int first = 0, last = 0;
-        const char* end = part.data() + part.size();
-        auto [p, failed] = std::from_chars(part.data(), end, first);
-        last = first;
-        if (failed == std::errc{} && p != end && *p == '-') {
-            const auto second = std::from_chars(p + 1, end, last);
-            p = second.ptr;
-            failed = second.ec;
-        }
-        if (failed != std::errc{} || p != end || last < first)
-            throw UsageError("--frames: expected numbers and ranges like 1-16,20, found '" + part + "'");
+    for (const auto& [first, last] : frameRanges(list)) {
         size_t found = 0;
         for (size_t i = 0; i < manifest.frames.size(); i++)
             if (manifest.frames[i].frame >= first && manifest.frames[i].frame <= last) wanted[i] = true, found++;
         if (found == 0)
-            throw InputError("--frames " + part + ": the shot has no such frame (it has " +
-                             std::to_string(manifest.frames.front().frame) + " to " +
-                             std::to_string(manifest.frames.back().frame) + ")");
+            throw InputError("--frames " + std::to_string(first) + (last > first ? "-" + std::to_string(last) : "") +
+                             ": the shot has no such frame (it has " + std::to_string(manifest.frames.front().frame) +
+                             " to " + std::to_string(manifest.frames.back().frame) + ")");
     }
     for (size_t i = 0; i < wanted.size(); i++)
         if (wanted[i]) chosen.push_back(i);

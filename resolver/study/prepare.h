@@ -2,6 +2,7 @@
 // and what the results will say of shot, truth and program.
 #pragma once
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "methods/driver.h"
@@ -11,7 +12,9 @@
 
 namespace aa {
 
-// Frames as a list `1-16,20` (frame numbers of the manifest; empty = all). Throws UsageError, InputError (no such
+// First and last of each part of a list `1-16,20`, where `1..16` is `1-16`. Throws UsageError.
+std::vector<std::pair<int, int>> frameRanges(const std::string& list);
+// Frames as such a list (frame numbers of the manifest; empty = all). Throws UsageError, InputError (no such
 // frame).
 std::vector<size_t> selectFrames(const Manifest& manifest, const std::string& list);
 // Throws InputError naming the first method that asks for passes which the shot lacks, and what adds them for all.

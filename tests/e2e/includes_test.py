@@ -13,6 +13,7 @@ from program import ROOT, ProgramTest, main
 ROOMS = (
     "kernels",
     "formats",
+    "documents",
     "image",
     "shot",
     "shot/synth",

@@ -77,6 +77,8 @@ class Install(ProgramTest):
         run("run", "shot", "-m", "noaa", "-m", "fxaa311", "-o", "out", "-q")
         run("report", "out", "-o", "report.html")
         self.assertIn("fxaa311", (self.folder / "report.html").read_text())
+        run("sheet", "out", "-o", "sheet.pdf")
+        self.assertEqual((self.folder / "sheet.pdf").read_bytes()[:5], b"%PDF-")
         with zipfile.ZipFile(prefix / "share/aaresolve/aa_resolve.zip") as addon:
             self.assertIn("aa_resolve/__init__.py", addon.namelist())
         pages = prefix / "share/doc/aaresolve"

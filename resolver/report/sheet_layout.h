@@ -1,0 +1,44 @@
+// Sizes of the pictures on a contact sheet: as large as the page allows, crops by whole factors.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "image/window.h"
+
+namespace aa {
+
+struct CellSize {
+    int width = 0, height = 0;  // px of the sheet
+    int magnification = 0;      // px of the sheet per px of the picture; 0: shrunk
+};
+
+// A row of a method: the whole frame, crops, maps of the whole frame.
+struct RowContent {
+    int frameWidth, frameHeight;  // of the run's pictures
+    bool frame;                   // the column of the whole frame
+    std::vector<Window> crops;
+    int maps;
+    int zoom;  // of the crops; 0: what fits
+};
+struct RowLayout {
+    CellSize frame;  // of maps too
+    std::vector<CellSize> crops;
+    int width, height;  // of the pictures, with the gaps between them
+};
+// `room`: width in px; 0: no limit. Throws UsageError when even the smallest do not fit.
+RowLayout rowLayout(const RowContent& content, int room, const std::string& page);
+
+// Crops side by side, one column per method or frame, one row per crop.
+struct GridLayout {
+    std::vector<CellSize> cells;  // one per crop
+    int cellWidth;                // of a column
+    int columns;                  // beside each other; more columns go below or onto the next page
+};
+// `room`, `roomHeight`: for the columns and for all crops of one block, px; 0: no limit of the height. `atOnce`: one
+// block holds all crops, else each crop is a block of its own. Throws UsageError as above.
+GridLayout gridLayout(const std::vector<Window>& crops, size_t columns, int zoom, int room, int roomHeight,
+                      const std::string& page);
+
+inline constexpr int kCellGap = 6;
+
+}  // namespace aa
