@@ -42,22 +42,28 @@ const viewerFlip = (() => {
   const kMaxColour = 41.276098414595445; // HyAB from green to blue after Hunt's adjustment, to the power 0.7
 
   const decode = (v) => (v <= 0.04045 ? v / 12.92 : Math.pow((v + 0.055) / 1.055, 2.4));
+  const dot = (m, a, b, c) => m[0] * a + m[1] * b + m[2] * c;
   const labCurve = (t) => (t > 216 / 24389 ? Math.cbrt(t) : (t * 841) / 108 + 4 / 29);
 
-  // One pass of taps along x (step 1) or y (step w): even, odd (first derivative), or of differences from the centre.
+  // One pass of taps along x or y, the edge repeated: even, odd (first derivative), or of differences from the centre, which
+  // are exactly 0 on flat ground.
   const pass = (plane, w, h, taps, kind, alongY) => {
-    const out = new Float64Array(w * h);
-    for (let y = 0; y < h; y++)
-      for (let x = 0; x < w; x++) {
-        const i = y * w + x, centre = plane[i];
-        let sum = kind === "even" ? taps[0] * centre : 0;
-        for (let k = 1; k < taps.length; k++) {
-          const before = plane[alongY ? Math.max(0, y - k) * w + x : y * w + Math.max(0, x - k)];
-          const after = plane[alongY ? Math.min(h - 1, y + k) * w + x : y * w + Math.min(w - 1, x + k)];
-          sum += taps[k] * (kind === "even" ? before + after : kind === "odd" ? before - after : before + after - 2 * centre);
-        }
-        out[i] = sum;
+    const out = new Float64Array(w * h), reach = taps.length - 1, line = new Float64Array(w + 2 * reach);
+    const sign = kind === "odd" ? -1 : 1, twice = kind === "differences" ? 2 : 0, centre = kind === "even" ? taps[0] : 0;
+    for (let y = 0; y < h; y++) {
+      const row = y * w;
+      if (!alongY) {
+        line.fill(plane[row], 0, reach);
+        line.set(plane.subarray(row, row + w), reach);
+        line.fill(plane[row + w - 1], reach + w);
       }
+      for (let x = 0; x < w; x++) out[row + x] = centre * plane[row + x];
+      for (let k = 1; k <= reach; k++) {
+        const tap = taps[k], before = alongY ? Math.max(0, y - k) * w : reach - k, after = alongY ? Math.min(h - 1, y + k) * w : reach + k;
+        const from = alongY ? plane : line;
+        for (let x = 0; x < w; x++) out[row + x] += tap * (from[before + x] + sign * from[after + x] - twice * plane[row + x]);
+      }
+    }
     return out;
   };
   const both = (plane, w, h, taps) => pass(pass(plane, w, h, taps, "even", false), w, h, taps, "even", true);
@@ -67,7 +73,7 @@ const viewerFlip = (() => {
     const n = w * h, y = new Float64Array(n), cx = new Float64Array(n), cz = new Float64Array(n);
     for (let i = 0, k = 0; i < n; i++, k += 3) {
       const r = decode(values[k]), g = decode(values[k + 1]), b = decode(values[k + 2]);
-      const [X, Y, Z] = toXyz.map((m) => m[0] * r + m[1] * g + m[2] * b);
+      const X = dot(toXyz[0], r, g, b), Y = dot(toXyz[1], r, g, b), Z = dot(toXyz[2], r, g, b);
       y[i] = Y; cx[i] = 500 * (X - Y); cz[i] = 200 * (Y - Z);
     }
     const fy = both(y, w, h, csf.y), fx = both(cx, w, h, csf.cx), wide = both(cz, w, h, csf.wide), narrow = both(cz, w, h, csf.narrow);
@@ -75,8 +81,8 @@ const viewerFlip = (() => {
     const unit = (v) => Math.min(Math.max(v, 0), 1);
     for (let i = 0; i < n; i++) {
       const Y = fy[i], X = Y + fx[i] / 500, Z = Y - (wide[i] * wideShare + narrow[i] * (1 - wideShare)) / 200;
-      const [r, g, bl] = toRgb.map((m) => unit(m[0] * X + m[1] * Y + m[2] * Z));
-      const [lx, ly, lz] = toXyz.map((m) => labCurve(m[0] * r + m[1] * g + m[2] * bl));
+      const r = unit(dot(toRgb[0], X, Y, Z)), g = unit(dot(toRgb[1], X, Y, Z)), blue = unit(dot(toRgb[2], X, Y, Z));
+      const lx = labCurve(dot(toXyz[0], r, g, blue)), ly = labCurve(dot(toXyz[1], r, g, blue)), lz = labCurve(dot(toXyz[2], r, g, blue));
       L[i] = 116 * ly - 16;
       a[i] = 0.01 * L[i] * 500 * (lx - ly);
       b[i] = 0.01 * L[i] * 200 * (ly - lz);
