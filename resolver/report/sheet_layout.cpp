@@ -24,9 +24,10 @@ CellSize cropCell(const Window& crop, int zoom, int height) {
 RowLayout rowOf(const RowContent& c, int height, int cropHeight) {
     RowLayout l{};
     l.frame = frameCell(c.frameWidth, c.frameHeight, height * kWidestFrame / kTallest, height);
+    const int side = cropHeight > 0 ? cropHeight : std::clamp(l.frame.height, kLeastCrop, kMostCrop);
+    // A low and wide crop is no wider than one and a half square ones.
     for (const Window& crop : c.crops)
-        l.crops.push_back(
-            cropCell(crop, c.zoom, cropHeight > 0 ? cropHeight : std::clamp(l.frame.height, kLeastCrop, kMostCrop)));
+        l.crops.push_back(cropCell(crop, c.zoom, std::min(side, std::max(1, 3 * side / 2 / crop.width) * crop.height)));
     const int frames = (c.frame ? 1 : 0) + c.maps;
     l.width = frames * (l.frame.width + kSheetGap) - kSheetGap;
     if (frames > 0) l.height = l.frame.height;

@@ -21,6 +21,14 @@ TEST(SheetLayout, FreeRowsHaveWholeFactors) {
     EXPECT_EQ(l.width, 2 * 480 + 3 * l.crops[0].width + 4 * kSheetGap);
     EXPECT_EQ(rowLayout({1920, 1080, true, {}, 0, 0}, 0, "free").frame.magnification, 0);  // shrunk
 }
+TEST(SheetLayout, LowCropsAreNotEndless) {
+    for (const Window& low : {Window{0, 0, 48, 3}, {0, 0, 480, 20}, {0, 0, 3, 48}}) {
+        const RowLayout l = rowLayout({480, 270, true, {low}, 1, 0}, 0, "free");
+        EXPECT_GE(l.crops[0].magnification, 1);
+        EXPECT_LE(l.crops[0].width, std::max(3 * 288 / 2, low.width));
+        EXPECT_LE(l.crops[0].height, 288);
+    }
+}
 TEST(SheetLayout, PagesHoldTheirRows) {
     for (const int room : {800, 1100, 1332, 1568})
         for (const int maps : {0, 1, 2}) {
