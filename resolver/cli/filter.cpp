@@ -59,7 +59,7 @@ void filter(const Options& o) {
     RunningMethod running(spec, session ? gpu::create(*session, spec, info) : spec.create(info));
     running.method->keepDebugLayers = !o.debugLayers.empty();
     double seconds = 0;
-    withThreads(o.work.threads, [&] { seconds = running.resolve(frame, frame.display, exec); });
+    withThreads(o.work.threads, [&] { seconds = running.resolve(frame, frame.display, exec).wall; });
     if (isPng(o.out)) {
         if (o.dither) dither8(running.outEncoded, frame.number, exec);
         writePng(o.out, running.outEncoded);

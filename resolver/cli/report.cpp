@@ -5,12 +5,14 @@
 #include "image/io.h"
 #include "report/angles.h"
 #include "report/html.h"
+#include "report/summary.h"
 
 namespace aa {
 namespace {
 namespace fs = std::filesystem;
 struct Options {
-    std::string run, out, embed = "full";
+    std::vector<std::string> runs;
+    std::string out, embed = "full";
     double limitMb = 40;
     bool hdr = false;
     WorkOptions work;
@@ -21,23 +23,42 @@ std::string framesInWords(const std::vector<int>& frames) {
     return frames.size() == 1 ? "frame " + first : "frames " + first + " to " + std::to_string(frames.back());
 }
 
+// Of several runs: methods over scenes.
+void writeSummary(const Options& o) {
+    if (const Options none; o.embed != none.embed || o.limitMb != none.limitMb || o.hdr)
+        throw UsageError(
+            "report: --embed, --embed-limit and --hdr have no effect on several runs, whose page has no "
+            "pictures");
+    std::vector<std::pair<std::string, RunResults>> runs;
+    for (const std::string& folder : o.runs) {
+        const fs::path place = fs::weakly_canonical(folder);
+        for (const auto& [other, results] : runs)
+            if (fs::weakly_canonical(other) == place) throw UsageError("report: " + folder + " is given twice");
+        runs.emplace_back(folder, readResults(folder));
+    }
+    const fs::path out =
+        o.out.empty() ? fs::weakly_canonical(o.runs[0]).parent_path() / "summary.html" : fs::path(o.out);
+    writeText(out, summaryHtml(namedRuns(std::move(runs))));
+    std::printf("%s\n", out.c_str());
+}
+
 void writeReport(const Options& o) {
     const Exec exec = o.work.exec();
-    if (const fs::path folder = o.run; !fs::exists(folder / "results.json") && fs::exists(folder / "angles.json"))
-        throw InputError(o.run +
+    const std::string& given = o.runs[0];
+    if (const fs::path folder = given; !fs::exists(folder / "results.json") && fs::exists(folder / "angles.json"))
+        throw InputError(given +
                          ": holds a study of angles and no run; give `aaresolve angles` the -o of a run, whose " +
                          "report then shows it, or open " + (folder / "angles.svg").string());
-    const RunResults run = readResults(o.run);
-    const std::filesystem::path out =
-        o.out.empty() ? std::filesystem::path(o.run) / "report.html" : std::filesystem::path(o.out);
+    const RunResults run = readResults(given);
+    const fs::path out = o.out.empty() ? fs::path(given) / "report.html" : fs::path(o.out);
     const EmbedOptions embed{.what = o.embed == "full"    ? Embed::full
                                      : o.embed == "crops" ? Embed::crops
                                                           : Embed::none,
                              .floats = o.hdr,
                              .limitBytes = size_t(o.limitMb * 1e6)};
     withThreads(o.work.threads, [&] {
-        const ViewerData viewer = viewerData(run, o.run, embed, exec);
-        const std::string page = reportHtml(run, viewer, anglesForReport(o.run));
+        const ViewerData viewer = viewerData(run, given, embed, exec);
+        const std::string page = reportHtml(run, viewer, anglesForReport(given));
         writeText(out, page);
         std::printf("%s: %.1f MB, of which pictures %.1f MB", out.c_str(), double(page.size()) / 1e6,
                     double(viewer.textBytes()) / 1e6);
@@ -55,9 +76,16 @@ void writeReport(const Options& o) {
 
 void addReport(CommandLine& line, Context&) {
     auto o = std::make_shared<Options>();
-    Command c = line.command("report", "A run as one HTML file: pictures, figures, charts; needs no network");
-    c.option("RUN", o->run, "output folder of `aaresolve run`").required().typeName("RUN");
-    c.option("-o,--out", o->out, "the HTML file; default RUN/report.html").typeName("FILE");
+    Command c =
+        line.command("report",
+                     "A run as one HTML file: pictures, figures, charts; several runs: methods over scenes, and "
+                     "runs of one shot against each other; needs no network");
+    c.option("RUN", o->runs, "output folder of `aaresolve run`; several for a page of them all")
+        .required()
+        .typeName("RUN");
+    c.option("-o,--out", o->out,
+             "the HTML file; default RUN/report.html, of several runs summary.html beside the first")
+        .typeName("FILE");
     c.option(
          "--embed", o->embed,
          "pictures in the file: full (whole), crops (three parts of 128 x 128 px, where the methods differ most) or "
@@ -71,7 +99,7 @@ void addReport(CommandLine& line, Context&) {
            "embed linear light as the EXR files hold it, 32-bit floats, instead of the displayed 8-bit codes: exposure "
            "shows what lies beyond white; 4 to 8 times as large");
     addWorkOptions(c, o->work);
-    c.run([o] { writeReport(*o); });
+    c.run([o] { o->runs.size() > 1 ? writeSummary(*o) : writeReport(*o); });
 }
 
 }  // namespace aa

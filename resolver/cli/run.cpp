@@ -8,6 +8,7 @@
 #include "cli/run_arguments.h"
 #include "image/error.h"
 #include "image/folder_claim.h"
+#include "report/advice.h"
 #include "report/format.h"
 
 namespace aa {
@@ -37,27 +38,47 @@ void printTable(const RunResults& r) {
     });
     size_t width = 6;
     for (const auto* m : rows) width = std::max(width, m->text.size());
-    std::printf("%-*s %10s %9s %9s %9s %10s %10s%s\n", int(width), "method", "PSNR dB", "gain dB", "SSIM", "ns/px",
-                "input MB", "state MB", r.device ? "  device ms" : "");
+    const auto noaa = std::find_if(r.methods.begin(), r.methods.end(), [](const auto& m) { return m.id == "noaa"; });
+    const bool withFlip = std::any_of(rows.begin(), rows.end(),
+                                      [](const auto* m) { return m->pooled && m->pooled->mean.figure("flip"); });
+    std::printf("%-*s %9s %8s %16s %9s %8s%s %8s %13s %8s %8s%s\n", int(width), "method", "PSNR dB", "gain dB",
+                "95 % interval", "resolved", "SSIM", withFlip ? "   FLIP" : "", "ns/px", "quartiles", "input MB",
+                "state MB", r.device ? "  device ms" : "");
     for (const auto* m : rows) {
         std::printf("%-*s", int(width), m->text.c_str());
+        const auto versus = noaa == r.methods.end() || m == &*noaa
+                                ? std::nullopt
+                                : compared(r, size_t(m - r.methods.data()), size_t(noaa - r.methods.begin()));
         if (r.isReference(*m)) {
-            std::printf(" %10s %9s %9s", "reference", "-", "-");
+            std::printf(" %9s %8s", "reference", "-");
         } else if (m->pooled) {
-            std::printf(" %10.3f", m->pooled->mean.psnr);
+            std::printf(" %9.3f", m->pooled->mean.psnr);
             if (m->pooled->gainDb)
-                std::printf(" %+9.3f", *m->pooled->gainDb);
+                std::printf(" %+8.3f", *m->pooled->gainDb);
             else
-                std::printf(" %9s", "-");
-            std::printf(" %9.6f", m->pooled->mean.others.at("ssimLuma"));
+                std::printf(" %8s", "-");
         } else {
-            std::printf(" %10s %9s %9s", "-", "-", "-");
+            std::printf(" %9s %8s", "-", "-");
         }
-        if (m->nsPerPixel > 0)
-            std::printf(" %9.2f", m->nsPerPixel);
+        std::printf(" %16s %9s", versus ? intervalInWords(*versus).c_str() : "-",
+                    versus ? std::string(inShort(versus->why)).c_str() : "-");
+        if (m->pooled)
+            std::printf(" %8.6f", m->pooled->mean.others.at("ssimLuma"));
         else
-            std::printf(" %9s", "-");
-        std::printf(" %10.2f %10.2f", double(m->inputBytes) / (1 << 20), double(m->stateBytes) / (1 << 20));
+            std::printf(" %8s", "-");
+        if (withFlip) {
+            const auto flip = m->pooled ? m->pooled->mean.figure("flip") : std::nullopt;
+            flip ? std::printf(" %6.4f", *flip) : std::printf(" %6s", "-");
+        }
+        if (m->nsPerPixel > 0) {
+            const double perPixel = 1e9 / (double(r.width) * r.height);
+            char spread[32];
+            std::snprintf(spread, sizeof spread, "%.3g to %.3g", m->secondsLow * perPixel, m->secondsHigh * perPixel);
+            std::printf(" %8.2f %13s", m->nsPerPixel, m->timings > 1 ? spread : "once");
+        } else {
+            std::printf(" %8s %13s", "-", "-");
+        }
+        std::printf(" %8.2f %8.2f", double(m->inputBytes) / (1 << 20), double(m->stateBytes) / (1 << 20));
         if (m->deviceSecondsMedian) std::printf(" %10.4f", 1e3 * *m->deviceSecondsMedian);
         std::puts("");
     }
@@ -78,6 +99,14 @@ void printTable(const RunResults& r) {
     if (r.truthClipped)
         std::printf("truth: %zu of %zu pixels (%.3g %%) exceed the display and are clipped\n", r.truthClipped->pixels,
                     r.truthClipped->of, 100 * double(r.truthClipped->pixels) / double(r.truthClipped->of));
+    if (r.pairs.size() && noaa != r.methods.end())
+        std::puts(
+            "gain: over noaa; resolved: whether the interval excludes 0, else why not: noise = the truth's, varies = "
+            "the "
+            "difference varies over the picture, too small = too little picture to judge");
+    std::puts("ns/px: processor time of all threads, median and quartiles over the frames");
+    for (const std::string& s : {leftOutInWords(r), busyInWords(r)})
+        if (!s.empty()) std::puts(s.c_str());
     for (const auto& [kind, scale] : r.maps) std::printf("maps/%s: %s\n", kind.c_str(), scale.c_str());
     std::printf("figures: %s\n", inWords(r.protocol).c_str());
     for (const auto& [what, count] : r.sanitised)
@@ -156,6 +185,11 @@ void addBaseline(std::vector<MethodSpec>& methods, const Options& o) {
     if (!o.run.quiet)
         std::fprintf(stderr, "%s is run as well: gains are measured against it (--no-noaa: without)\n", kBaseline);
 }
+void printAdvice(const RunResults& r) {
+    const auto advice = adviceInWords(r);
+    if (!advice.empty()) std::puts("which method (gain over noaa, 95 % interval):");
+    for (const std::string& s : advice) std::printf("  %s\n", s.c_str());
+}
 
 void execute(const Options& o, Context& context) {
     RunOptions run;
@@ -181,7 +215,7 @@ void execute(const Options& o, Context& context) {
     if (o.run.json)
         std::cout << toJsonText(results) << "\n";
     else
-        printTable(results), printTemporal(results), printOverFrames(results, o.overFrames);
+        printTable(results), printTemporal(results), printOverFrames(results, o.overFrames), printAdvice(results);
     if (!o.run.json) std::printf("results: %s\n", (run.out / "results.json").c_str());
 }
 

@@ -3,14 +3,42 @@
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <time.h>
 
+#include <atomic>
 #include <vector>
 
 namespace aa {
+namespace {
+int64_t threadNanoseconds() {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return int64_t(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
+}
+struct Meter {
+    bool runs = false;
+    std::atomic<int64_t> ofOthers = 0;
+};
+thread_local Meter meter;
+}  // namespace
+
+ProcessorTime::ProcessorTime() : start_(1e-9 * double(threadNanoseconds())) {
+    meter.runs = true;
+    meter.ofOthers = 0;
+}
+ProcessorTime::~ProcessorTime() { meter.runs = false; }
+double ProcessorTime::seconds() const { return 1e-9 * double(threadNanoseconds() + meter.ofOthers) - start_; }
 
 void parallelRows(int height, int grain, const std::function<void(int, int)>& rows) {
+    Meter* const mine = &meter;  // of the caller; a task's own is another
     tbb::parallel_for(
-        tbb::blocked_range<int>(0, height, size_t(grain)), [&](const auto& r) { rows(r.begin(), r.end()); },
+        tbb::blocked_range<int>(0, height, size_t(grain)),
+        [&, measured = mine->runs](const auto& r) {
+            if (!measured || &meter == mine) return rows(r.begin(), r.end());
+            const int64_t start = threadNanoseconds();
+            rows(r.begin(), r.end());
+            mine->ofOthers += threadNanoseconds() - start;
+        },
         tbb::simple_partitioner{});
 }
 

@@ -14,6 +14,18 @@ namespace aa {
 bool isaSupported(Isa isa);  // whether this processor runs it
 std::string_view name(Isa isa);
 
+// Processor time of the thread that makes it and, meanwhile, of the threads to which it gives rows by parallelRows():
+// neither other programs on the machine nor the threads that read files lengthen it. One at a time per thread.
+class ProcessorTime {
+  public:
+    ProcessorTime();
+    ~ProcessorTime();
+    double seconds() const;
+
+  private:
+    double start_;
+};
+
 // Blocks of `grain` rows on all threads of the caller's arena. TBB stands behind dispatch.cpp alone: its headers cost
 // each file that includes them as much to compile as all else.
 void parallelRows(int height, int grain, const std::function<void(int y0, int y1)>& rows);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "kernels/dispatch.h"
 #include "shot/manifest.h"
 
 namespace aa {
@@ -15,10 +16,15 @@ void RunningMethod::accumulate(const Frame& frame, const Exec& exec) {
     if (out.width() != frame.width || out.height() != frame.height) out = Rgb(frame.width, frame.height);
     method->resolve(frame, exec, out);
 }
-double RunningMethod::resolve(const Frame& frame, const DisplayChain& chain, const Exec& exec) {
+ResolveSeconds RunningMethod::again(const Frame& frame, const Exec& exec) {
     const auto start = std::chrono::steady_clock::now();
+    const ProcessorTime processor;
     accumulate(frame, exec);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return {processor.seconds(), std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+}
+
+ResolveSeconds RunningMethod::resolve(const Frame& frame, const DisplayChain& chain, const Exec& exec) {
+    const ResolveSeconds seconds = again(frame, exec);
     out.fillBorder();
     if (spec.outputSpace() == Space::linear)
         encode(out, chain, exec, outEncoded);

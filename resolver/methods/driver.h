@@ -6,6 +6,12 @@
 
 namespace aa {
 
+// What a method took for a frame, conversions not counted.
+struct ResolveSeconds {
+    double processor = 0;  // of all its threads
+    double wall = 0;
+};
+
 // A method in progress: its specification, its state and its last output.
 struct RunningMethod {
     MethodSpec spec;
@@ -14,11 +20,13 @@ struct RunningMethod {
     Rgb outEncoded;  // display-encoded, what the metrics see
     RunningMethod(MethodSpec spec, const ShotInfo& shot);
     RunningMethod(MethodSpec spec, std::unique_ptr<Method> form);  // another form of spec's method
-    // Resolves one frame; returns the seconds that the method took, conversions not counted. `chain` is frame.display
-    // of a frame that was prepared.
-    double resolve(const Frame& frame, const DisplayChain& chain, const Exec& exec);
+    // Resolves one frame. `chain` is frame.display of a frame that was prepared.
+    ResolveSeconds resolve(const Frame& frame, const DisplayChain& chain, const Exec& exec);
     // The same for the history's sake alone: outEncoded stays as it is.
     void accumulate(const Frame& frame, const Exec& exec);
+    // Resolves it once more for the time alone. Not of a method that keeps something from frame to frame.
+    ResolveSeconds again(const Frame& frame, const Exec& exec);
+    bool isRepeatable() const { return !spec.method->temporal && spec.stages.empty(); }
 };
 
 ShotInfo shotInfo(const Manifest& manifest);

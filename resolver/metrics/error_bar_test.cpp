@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
+#include <tuple>
 
 #include "metrics/measure.h"
 
@@ -62,12 +64,19 @@ TEST(ErrorBar, ReferenceIsTheMeanOfTheHalves) {
     EXPECT_EQ(eightBit.noise, shown.noise);
 }
 
+// Halves of a truth around `exact`, and what measure() takes.
+Reference noisyTruth(const Rgb& exact, double sigma, unsigned seed) {
+    return makeReference(shifted(exact, sigma * std::sqrt(2), seed), shifted(exact, sigma * std::sqrt(2), seed + 1),
+                         {.transfer = Transfer::identity}, {});
+}
 TEST(ErrorBar, ClearDifferenceIsResolved) {
-    const Rgb truth(320, 160, 0.5f);
-    const TileErrors good = tileErrors(shifted(truth, 0.01, 1), truth, {}),
-                     bad = tileErrors(shifted(truth, 0.02, 2), truth, {});
-    const Comparison c = compareMethods(good, bad, 1e-5);
+    const Rgb exact(320, 160, 0.5f);
+    const Reference truth = noisyTruth(exact, 0.003, 7);
+    const TileErrors good = tileErrors(shifted(exact, 0.01, 1), truth, {}),
+                     bad = tileErrors(shifted(exact, 0.02, 2), truth, {});
+    const Comparison c = compareMethods(good, bad);
     EXPECT_TRUE(c.resolved);
+    EXPECT_EQ(c.why, Unresolved::no);
     EXPECT_NEAR(c.mseDifference, 0.0001 - 0.0004, 1e-5);
     EXPECT_LT(c.low, c.mseDifference);
     EXPECT_GT(c.high, c.mseDifference);
@@ -75,51 +84,94 @@ TEST(ErrorBar, ClearDifferenceIsResolved) {
     EXPECT_NEAR(c.gainDb, 20 * std::log10(2), 0.1);
     EXPECT_LT(c.gainLow, c.gainDb);
     EXPECT_GT(c.gainHigh, c.gainDb);
-    EXPECT_LT(c.gainHigh - c.gainLow, 1.2);  // the noise of 1e-5 alone may hide 0.3 dB
-    EXPECT_GT(c.gainHigh - c.gainDb, 0.3);
-    const Comparison reversed = compareMethods(bad, good, 1e-5);
+    EXPECT_LT(c.gainHigh - c.gainLow, 0.3);
+    const Comparison reversed = compareMethods(bad, good);
     EXPECT_EQ(reversed.mseDifference, -c.mseDifference);
+    EXPECT_NEAR(reversed.gainLow, -c.gainHigh, 1e-9);
     EXPECT_TRUE(reversed.resolved);
 }
-TEST(ErrorBar, DifferenceBelowTheTruthsNoiseIsNot) {
-    const Rgb truth(320, 160, 0.5f);
-    const TileErrors good = tileErrors(shifted(truth, 0.01, 1), truth, {}),
-                     bad = tileErrors(shifted(truth, 0.02, 2), truth, {});
-    EXPECT_FALSE(compareMethods(good, bad, 4e-4).resolved);
+// The truth's variance and, to second order, what the encoding makes of it are taken off.
+TEST(ErrorBar, SquaresAreFreeOfTheTruthsNoise) {
+    const Rgb exact(320, 320, 0.2f);
+    Rgb encoded;
+    encode(exact, {}, {}, encoded);
+    Rgb test = encoded;
+    for (auto& p : test.c)
+        for (int y = 0; y < 320; y++)
+            for (int x = 0; x < 320; x++) p.at(x, y) -= 0.05f;
+    const double sigma = 0.02;
+    const Reference truth =
+        makeReference(shifted(exact, sigma * std::sqrt(2), 1), shifted(exact, sigma * std::sqrt(2), 2), {}, {});
+    const TileErrors errors = tileErrors(test, truth, {});
+    const double raw = errors.squaredError().mse, exactMse = 0.05 * 0.05;
+    double free = 0, values = 0;
+    const ErrorParts parts = errorParts(errors)[0];
+    for (size_t i = 0; i < parts.squares.size(); i++) free += parts.squares[i], values += parts.values[i];
+    EXPECT_GT(std::abs(raw - exactMse), 4e-4);
+    EXPECT_GT(std::abs(raw - truth.noise - exactMse), 5e-5) << "first order alone";
+    EXPECT_NEAR(free / values, exactMse, 2e-5);  // its standard error is 4e-6
 }
-TEST(ErrorBar, DifferenceFromAFewTilesIsNot) {
-    // Equal everywhere but in one tile of 50: the mean differs, yet half the resamples hardly see it.
-    TileErrors a, b;
-    a.sum.assign(50, 1.0), a.values.assign(50, 3072);
-    b = a;
-    b.sum[7] = 3;
-    const Comparison c = compareMethods(a, b, 0);
-    EXPECT_LT(c.mseDifference, 0);
-    EXPECT_EQ(c.high, 0);
-    EXPECT_FALSE(c.resolved);
+TEST(ErrorBar, ReasonsAreNamed) {
+    const Rgb exact(160, 96, 0.5f);
+    const Comparison same = compareMethods(tileErrors(exact, exact, {}), tileErrors(exact, exact, {}));
+    EXPECT_EQ(same.why, Unresolved::equal);
+    EXPECT_FALSE(same.resolved);
+    EXPECT_EQ(same.gainDb, 0);
+    // One is better on the left and the other on the right.
+    Rgb left = exact, right = exact;
+    for (int y = 0; y < 96; y++)
+        for (int x = 0; x < 80; x++) left.c[0].at(x, y) += 0.05f, right.c[0].at(x + 80, y) += 0.051f;
+    EXPECT_FALSE(compareMethods(tileErrors(left, exact, {}), tileErrors(right, exact, {})).resolved);
+    // Now and then in every part: nothing hangs together.
+    std::mt19937 random(3);
+    Rgb a = exact, b = exact;
+    for (int i = 0; i < 40; i++) {
+        Rgb& image = i % 2 ? a : b;
+        const int x0 = 8 * int(random() % 20), y0 = 8 * int(random() % 12);
+        for (int y = y0; y < y0 + 8; y++)
+            for (int x = x0; x < x0 + 8; x++) image.c[1].at(x, y) += 0.05f;
+    }
+    EXPECT_EQ(compareMethods(tileErrors(a, exact, {}), tileErrors(b, exact, {})).why, Unresolved::varies);
+    // Everywhere the same small difference, under a noisy truth.
+    Rgb fine = exact, coarse = exact;
+    for (int y = 0; y < 96; y++)
+        for (int x = 0; x < 160; x++) fine.c[1].at(x, y) += 0.0001f, coarse.c[1].at(x, y) -= 0.0002f;
+    const Reference noisy = noisyTruth(exact, 0.02, 11);
+    EXPECT_EQ(compareMethods(tileErrors(fine, noisy, {}), tileErrors(coarse, noisy, {})).why, Unresolved::truthNoise);
+    EXPECT_TRUE(compareMethods(tileErrors(fine, exact, {}), tileErrors(coarse, exact, {})).resolved) << "an exact one";
+    // 16 x 16 px hold four tiles.
+    const Rgb little(16, 16, 0.5f), other(16, 16, 0.6f);
+    const Comparison small = compareMethods(tileErrors(little, little, {}), tileErrors(other, little, {}));
+    EXPECT_EQ(small.why, Unresolved::tooSmall);
+    EXPECT_EQ(small.gainLow, -std::numeric_limits<double>::infinity());
+    EXPECT_LT(small.mseDifference, 0);
+    for (const Unresolved why :
+         {Unresolved::no, Unresolved::truthNoise, Unresolved::varies, Unresolved::tooSmall, Unresolved::equal})
+        EXPECT_EQ(unresolvedByName(nameOf(why)), why);
+    EXPECT_THROW(unresolvedByName("weather"), std::runtime_error);
 }
-TEST(ErrorBar, SameMethodTwice) {
-    TileErrors a;
-    a.sum.assign(10, 1.0), a.values.assign(10, 3072);
-    const Comparison c = compareMethods(a, a, 0);
-    EXPECT_FALSE(c.resolved);
-    EXPECT_EQ(c.mseDifference, 0);
-    EXPECT_EQ(c.gainDb, 0);
+TEST(ErrorBar, PartsAreNearSquareAndHoldEveryTile) {
+    for (const auto& [w, h, columns, rows] :
+         {std::tuple{160, 90, 4, 4}, {400, 60, 8, 2}, {16, 900, 1, 16}, {24, 24, 3, 3}, {32, 32, 4, 4}}) {
+        const Rgb image(w, h, 0.5f), other(w, h, 0.25f);
+        const TileErrors tiles = tileErrors(image, other, {});
+        const ErrorParts parts = errorParts(tiles)[0];
+        EXPECT_EQ(parts.columns, columns) << w << " x " << h;
+        EXPECT_EQ(parts.rows, rows) << w << " x " << h;
+        double squares = 0, values = 0;
+        for (size_t i = 0; i < parts.squares.size(); i++) squares += parts.squares[i], values += parts.values[i];
+        EXPECT_NEAR(squares, tiles.totalSum(), 1e-9 * squares);
+        EXPECT_EQ(values, 3.0 * w * h);
+    }
 }
-TEST(ErrorBar, BootstrapRepeats) {
-    std::mt19937 random(5);
-    TileErrors a, b;
-    for (int i = 0; i < 40; i++)
-        a.sum.push_back(double(random() % 1000)), b.sum.push_back(double(random() % 1000)), a.values.push_back(3072),
-            b.values.push_back(3072);
-    const Comparison c = compareMethods(a, b, 0), again = compareMethods(a, b, 0);
-    EXPECT_EQ(c.low, again.low);
-    EXPECT_EQ(c.high, again.high);
-    // The interval's half width is about two standard errors of the mean difference.
-    double mean = 0, var = 0;
-    for (size_t i = 0; i < 40; i++) mean += (a.sum[i] - b.sum[i]) / 3072 / 40;
-    for (size_t i = 0; i < 40; i++) var += std::pow((a.sum[i] - b.sum[i]) / 3072 - mean, 2) / 39;
-    EXPECT_NEAR(c.high - c.low, 2 * 1.96 * std::sqrt(var / 40), 0.15 * (c.high - c.low));
+// A method that equals the truth: the gain is infinite, its lower bound not always.
+TEST(ErrorBar, NoErrorAtAll) {
+    const Rgb exact(64, 64, 0.5f);
+    const Comparison c = compareMethods(tileErrors(exact, exact, {}), tileErrors(shifted(exact, 0.02, 1), exact, {}));
+    EXPECT_TRUE(c.resolved);
+    EXPECT_EQ(c.gainDb, std::numeric_limits<double>::infinity());
+    EXPECT_EQ(c.gainHigh, std::numeric_limits<double>::infinity());
+    EXPECT_GT(c.gainLow, 0);
 }
 
 TEST(Measure, OneCallGivesAllFigures) {
@@ -165,7 +217,7 @@ TEST(ErrorBar, OverTime) {
     // Equal frames have no spread.
     EXPECT_NEAR(*errorOverTime(std::vector<FrameSum>(12, {3.0, 10.0})), 0, 1e-15);
     // Too few frames, and nothing at all, give no interval.
-    EXPECT_FALSE(errorOverTime(std::vector<FrameSum>(2, {1.0, 10.0})));
+    EXPECT_FALSE(errorOverTime(std::vector<FrameSum>(3, {1.0, 10.0})));
     EXPECT_FALSE(compareOverTime(std::vector<FrameSum>(8, {0.0, 10.0}), std::vector<FrameSum>(8, {1.0, 10.0})));
 }
 }  // namespace

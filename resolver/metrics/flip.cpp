@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "image/colour.h"
@@ -35,31 +36,60 @@ double flip(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map
 }
 
 Metric flipMetric() {
-    return {.figures = {{"flip", "FLIP", "LDR-FLIP, mean"}},
-            .nsPerPixel = 93,
+    const auto quartile = [](std::string_view name, std::string_view title, std::string_view help) {
+        return Figure{.name = name, .title = title, .help = help, .spreadOf = "flip"};
+    };
+    return {.figures = {{"flip", "FLIP", "LDR-FLIP, mean"},
+                        quartile("flipFirstQuartile", "FLIP, 1st quartile", "below which a quarter of all FLIP lies"),
+                        quartile("flipMedian", "FLIP, median", "below which half of all FLIP lies"),
+                        quartile("flipThirdQuartile", "FLIP, 3rd quartile", "below which three quarters of it lie")},
+            .byDefault = true,
+            .nsPerPixel = 100,
             .source = "[Andersson 2020]",
             .measure = [](const ImagePair& i, const Exec& exec) {
-                return std::vector{flip(i.testEncoded, i.referenceEncoded, exec)};
+                PlaneF map;
+                const double mean = flip(i.testEncoded, i.referenceEncoded, exec, &map);
+                const FlipStatistics s = flipStatistics(map);
+                return std::vector{mean, s.firstQuartile, s.median, s.thirdQuartile};
             }};
 }
 
+// Values fall into bins first, so that only those of three bins are sorted.
 FlipStatistics flipStatistics(const PlaneF& map) {
-    std::vector<float> values;
-    values.reserve(size_t(map.width()) * size_t(map.height()));
-    for (int y = 0; y < map.height(); y++) values.insert(values.end(), map.row(y), map.row(y) + map.width());
-    std::sort(values.begin(), values.end());
-    const double total = std::accumulate(values.begin(), values.end(), 0.0);
-    FlipStatistics s;
-    s.mean = total / double(values.size());
-    s.max = double(values.back());
-    double sum = 0;
-    for (const float v : values) {
-        sum += double(v);
-        if (sum < 0.25 * total) s.firstQuartile = double(v);
-        if (sum < 0.5 * total) s.median = double(v);
-        if (sum < 0.75 * total) s.thirdQuartile = double(v);
-    }
-    return s;
+    constexpr size_t kBins = 1024;
+    std::vector<double> sums(kBins);
+    std::vector<float> largest(kBins);
+    const auto binOf = [](float v) { return std::min(kBins - 1, size_t(std::max(v, 0.0f) * float(kBins))); };
+    double total = 0;
+    float most = 0;
+    for (int y = 0; y < map.height(); y++)
+        for (const float v : std::span(map.row(y), size_t(map.width()))) {
+            sums[binOf(v)] += double(v);
+            largest[binOf(v)] = std::max(largest[binOf(v)], v);
+            most = std::max(most, v);
+        }
+    for (const double sum : sums) total += sum;
+    // The largest value up to which less than `share` of the total lies.
+    const auto quartile = [&](double share) {
+        size_t bin = 0;
+        double below = 0;
+        float last = 0;
+        for (; bin + 1 < kBins && below + sums[bin] < share * total; bin++)
+            below += sums[bin], last = std::max(last, largest[bin]);
+        std::vector<float> values;
+        for (int y = 0; y < map.height(); y++)
+            for (const float v : std::span(map.row(y), size_t(map.width())))
+                if (binOf(v) == bin) values.push_back(v);
+        std::sort(values.begin(), values.end());
+        for (const float v : values) {
+            below += double(v);
+            if (below >= share * total) break;
+            last = v;
+        }
+        return double(last);
+    };
+    if (!(total > 0)) return {};
+    return {total / (double(map.width()) * map.height()), quartile(0.25), quartile(0.5), quartile(0.75), double(most)};
 }
 
 }  // namespace aa

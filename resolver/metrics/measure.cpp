@@ -9,7 +9,8 @@ namespace aa {
 Reference makeReference(const Rgb& halfA, const Rgb& halfB, const DisplayChain& display, const Exec& exec,
                         bool eightBit) {
     const int w = halfA.width(), h = halfA.height();
-    Reference r{Rgb(w, h), {}};
+    Reference r;
+    r.linear = Rgb(w, h);
     for (size_t c = 0; c < 3; c++)
         for (int y = 0; y < h; y++) {
             const float *a = halfA.c[c].row(y), *b = halfB.c[c].row(y);
@@ -23,11 +24,24 @@ Reference makeReference(const Rgb& halfA, const Rgb& halfB, const DisplayChain& 
         r.linear = r.encoded;
     }
     if (eightBit) quantise8(r.encoded, exec);
-    Rgb encodedA, encodedB;
-    encode(halfA, display, exec, encodedA);
-    encode(halfB, display, exec, encodedB);
-    r.noise = truthNoise(squaredError(encodedA, encodedB, exec).mse);
+    encode(halfA, display, exec, r.encodedA);
+    encode(halfB, display, exec, r.encodedB);
+    r.noise = truthNoise(squaredError(r.encodedA, r.encodedB, exec).mse);
+    if (r.noise == 0) {
+        r.encodedA = r.encodedB = {};
+    } else if (eightBit) {
+        quantise8(r.encodedA, exec);
+        quantise8(r.encodedB, exec);
+    }
     return r;
+}
+
+TileErrors tileErrors(const Rgb& encoded, const Reference& reference, const Exec& exec) {
+    TileErrors errors = tileErrors(encoded, reference.encoded, exec);
+    if (reference.encodedA.empty()) return errors;
+    errors.againstA = tileErrors(encoded, reference.encodedA, exec).sum;
+    errors.againstB = tileErrors(encoded, reference.encodedB, exec).sum;
+    return errors;
 }
 
 FrameMetrics frameMetrics(const SquaredError& e) {
@@ -56,9 +70,19 @@ MeasureOptions measureOptions(const std::vector<std::string>& names) {
     return options;
 }
 
+DefaultMetrics defaultMetrics(const MeasureOptions& asked, double pixels) {
+    DefaultMetrics d;
+    for (const Metric& m : metrics()) {
+        if (!m.byDefault || std::find(asked.metrics.begin(), asked.metrics.end(), &m) != asked.metrics.end()) continue;
+        d.metrics.push_back(&m);
+        d.seconds += 1e-9 * m.nsPerPixel * pixels;
+    }
+    return d;
+}
+
 FrameMetrics measure(const Rgb& encoded, const Rgb* linear, const Reference& reference, const MeasureOptions& options,
-                     const Exec& exec, TileErrors& pool) {
-    const TileErrors errors = tileErrors(encoded, reference.encoded, exec);
+                     const Exec& exec, TileErrors& pool, bool judged) {
+    const TileErrors errors = tileErrors(encoded, reference, exec);
     pool += errors;
     FrameMetrics m = frameMetrics(errors.squaredError());
     const ImagePair images{encoded, reference.encoded, linear, linear ? &reference.linear : nullptr};
@@ -68,6 +92,8 @@ FrameMetrics measure(const Rgb& encoded, const Rgb* linear, const Reference& ref
     for (const Metric& metric : metrics())
         if (metric.always) add(metric);
     for (const Metric* metric : options.metrics) add(*metric);
+    if (judged)
+        for (const Metric* metric : options.ofJudged) add(*metric);
     return m;
 }
 

@@ -26,20 +26,36 @@ void addFigures(FrameMetrics& to, const Metric& metric, const ImagePair& images,
 struct Reference {
     Rgb linear, encoded;  // mean of the halves, and its display encoding; one and the same with the identity transfer
     double noise = 0;     // MSE(encoded a, encoded b) / 4, not rounded
+    Rgb encodedA, encodedB;    // the halves as they are compared; empty where they are equal
     size_t clippedPixels = 0;  // of which the mean exceeds what the display shows (counted with the identity transfer)
 };
 // Rounded to 8-bit codes: `encoded` alone.
 Reference makeReference(const Rgb& halfA, const Rgb& halfB, const DisplayChain& display, const Exec& exec,
                         bool eightBit = false);
 
+// Squared errors against the truth, and against its halves where they differ.
+TileErrors tileErrors(const Rgb& encoded, const Reference& reference, const Exec& exec);
+
 struct MeasureOptions {
     std::vector<const Metric*> metrics;  // beside those that every run has
+    // Of the frames that are judged alone: those that a run measures without being asked.
+    std::vector<const Metric*> ofJudged = {};
 };
+// The metrics that a run measures by default and that `asked` does not name; none where they would take more than
+// kDefaultSeconds on one processor. `pixels`: of all frames that are judged, times the methods.
+inline constexpr double kDefaultSeconds = 60;
+struct DefaultMetrics {
+    std::vector<const Metric*> metrics;
+    double seconds = 0;  // about
+    bool fit() const { return seconds <= kDefaultSeconds; }
+};
+DefaultMetrics defaultMetrics(const MeasureOptions& asked, double pixels);
 // Of the names in `--metrics`. Throws UsageError.
 MeasureOptions measureOptions(const std::vector<std::string>& names);
+// `judged`: whether the frame counts in the pooled figures (MeasureOptions::ofJudged).
 // `encoded` is the method's image after the display chain; `linear` is null when the method gives encoded colour. The
 // tile errors of the encoded image are added to `pool`.
 FrameMetrics measure(const Rgb& encoded, const Rgb* linear, const Reference& reference, const MeasureOptions& options,
-                     const Exec& exec, TileErrors& pool);
+                     const Exec& exec, TileErrors& pool, bool judged = true);
 
 }  // namespace aa

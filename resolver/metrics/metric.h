@@ -23,6 +23,7 @@ struct Figure {
     // Of squared error: pooled over frames it comes from the mean squares, so that a PSNR is never a mean of decibels.
     // Null: the mean over the frames.
     double (*ofSquares)(const SquaredError&) = nullptr;
+    std::string_view spreadOf = {};  // the figure beside which it is shown, whose spread over the picture it tells
 };
 
 // Two images of one size with filled borders. The linear ones are null where there is no linear light: 8-bit files,
@@ -37,8 +38,9 @@ struct ImagePair {
 struct Metric {
     std::vector<Figure> figures;
     ColourSpace space = ColourSpace::encoded;
-    bool always = false;  // in every run; others when they are asked for
-    int nsPerPixel = 0;   // about, on one AVX2 core: what asking for it costs
+    bool always = false;     // in every run; others when they are asked for
+    bool byDefault = false;  // without being asked for, too, where a run has the time
+    int nsPerPixel = 0;      // about, on one AVX2 core: what asking for it costs
     std::string_view source;
     // One value per figure, of one frame. Empty where every figure is of squared error, which is always there.
     std::function<std::vector<double>(const ImagePair&, const Exec&)> measure = {};

@@ -33,10 +33,26 @@ double TileErrors::totalSum() const { return inOrder(sum); }
 double TileErrors::totalValues() const { return inOrder(values); }
 TileErrors& TileErrors::operator+=(const TileErrors& frame) {
     if (sum.empty()) return *this = frame;
-    assert(sum.size() == frame.sum.size());
+    assert(frame.sum.size() == sum.size() && frame.columns == columns);
+    // A frame whose truth is exact among others that are noisy counts with its error against the whole truth.
+    const auto addHalf = [&](std::vector<double>& half, const std::vector<double>& other) {
+        if (half.empty() && other.empty()) return;
+        if (half.empty()) half = sum;
+        const std::vector<double>& more = other.empty() ? frame.sum : other;
+        for (size_t i = 0; i < half.size(); i++) half[i] += more[i];
+    };
+    addHalf(againstA, frame.againstA);
+    addHalf(againstB, frame.againstB);
     for (size_t i = 0; i < sum.size(); i++) sum[i] += frame.sum[i], values[i] += frame.values[i];
     referenceSum += frame.referenceSum;
     return *this;
+}
+std::vector<double> TileErrors::coarse(size_t tiles) const {
+    const size_t across = columns ? columns : sum.size(), wide = (across + tiles - 1) / tiles,
+                 high = (sum.size() / across + tiles - 1) / tiles;
+    std::vector<double> sums(wide * high);
+    for (size_t i = 0; i < sum.size(); i++) sums[i / across / tiles * wide + i % across / tiles] += sum[i];
+    return sums;
 }
 
 TileErrors tileErrors(const Rgb& test, const Rgb& reference, const Exec& exec) {
@@ -50,6 +66,7 @@ TileErrors tileErrors(const Rgb& test, const Rgb& reference, const Exec& exec) {
     runKernel(metricsKernelsFor(exec).squaredError, exec, args, h);
 
     TileErrors errors;
+    errors.columns = size_t(tilesX);
     errors.sum.resize(size_t(tilesX) * size_t(tilesY));
     errors.values.resize(errors.sum.size());
     for (int y = 0; y < h; y++)
@@ -139,7 +156,11 @@ Metric ssimMetric(Figure figure, bool always, int nsPerPixel,
 }
 }  // namespace
 Metric ssimLumaMetric() { return ssimMetric({"ssimLuma", "SSIM", "SSIM of luma 601"}, true, 25, ssimLuma); }
-Metric ssimRgbMetric() { return ssimMetric({"ssimRgb", "SSIM RGB", "SSIM, mean over channels"}, false, 75, ssimRgb); }
+Metric ssimRgbMetric() {
+    Metric m = ssimMetric({"ssimRgb", "SSIM RGB", "SSIM, mean over channels"}, false, 75, ssimRgb);
+    m.byDefault = true;
+    return m;
+}
 Metric ssimMatlab3DMetric() {
     return ssimMetric({"ssimMatlab3D", "SSIM 3D", "SSIM as MATLAB filters an RGB array"}, false, 120, ssimMatlab3D);
 }

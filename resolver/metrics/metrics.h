@@ -23,18 +23,23 @@ double snr(const SquaredError& error);       // dB; +Inf for mse = 0, -Inf for a
 // mean((T-R)^2 / (R^2 + 0.01)), linear light (conventions 13.8).
 double relMse(const Rgb& test, const Rgb& reference, const Exec& exec);
 
-// Sums of squared error over tiles of 32 x 32 px, row-major, over pixels and channels: the unit of the paired bootstrap
-// (conventions 13.9). Frames of one sequence are added tile by tile, so that memory does not grow with their number.
+// Sums of squared error over tiles of 8 x 8 px, row-major, over pixels and channels: what intervals are made of
+// (metrics/error_bar.h). Frames of one sequence are added tile by tile, so that memory does not grow with their number.
 struct TileErrors {
-    static constexpr int kTilePx = 32;
+    static constexpr int kTilePx = 8;
+    size_t columns = 0;          // tiles in a row of the image; 0: all tiles lie in one row
     std::vector<double> sum;     // of (T - R)^2
     std::vector<double> values;  // how many pixel channels each tile holds
-    double referenceSum = 0;     // of R^2, over the image
+    // The same against either half of the truth alone; empty where its halves are equal, so that it is exact.
+    std::vector<double> againstA, againstB;
+    double referenceSum = 0;  // of R^2, over the image
 
     double totalSum() const;
     double totalValues() const;
     SquaredError squaredError() const { return {totalSum() / totalValues(), referenceSum / totalValues()}; }
     TileErrors& operator+=(const TileErrors& frame);  // same tiles, or *this still empty
+    // Sums over tiles of `tiles` times the side.
+    std::vector<double> coarse(size_t tiles) const;
 };
 TileErrors tileErrors(const Rgb& test, const Rgb& reference, const Exec& exec);
 

@@ -4,7 +4,7 @@
 namespace aa {
 
 inline constexpr int kSumStrands = 8;  // partial sums per row, by x mod 8: one order of addition for every lane width
-inline constexpr int kErrorTilePx = 32;
+inline constexpr int kErrorTilePx = 8;
 
 struct SquaredErrorArgs {
     RgbIn test, reference;

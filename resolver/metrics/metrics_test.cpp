@@ -125,15 +125,19 @@ TEST(SquaredError, PaddingDoesNotCount) {
 TEST(SquaredError, TilesSumToTheWhole) {
     const Rgb t = noise(70, 40, 6), r = noise(70, 40, 7);
     const TileErrors tiles = tileErrors(t, r, {});
-    ASSERT_EQ(tiles.sum.size(), 6u);
-    EXPECT_EQ(tiles.values[0], 3.0 * 32 * 32);
-    EXPECT_EQ(tiles.values[5], 3.0 * 6 * 8);
+    ASSERT_EQ(tiles.sum.size(), 9u * 5);
+    EXPECT_EQ(tiles.columns, 9u);
+    EXPECT_EQ(tiles.values[0], 3.0 * 8 * 8);
+    EXPECT_EQ(tiles.values[8], 3.0 * 6 * 8);
+    const std::vector<double> coarse = tiles.coarse(4);
+    ASSERT_EQ(coarse.size(), 6u);
     EXPECT_EQ(tiles.totalValues(), 3.0 * 70 * 40);
     double corner = 0;
     for (size_t c = 0; c < 3; c++)
         for (int y = 32; y < 40; y++)
             for (int x = 64; x < 70; x++) corner += std::pow(double(t.c[c].at(x, y)) - double(r.c[c].at(x, y)), 2);
-    EXPECT_NEAR(tiles.sum[5], corner, 1e-6 * corner);
+    EXPECT_NEAR(coarse[5], corner, 1e-6 * corner);
+    EXPECT_EQ(tiles.sum[44], coarse[5]);
     TileErrors twice = tiles;
     twice += tiles;
     EXPECT_DOUBLE_EQ(twice.squaredError().mse, tiles.squaredError().mse);

@@ -27,7 +27,15 @@ std::string joined(const std::vector<std::string>& parts) {
 std::string truth(const RunResults& run) {
     return run.protocol.reference.empty() ? "the truth" : run.protocol.reference;
 }
-std::string gain(const MethodResult& m) { return signedDecibelNumber(*m.pooled->gainDb) + " dB"; }
+// Over no anti-aliasing, with its interval.
+std::string gain(const RunResults& run, const MethodResult& m) {
+    std::string s = signedDecibelNumber(*m.pooled->gainDb) + " dB";
+    if (const MethodResult* noaa = findNoaa(run); noaa && noaa != &m)
+        if (const auto c = compared(run, size_t(&m - run.methods.data()), size_t(noaa - run.methods.data()));
+            c && c->why != Unresolved::tooSmall && c->why != Unresolved::equal)
+            s += " (95 %: " + intervalInWords(*c) + ")";
+    return s;
+}
 
 // Methods with figures, best first.
 std::vector<size_t> ranking(const RunResults& run) {
@@ -48,7 +56,7 @@ std::string bestSentence(const RunResults& run, const std::vector<size_t>& order
     std::string s = best.text + " is nearest to " +
                     (run.protocol.reference.empty() ? "the ground truth" : run.protocol.reference) + ": PSNR " +
                     decibels(best.pooled->mean.psnr);
-    if (best.pooled->gainDb && best.id != "noaa") s += ", " + gain(best) + " over no anti-aliasing";
+    if (best.pooled->gainDb && best.id != "noaa") s += ", " + gain(run, best) + " over no anti-aliasing";
     if (!peers.empty()) s += "; " + joined(peers) + " cannot be told apart from it";
     return s + ".";
 }
@@ -63,7 +71,7 @@ std::string cheapestSentence(const RunResults& run, const std::vector<size_t>& o
             cheapest = &m;
     }
     if (!cheapest || cheapest == &run.methods[order[0]]) return {};
-    return cheapest->text + " is the cheapest that helps: " + gain(*cheapest) + " for " +
+    return cheapest->text + " is the cheapest that helps: " + gain(run, *cheapest) + " for " +
            shortNumber(cheapest->nsPerPixel) + " ns per pixel, where " + run.methods[order[0]].text + " takes " +
            shortNumber(run.methods[order[0]].nsPerPixel) + ".";
 }
@@ -71,7 +79,7 @@ std::string harmSentence(const RunResults& run, const std::vector<size_t>& order
     std::vector<std::string> worse;
     for (const size_t i : order)
         if (i != noaa && *run.methods[i].pooled->gainDb < 0 && resolved(run, i, noaa))
-            worse.push_back(run.methods[i].text + " (" + gain(run.methods[i]) + ")");
+            worse.push_back(run.methods[i].text + " (" + gain(run, run.methods[i]) + ")");
     if (worse.empty()) return {};
     return joined(worse) + (worse.size() == 1 ? " is" : " are") + " farther from " + truth(run) +
            " than no anti-aliasing at all.";
@@ -157,18 +165,36 @@ std::string flickerSentence(const RunResults& run) {
     return "Of the methods with history, " + codes(least) + " flickers least and " + codes(most) + " most.";
 }
 
-std::string unresolvedSentence(const RunResults& run) {
-    std::vector<std::string> pairs;
-    for (const auto& p : run.pairs)
-        if (!p.comparison.resolved) pairs.push_back(run.methods[p.first].text + " and " + run.methods[p.second].text);
+// One sentence for each reason for which pairs are not told apart.
+std::vector<std::string> unresolvedSentences(const RunResults& run) {
     if (run.pairs.empty()) return {};
-    if (pairs.empty()) return "All methods can be told apart: every difference is larger than the error bar.";
+    struct Reason {
+        Unresolved why;
+        const char* words;
+    };
+    constexpr Reason kReasons[] = {
+        {Unresolved::truthNoise, "Not told apart, for the truth's noise hides what they differ by"},
+        {Unresolved::varies, "Not told apart, for now one is better and now the other over the picture"},
+        {Unresolved::tooSmall, "Too little picture to judge: it has too few independent parts"},
+        {Unresolved::equal, "Equal"},
+    };
     constexpr size_t kListed = 6;
-    const size_t more = pairs.size() > kListed ? pairs.size() - kListed : 0;
-    pairs.resize(pairs.size() - more);
-    std::string s = "Below the error bar, so not resolved: ";
-    for (size_t i = 0; i < pairs.size(); i++) s += (i ? "; " : "") + pairs[i];
-    return s + (more ? "; and " + std::to_string(more) + " more pairs." : ".");
+    std::vector<std::string> sentences;
+    for (const Reason& reason : kReasons) {
+        std::vector<std::string> pairs;
+        for (const auto& p : run.pairs)
+            if (!p.comparison.resolved && p.comparison.why == reason.why)
+                pairs.push_back(run.methods[p.first].text + " and " + run.methods[p.second].text);
+        if (pairs.empty()) continue;
+        const size_t more = pairs.size() > kListed ? pairs.size() - kListed : 0;
+        pairs.resize(pairs.size() - more);
+        std::string s = std::string(reason.words) + ": ";
+        for (size_t i = 0; i < pairs.size(); i++) s += (i ? "; " : "") + pairs[i];
+        sentences.push_back(s + (more ? "; and " + std::to_string(more) + " more pairs." : "."));
+    }
+    if (sentences.empty())
+        sentences.push_back("All methods can be told apart: no 95 % interval of a difference holds zero.");
+    return sentences;
 }
 std::string truthSentence(const RunResults& run, const std::vector<size_t>& order) {
     if (!run.truthNoise || *run.truthNoise == 0) return {};
@@ -210,8 +236,10 @@ std::vector<std::string> captions(const RunResults& run) {
     for (auto& s : sharpenSentences(run, order)) add(s);
     add(ghostSentence(run));
     add(flickerSentence(run));
-    add(unresolvedSentence(run));
+    for (auto& s : unresolvedSentences(run)) add(s);
     add(truthSentence(run, order));
+    add(leftOutInWords(run));
+    add(busyInWords(run));
     return all;
 }
 

@@ -61,6 +61,31 @@ std::string runLine(const RunResults& run) {
     return line;
 }
 
+std::string intervalInWords(const Comparison& c) {
+    if (c.why == Unresolved::tooSmall) return "none";
+    return signedDecibelNumber(c.gainLow) + " to " + signedDecibelNumber(c.gainHigh);
+}
+
+std::string busyInWords(const RunResults& run) {
+    if (!run.load || !run.load->busy()) return {};
+    std::string s = "The machine was busy";
+    if (run.load->before > 0.5 * run.load->processors)
+        s += ": " + printed("%.1f", run.load->before) + " programs wanted its " + std::to_string(run.load->processors) +
+             (run.load->processors == 1 ? " processor" : " processors") + " before the run";
+    if (run.load->waited.value_or(0) > 0.1)
+        s += (s.back() == 'y' ? ": " : ", and ") + std::string("the methods waited for one ") +
+             printed("%.0f", 100 * *run.load->waited) + " % of the time";
+    return s +
+           ". Times are of the processor, yet caches and clock rates are shared: compare them within this run alone.";
+}
+std::string leftOutInWords(const RunResults& run) {
+    if (run.leftOut.empty()) return {};
+    std::string names;
+    for (const auto& [name, seconds] : run.leftOut) names += (names.empty() ? "" : ",") + name;
+    return "Left out, since measuring would have taken about " + printed("%.0f", run.leftOut.begin()->second) +
+           " s: " + names + ". Ask for them by --metrics " + names + ".";
+}
+
 const Comparison* comparisonOf(const RunResults& run, size_t a, size_t b) {
     for (const auto& p : run.pairs)
         if ((p.first == a && p.second == b) || (p.first == b && p.second == a)) return &p.comparison;

@@ -19,5 +19,10 @@ std::string similarity(double v);  // 6 decimals: three saturate (conventions 13
 std::string runLine(const RunResults& run);
 // The comparison of two methods in either order (its signs are those of the stored pair); null without truth.
 const Comparison* comparisonOf(const RunResults& run, size_t a, size_t b);
+std::string intervalInWords(const Comparison& c);  // +0.12 to +0.34; "none" where there is none
+// What was measured of the machine while methods were timed, where it was too busy for their times to be trusted.
+std::string busyInWords(const RunResults& run);
+// What is not measured since it would have taken too long, and how to ask for it.
+std::string leftOutInWords(const RunResults& run);
 
 }  // namespace aa

@@ -9,6 +9,7 @@
 #include "image/png.h"
 #include "methods/method.h"
 #include "metrics/maps.h"
+#include "report/advice.h"
 #include "report/caption.h"
 #include "report/page.h"
 #include "report/sheet.h"
@@ -62,13 +63,13 @@ std::string reportHtml(const RunResults& run, const ViewerData& viewer, const st
     }
     data["figures"] = json::array();
     for (const Figure* f : figuresIn(run))
-        if (!f->ofSquares)  // those have columns of their own
-            data["figures"].push_back({{"name", f->name},
-                                       {"title", f->title},
-                                       {"better", f->higherIsBetter ? "high" : "low"},
-                                       {"form", f->form == FigureForm::similarity ? "similarity"
-                                                : f->form == FigureForm::decibels ? "decibels"
-                                                                                  : "significant"}});
+        if (!f->ofSquares && f->spreadOf.empty())  // those of squares have columns of their own
+            data["figures"].push_back(figureJson(*f));
+    for (const Figure* f : figuresIn(run))
+        if (!f->spreadOf.empty())
+            for (json& shown : data["figures"])
+                if (shown["name"] == f->spreadOf) shown["spread"].push_back(f->name);
+    data["advice"] = adviceInWords(run);
     data["passBytes"] = json::object();
     for (const PassInfo& p : allPasses())  // colour is there without any method
         if (p.pass != Pass::color)
@@ -82,6 +83,7 @@ std::string reportHtml(const RunResults& run, const ViewerData& viewer, const st
     return filled(web::html, {{"head", pageHead("AA Resolve: " + run.shot, {web::css, web::viewerCss})},
                               {"chart", web::chart},
                               {"common", web::common},
+                              {"tables", web::tables},
                               {"viewer", viewerScripts()},
                               {"js", web::js},
                               {"angles", angles},

@@ -8,6 +8,7 @@
 #include <regex>
 
 #include "image/io.h"
+#include "report/advice.h"
 #include "report/caption.h"
 
 namespace aa {
@@ -26,7 +27,8 @@ MethodResult method(const std::string& id, double mse, double seconds) {
     return m;
 }
 // Tile errors that agree with the methods' MSE, equal in all tiles: every difference is consistent.
-RunResults runOf(std::vector<MethodResult> methods, double noise) {
+// `noisy` moves every second tile of the last method up or down, `byTruth` by what the truth's halves differ in.
+RunResults runOf(std::vector<MethodResult> methods, double noise, double noisy = 0, bool byTruth = false) {
     RunResults run;
     run.shot = "</script><b>shot", run.width = run.height = 100, run.truthNoise = noise, run.programVersion = "1";
     run.methods = std::move(methods);
@@ -35,6 +37,14 @@ RunResults runOf(std::vector<MethodResult> methods, double noise) {
         TileErrors e;
         e.values.assign(16, 3072);
         e.sum.assign(16, 3072 * m.frames[0].metrics->mse);
+        if (noisy > 0) {
+            e.againstA = e.againstB = e.sum;
+            for (size_t i = 0; i < 16 && &m == &run.methods.back(); i++) {
+                const double moved = 3072 * noisy * (i * 7 % 16 % 4 < 2 ? 1 : -1);
+                for (auto* v : {&e.sum, &e.againstA, &e.againstB}) (*v)[i] += moved;
+                if (byTruth) e.againstA[i] += moved, e.againstB[i] -= moved;
+            }
+        }
         errors.push_back(e);
     }
     finish(run, errors);
@@ -53,22 +63,61 @@ TEST(Caption, FollowsTheFigures) {
         runOf({method("noaa", 1e-3, 1e-5), method("accum", 1e-4, 9e-5), method("fxaa311", 5e-4, 3e-5),
                method("uncharted", 4e-3, 5e-5), method("unchartedNorm", 2e-4, 5e-5)},
               1e-7);
-    EXPECT_TRUE(says(run, "accum is nearest to the ground truth: PSNR 40.00 dB, +10.00 dB over no anti-aliasing."))
+    EXPECT_TRUE(says(run,
+                     "accum is nearest to the ground truth: PSNR 40.00 dB, +10.00 dB (95 %: +10.00 to +10.00) "
+                     "over no anti-aliasing."))
         << allOf(captions(run));
-    EXPECT_TRUE(says(run, "fxaa311 is the cheapest that helps: +3.01 dB for 3 ns per pixel, where accum takes 9."));
-    EXPECT_TRUE(says(run, "uncharted (-6.02 dB) is farther from the truth than no anti-aliasing"));
+    EXPECT_TRUE(says(run,
+                     "fxaa311 is the cheapest that helps: +3.01 dB (95 %: +3.01 to +3.01) for 3 ns per pixel, where "
+                     "accum takes 9."));
+    EXPECT_TRUE(
+        says(run, "uncharted (-6.02 dB (95 %: -6.02 to -6.02)) is farther from the truth than no anti-aliasing"));
     EXPECT_TRUE(says(run, "The sharpen filter of uncharted costs 13.01 dB"));
     EXPECT_TRUE(says(run, "All methods can be told apart"));
     EXPECT_TRUE(says(run, "0.1 % of the smallest error."));
 }
 TEST(Caption, SaysWhatIsNotResolved) {
-    const RunResults run =
-        runOf({method("noaa", 1e-3, 1e-5), method("a", 1.00e-4, 2e-5), method("b", 1.01e-4, 2e-5)}, 2e-6);
+    const auto threeOf = [](bool byTruth) {
+        return runOf({method("noaa", 1e-3, 1e-5), method("a", 1.00e-4, 2e-5), method("b", 1.01e-4, 2e-5)}, 2e-6, 2e-5,
+                     byTruth);
+    };
+    const RunResults run = threeOf(false);
     EXPECT_TRUE(says(run, "; b cannot be told apart from it.")) << allOf(captions(run));
-    EXPECT_TRUE(says(run, "Below the error bar, so not resolved: a and b."));
+    EXPECT_TRUE(says(run, "Not told apart, for now one is better and now the other over the picture: a and b."))
+        << allOf(captions(run));
+    EXPECT_TRUE(says(threeOf(true), "Not told apart, for the truth's noise hides what they differ by: a and b."))
+        << allOf(captions(threeOf(true)));
     EXPECT_TRUE(says(run, "render the truth with more samples"));
     EXPECT_FALSE(says(run, "sharpen"));
     EXPECT_FALSE(says(run, "farther"));
+}
+// What a budget buys: fxaa311 first, then the temporal method that asks for motion; the dear one that is not resolved
+// from it, and the one that harms, are not named as steps.
+TEST(Advice, NamesTheBestOfEveryBudgetAndInput) {
+    auto methods =
+        std::vector{method("noaa", 1e-3, 1e-5),    method("fxaa311", 5e-4, 3e-5), method("smaa1x", 4e-4, 6e-5),
+                    method("worse", 2e-3, 2e-5),   method("karis", 1e-4, 9e-5),   method("gbaa", 4.5e-4, 9e-5),
+                    method("same", 4.001e-4, 7e-5)};
+    for (auto& m : methods) m.passes = {"color"};
+    methods[4].passes = {"color", "depth", "motion"};
+    methods[5].passes = {"color", "edges"};
+    const RunResults run = runOf(methods, 0, 1e-5);
+    const auto advice = adviceOf(run);
+    ASSERT_EQ(advice.size(), 2u) << "edges buy nothing more here";
+    ASSERT_EQ(advice[0].steps.size(), 2u);
+    EXPECT_EQ(advice[0].steps[0].method, 1u);
+    EXPECT_EQ(advice[0].steps[1].method, 2u);
+    ASSERT_EQ(advice[1].steps.size(), 3u);
+    EXPECT_EQ(advice[1].steps[2].method, 4u);
+    const auto words = adviceInWords(run);
+    EXPECT_NE(words[0].find("From colour alone: from 3 ns/px fxaa311 (+3.01 dB, "), std::string::npos) << words[0];
+    EXPECT_NE(words[1].find("With depth, motion and the like: "), std::string::npos) << words[1];
+    EXPECT_TRUE(adviceOf(runOf({method("fxaa311", 5e-4, 3e-5)}, 0)).empty()) << "no noaa";
+    // A cheaper method from which the chosen one is not told apart is named beside it.
+    const RunResults near =
+        runOf({method("noaa", 1e-3, 1e-5), method("late", 4.0e-4, 9e-5), method("early", 4.1e-4, 6e-5)}, 0, 5e-5);
+    ASSERT_EQ(adviceOf(near).size(), 1u);
+    EXPECT_EQ(adviceOf(near)[0].steps.size(), 1u) << "the dearer one is not resolved better";
 }
 TEST(Caption, SharpeningCanGainAndCanBeAParameter) {
     const RunResults gains = runOf({method("uncharted", 1e-4, 1e-5), method("unchartedNorm", 2e-4, 1e-5)}, 0);
@@ -132,7 +181,7 @@ TEST(Results, OverTimeSurvivesTheFile) {
     const RunResults back = readResults(folder);
     EXPECT_EQ(toJsonText(back), toJsonText(run));
     EXPECT_TRUE(back.methods[1].frames[3].rejected && back.methods[1].frames[3].temporal);
-    EXPECT_EQ(back.methods[1].tileSquares.size(), 16u);
+    EXPECT_EQ(back.methods[1].tileSquares.size(), 4u) << "four tiles of 32 px";
     EXPECT_TRUE(back.pairs[2].flicker);
     fs::remove_all(folder);
 }

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "image/json_text.h"
+#include "metrics/metric.h"
 #include "report/web/web_files.h"
 
 namespace aa {
@@ -33,6 +34,15 @@ std::string forScript(const nlohmann::ordered_json& j) {
         safe += c;
     }
     return safe;
+}
+
+nlohmann::ordered_json figureJson(const Figure& f) {
+    return {{"name", f.name},
+            {"title", f.title},
+            {"better", f.higherIsBetter ? "high" : "low"},
+            {"form", f.form == FigureForm::similarity ? "similarity"
+                     : f.form == FigureForm::decibels ? "decibels"
+                                                      : "significant"}};
 }
 
 std::string forHtml(const std::string& text) {

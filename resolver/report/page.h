@@ -7,11 +7,14 @@
 #include <utility>
 
 namespace aa {
+struct Figure;
 
 // `page` with each {{name}} replaced. What is put in is not searched for places again.
 std::string filled(std::string_view page, std::initializer_list<std::pair<std::string_view, std::string_view>> places);
 // Inside <script>, "</" would end it; "<\/" is the same JSON string.
 std::string forScript(const nlohmann::ordered_json& j);
+// A figure of the program's table as the pages read it.
+nlohmann::ordered_json figureJson(const Figure& figure);
 std::string forHtml(const std::string& text);
 
 // Everything before <body>, the same on every page: `title` is text, `styles` are inlined in this order.

@@ -81,17 +81,12 @@ struct Interval {
     double low = 0, high = 0;
     std::string unit;
 };
-constexpr size_t kFewestTiles = 4;  // below, resampling them says little
-std::optional<Interval> overTiles(const RunResults& a, const MethodResult& before, const RunResults& b,
-                                  const MethodResult& now) {
-    const TileErrors first = tileErrorsOf(a, before), second = tileErrorsOf(b, now);
-    if (first.sum.size() < kFewestTiles || first.sum.size() != second.sum.size() ||
-        first.sum.size() != first.values.size())
+std::optional<Interval> overParts(const MethodResult& before, const MethodResult& now) {
+    if (before.parts.empty() || before.parts.size() != now.parts.size() ||
+        before.parts[0].squares.size() != now.parts[0].squares.size())
         return {};
-    // One truth: its noise is in both errors and falls out of their difference.
-    const bool oneTruth = !a.shotHash.empty() && a.shotHash == b.shotHash;
-    const double noise = oneTruth ? 0 : std::max(a.truthNoise.value_or(0), b.truthNoise.value_or(0));
-    const Comparison c = compareMethods(first, second, noise);
+    const Comparison c = compareMethods(before.parts, now.parts);
+    if (c.why == Unresolved::tooSmall) return {};
     return Interval{c.gainLow, c.gainHigh, "dB"};  // of PSNR(before) - PSNR(now)
 }
 std::optional<Interval> decibelsOverFrames(const std::vector<FrameSum>& before, const std::vector<FrameSum>& now) {
@@ -129,12 +124,11 @@ std::optional<Interval> overFrames(const MethodResult& before, const MethodResul
     const double mean = sum / double(worsening.size());
     return Interval{mean - *half, mean + *half, ""};
 }
-std::optional<Interval> intervalOf(const RunResults& base, const MethodResult& before, const RunResults& run,
-                                   const MethodResult& now, const Held& h) {
+std::optional<Interval> intervalOf(const MethodResult& before, const MethodResult& now, const Held& h) {
     if (h.isTime) return {};
     if (h.overTime) return decibelsOverFrames(sumsOf(before, h), sumsOf(now, h));
     const Figure* figure = figureByName(h.name);
-    if (figure && figure->ofSquares) return overTiles(base, before, run, now);
+    if (figure && figure->ofSquares) return overParts(before, now);
     return overFrames(before, now, h);
 }
 
@@ -322,7 +316,7 @@ GateReport gate(const RunResults& base, const RunResults& now, const GateOptions
             } else if (!row.before) {
                 row.verdict = Verdict::added;
             } else {
-                row.verdict = judged(row, before, *after, h, [&] { return intervalOf(base, before, now, *after, h); });
+                row.verdict = judged(row, before, *after, h, [&] { return intervalOf(before, *after, h); });
             }
             row.rerun = rerunLine(now, *after);
             report.rows.push_back(std::move(row));

@@ -68,7 +68,7 @@ void Judge::look(const Frame& frame, const std::shared_ptr<const Truth>& truth, 
 // Known figures, once the image has been seen to be the one that they are of.
 FrameMetrics Judge::again(const FrameMetrics& known, const Rgb& encoded, const Reference& reference,
                           TileErrors& pool) const {
-    const TileErrors errors = tileErrors(encoded, reference.encoded, options_.exec);
+    const TileErrors errors = tileErrors(encoded, reference, options_.exec);
     pool += errors;
     if (errors.squaredError().mse != known.mse)
         throw InputError("frame " + std::to_string(number_) +
@@ -76,16 +76,20 @@ FrameMetrics Judge::again(const FrameMetrics& known, const Rgb& encoded, const R
     return known;
 }
 
-FrameResult Judge::judge(size_t k, const RunningMethod& method, double seconds, const FrameResult* known) {
+FrameResult Judge::judge(size_t k, const RunningMethod& method, const ResolveSeconds& seconds,
+                         const FrameResult* known) {
     FrameResult result;
     result.frame = number_;
-    result.seconds = seconds;
+    result.seconds = seconds.processor;
+    result.wallSeconds = seconds.wall;
     if (&method == standIn_) return result;
     if (reference_) {
+        const bool last = seen_ == options_.frames.size();
         const bool linear = method.spec.outputSpace() == Space::linear;
         const auto take = [&](const Rgb& encoded, const Rgb& out) {
             if (known && known->metrics) return again(*known->metrics, encoded, measured(), errors_[k]);
-            return measure(encoded, linear ? &out : nullptr, measured(), options_.measure, options_.exec, errors_[k]);
+            return measure(encoded, linear ? &out : nullptr, measured(), options_.measure, options_.exec, errors_[k],
+                           !manifest_.isStatic || last);
         };
         const auto& region = options_.protocol.region;
         result.metrics = region ? take(cropped(method.outEncoded, *region), cropped(method.out, *region))

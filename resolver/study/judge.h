@@ -22,7 +22,8 @@ class Judge {
     // Figures of what method `k` gave for it; of the stand-in none, which would be held against itself.
     // Where its figures are `known`, only the sums that the whole run needs are made again. Throws InputError where
     // they are not those of this image.
-    FrameResult judge(size_t k, const RunningMethod& method, double seconds, const FrameResult* known = nullptr);
+    FrameResult judge(size_t k, const RunningMethod& method, const ResolveSeconds& seconds,
+                      const FrameResult* known = nullptr);
     // Once all methods are judged: squared error where history was rejected, of every method that keeps the mask (one
     // with a fill) and of its peers without or with another fill, which reject the same pixels.
     void judgeRejected(const std::vector<RunningMethod>& methods, std::vector<MethodResult>& results) const;

@@ -16,15 +16,18 @@
 
 namespace aa {
 
+inline constexpr size_t kResultTilePx = 32;
+
 struct FrameResult {
     int frame = 0;
-    double seconds = 0;                       // of this resolve on the processor; 0: it did not run there
+    double seconds = 0;                       // of processor time, of all threads; 0: it did not run there
     std::optional<FrameMetrics> metrics;      // only when the frame has ground truth
     bool judged = true;                       // counts in the pooled figures; of a static shot only the last frame does
     std::string image;                        // relative path of the written image; empty when none was
     std::optional<TemporalFrame> temporal{};  // of a sequence, after the warm-up
     // Squared error where this method, or the one that it fills, rejected its history; not of a frame without history.
     std::optional<FrameSum> rejected{};
+    double wallSeconds = 0;
     std::optional<double> deviceSeconds{};  // on RunResults::device, by its own clock
 };
 
@@ -46,24 +49,25 @@ struct MethodResult {
     std::map<std::string, std::string, std::less<>> parameters;
     std::vector<std::string> passes;
     std::vector<FrameResult> frames;
+    std::vector<double> moreSeconds;  // of frames resolved again for the time alone, where the frames are few
     // Memory in the program's own formats (conventions 13.7): the passes that it reads, sub-samples counted; the
     // picture that it writes; its history and scratch.
     size_t inputBytes = 0, targetBytes = 0, stateBytes = 0;
     size_t bytes() const { return inputBytes + targetBytes + stateBytes; }
     // Filled by finish():
-    // Per frame, on the processor; ns/px from the median. 0: the method did not run there.
+    // Processor time of a frame, over `timings` of them; ns/px from the median. 0: the method did not run there.
     double secondsMedian = 0, secondsMin = 0, nsPerPixel = 0;
+    double secondsLow = 0, secondsHigh = 0;  // quartiles; those of few timings are the least and the most
+    int timings = 0;
+    double wallMedian = 0;  // by the clock, with the run's threads
     std::optional<double> deviceSecondsMedian, deviceSecondsMin;
     std::optional<PooledMetrics> pooled;
-    std::vector<double> tileSquares;  // sums of squared error of tiles of 32 x 32 px, so that runs can be paired
+    std::vector<double> tileSquares;  // sums of squared error of tiles of kResultTilePx squared
+    std::vector<ErrorParts> parts;    // from which methods are compared, within a run and between runs of one shot
     std::optional<TemporalMetrics> temporal;  // of a sequence
     // Over the frames that have FrameResult::rejected; absent when no history was rejected.
     std::optional<double> rejectedMse, rejectedShare;
 };
-
-struct RunResults;
-// Sums over tiles as the results keep them; of a method without figures empty.
-TileErrors tileErrorsOf(const RunResults& run, const MethodResult& method);
 
 // A figure over the judged frames, as [Oliveros 2018, 5.9] prints it: the frames are those where the best and the worst
 // first occur. The mean of an infinite PSNR is infinite, which is why the pooled figure stands beside it.
@@ -86,6 +90,16 @@ struct PairResult {
 // of [Oliveros 2018] clamps every sample, which a mean cannot make up for.
 struct ClippedPixels {
     size_t pixels = 0, of = 0;
+};
+
+// What else the machine did while the methods were timed. Processor time is spared the worst of it, not shared caches,
+// memory and clock rates.
+struct MachineLoad {
+    double before = 0;   // programs that wanted a processor in the minute before the run
+    int processors = 1;  // of the machine
+    std::optional<double>
+        waited{};  // share of the methods' time by the clock that they had no processor; of one thread
+    bool busy() const { return before > 0.5 * processors || waited.value_or(0) > 0.1; }
 };
 
 // The graphics device on which the methods ran, or which was timed beside the processor.
@@ -124,6 +138,9 @@ struct RunResults {
     std::string programVersion, isa, precision, machine;
     int threads = 1;
     std::optional<RunDevice> device;
+    std::optional<MachineLoad> load;  // absent where nothing was timed on the processor
+    // Figures that a run has by default and this one has not, since they would have taken about so many seconds.
+    std::map<std::string, double> leftOut;
     Protocol protocol;
     size_t warmUpFrames = 0;                      // that ran before the first judged one, for a full history
     std::map<std::string, std::string> maps;      // kinds of maps that were written, and their scales
@@ -142,9 +159,11 @@ struct RunResults {
 std::string rerunLine(const RunResults& run, const MethodResult& method);
 // "interrupted after 8 of 16 frames"; empty for a run that is complete.
 std::string incompleteInWords(const RunResults& run);
+// The comparison of methods a and b, turned as it is asked for: gains are positive where `a` is nearer to the truth.
+std::optional<Comparison> compared(const RunResults& run, size_t a, size_t b);
 
 // Fills medians, ns/px, pooled figures, gains and pairs. `errors[m]` are the tile errors of methods[m] summed over the
-// frames with truth (empty TileErrors when there is none).
+// frames with truth; those that are empty leave what a method has (MethodResult::parts of an earlier run).
 void finish(RunResults& run, const std::vector<TileErrors>& errors);
 
 // OUT/results.json and OUT/results.csv through temporary names. Throws InputError when they cannot be written.

@@ -107,6 +107,10 @@ class Writer {
         json& j = to_[key] = json::array();
         for (const T& v : all) members(Writer(j.emplace_back(json::object())), v);
     }
+    template <class T>
+    void sparseList(const char* key, const std::vector<T>& all) {
+        if (!all.empty()) list(key, all);
+    }
 
   private:
     json& to_;
@@ -161,6 +165,10 @@ class Reader {
     template <class T>
     void list(const char* key, std::vector<T>& all) {
         for (const json& j : from_.at(key)) members(Reader(j), all.emplace_back());
+    }
+    template <class T>
+    void sparseList(const char* key, std::vector<T>& all) {
+        if (from_.contains(key)) list(key, all);
     }
 
   private:
@@ -242,10 +250,20 @@ void members(V v, S& c) {
     v.value("high95", c.high);
     v.value("resolved", c.resolved);
 }
+template <class V, Is<ErrorParts> S>
+void members(V v, S& p) {
+    v.value("columns", p.columns);
+    v.value("rows", p.rows);
+    v.value("squares", p.squares);
+    v.value("halves", p.halves);
+    v.value("values", p.values);
+    v.value("measured", p.measured);
+}
 template <class V, Is<FrameResult> S>
 void members(V v, S& f) {
     v.value("frame", f.frame);
     v.value("seconds", f.seconds);
+    v.sparse("wallSeconds", f.wallSeconds, f.wallSeconds > 0);
     v.maybe("deviceSeconds", f.deviceSeconds);
     v.value("judged", f.judged);
     v.sparse("image", f.image, !f.image.empty());
@@ -277,6 +295,10 @@ void members(V v, S& m) {
     v.value("stateBytes", m.stateBytes);
     v.value("secondsMedian", m.secondsMedian);
     v.value("secondsMin", m.secondsMin);
+    v.sparse("secondsLow", m.secondsLow, m.timings > 0);
+    v.sparse("secondsHigh", m.secondsHigh, m.timings > 0);
+    v.sparse("timings", m.timings, m.timings > 0);
+    v.sparse("wallSecondsMedian", m.wallMedian, m.wallMedian > 0);
     v.value("nsPerPixel", m.nsPerPixel);
     v.maybe("deviceSecondsMedian", m.deviceSecondsMedian);
     v.maybe("deviceSecondsMin", m.deviceSecondsMin);
@@ -290,6 +312,7 @@ void members(V v, S& m) {
     v.list("frames", m.frames);
     v.maybeObject("temporal", m.temporal);
     v.sparse("tileSquares", m.tileSquares, !m.tileSquares.empty());
+    v.sparseList("errorParts", m.parts);
     v.groupIf(m.rejectedMse.has_value(), "rejected", [&](auto rejected) {
         rejected.orNull("mse", m.rejectedMse);
         rejected.orNull("share", m.rejectedShare);
@@ -305,9 +328,19 @@ void members(V v, S& p) {
     v.value("gainLow95", p.comparison.gainLow);
     v.value("gainHigh95", p.comparison.gainHigh);
     v.value("resolved", p.comparison.resolved);
+    std::string why(kReads<V> ? nameOf(Unresolved::varies) : nameOf(p.comparison.why));
+    v.sparse("unresolved", why, !p.comparison.resolved);
+    if constexpr (kReads<V>) p.comparison.why = p.comparison.resolved ? Unresolved::no : unresolvedByName(why);
     v.maybeObject("ghost", p.ghost);
     v.maybeObject("flicker", p.flicker);
     v.maybeObject("rejected", p.rejected);
+}
+template <class V, Is<MachineLoad> S>
+void members(V v, S& l) {
+    v.value("before", l.before);
+    v.value("processors", l.processors);
+    v.maybe("waitedShare", l.waited);
+    v.derived("busy", l.busy());
 }
 template <class V, Is<RunDevice> S>
 void members(V v, S& d) {
@@ -370,6 +403,8 @@ void members(V all, S& run) {
         v.value("threads", run.threads);
         v.value("machine", run.machine);
         v.maybeObject("device", run.device);
+        v.maybeObject("load", run.load);
+        v.sparse("figuresLeftOut", run.leftOut, !run.leftOut.empty());
         v.group("display", [&](auto d) {
             d.value("exposureEv", run.protocol.display.exposure);
             d.value("toneMap", run.protocol.display.toneMap);

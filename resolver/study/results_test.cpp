@@ -44,8 +44,9 @@ RunResults twoMethods() {
 }
 std::vector<TileErrors> errorsOf(double a, double b) {
     TileErrors first, second;
-    first.sum.assign(8, a), first.values.assign(8, 3072), second = first;
-    second.sum.assign(8, b);
+    first.columns = 4;
+    first.sum.assign(16, a), first.values.assign(16, 192), second = first;
+    second.sum.assign(16, b);
     return {first, second};
 }
 
@@ -115,9 +116,19 @@ TEST(Results, UnjudgedFramesAreLeftOut) {
 TEST(Results, TimesAreMedians) {
     RunResults run = twoMethods();
     finish(run, {});
-    EXPECT_DOUBLE_EQ(run.methods[0].secondsMedian, 2e-3);
+    // Of three frames the first, which allocates, does not count; of one or two frames all do.
+    EXPECT_DOUBLE_EQ(run.methods[0].secondsMedian, 1.5e-3);
     EXPECT_DOUBLE_EQ(run.methods[0].secondsMin, 1e-3);
-    EXPECT_DOUBLE_EQ(run.methods[0].nsPerPixel, 2e-3 * 1e9 / 5000);
+    EXPECT_DOUBLE_EQ(run.methods[0].secondsHigh, 2e-3);
+    EXPECT_EQ(run.methods[0].timings, 2);
+    EXPECT_DOUBLE_EQ(run.methods[0].nsPerPixel, 1.5e-3 * 1e9 / 5000);
+    EXPECT_EQ(run.methods[1].timings, 2);
+    run.methods[0].frames.resize(1);
+    run.methods[0].moreSeconds = {1e-3, 2e-3, 4e-3, 9e-3};
+    finish(run, {});
+    EXPECT_DOUBLE_EQ(run.methods[0].secondsMedian, 3e-3) << "repeats of one frame";
+    EXPECT_DOUBLE_EQ(run.methods[0].secondsLow, 1.75e-3);
+    EXPECT_DOUBLE_EQ(run.methods[0].secondsHigh, 5.25e-3);
     EXPECT_TRUE(run.pairs.empty());
 }
 TEST(Results, RoundTrip) {
@@ -133,6 +144,18 @@ TEST(Results, RoundTrip) {
     EXPECT_EQ(back.protocol.display.toneMap, ToneMap::aces);
     EXPECT_EQ(back.pairs.size(), 1u);
     EXPECT_TRUE(back.pairs[0].comparison.resolved);
+    EXPECT_EQ(back.methods[0].parts.size(), run.methods[0].parts.size());
+    run.pairs[0].comparison.resolved = false;
+    for (const Unresolved why : {Unresolved::truthNoise, Unresolved::varies, Unresolved::tooSmall, Unresolved::equal}) {
+        run.pairs[0].comparison.why = why;
+        writeResults(run, folder);
+        EXPECT_EQ(readResults(folder).pairs[0].comparison.why, why);
+    }
+    auto old = nlohmann::json::parse(toJsonText(run));  // of a program that gave no reasons and kept no parts
+    old["pairs"][0].erase("unresolved");
+    for (auto& m : old["methods"]) m.erase("errorParts");
+    writeText(folder / "results.json", old.dump());
+    EXPECT_EQ(readResults(folder).pairs[0].comparison.why, Unresolved::varies);
     EXPECT_FALSE(back.jitterCentred());
     EXPECT_FALSE(hasTemporaryFiles(folder));
     fs::remove_all(folder);

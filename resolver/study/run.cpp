@@ -1,7 +1,10 @@
 #include "study/run.h"
 
+#include <stdlib.h>
+
 #include <algorithm>
 #include <chrono>
+#include <thread>
 
 #include "gpu/method.h"
 #include "metrics/temporal.h"
@@ -18,6 +21,55 @@
 namespace aa {
 
 size_t stepsOf(const RunOptions& o, const Manifest& m) { return o.frames.size() * (1 + warmUpPasses(o, m)); }
+
+namespace {
+// The methods' indices: the one that the others are held against first.
+std::vector<size_t> orderOfWork(const std::vector<RunningMethod>& methods, const std::string& reference) {
+    std::vector<size_t> order(methods.size());
+    for (size_t k = 0; k < order.size(); k++) order[k] = k;
+    std::stable_partition(order.begin(), order.end(), [&](size_t k) { return methods[k].spec.text == reference; });
+    return order;
+}
+const FrameResult* knownFrame(const RunOptions& o, const std::string& method, size_t i) {
+    const auto known = o.known.find(method);
+    return known != o.known.end() && i < known->second.size() ? &known->second[i] : nullptr;
+}
+bool isThere(const std::filesystem::path& out, const std::string& image) {
+    std::error_code ignored;
+    return !image.empty() && std::filesystem::exists(out / image, ignored);
+}
+// Timings of one method below which its frames are resolved again, where it keeps nothing from frame to frame.
+constexpr size_t kTimings = 5;
+
+// Metrics of a run by default join those that were asked for where the time allows; otherwise the results say so.
+DefaultMetrics defaultsOf(const RunOptions& o, const Manifest& manifest) {
+    const double judged = manifest.isStatic ? 1 : double(o.frames.size()),
+                 pixels = o.protocol.region ? double(o.protocol.region->width) * o.protocol.region->height
+                                            : double(manifest.width) * manifest.height;
+    return defaultMetrics(o.measure, pixels * judged * double(o.methods.size()));
+}
+
+std::map<std::string, double> leftOutOf(const DefaultMetrics& defaults) {
+    std::map<std::string, double> names;
+    if (!defaults.fit())
+        for (const Metric* m : defaults.metrics) names[std::string(m->figures[0].name)] = defaults.seconds;
+    return names;
+}
+
+std::optional<MachineLoad> loadNow() {
+    double load = 0;
+    if (::getloadavg(&load, 1) != 1) return {};
+    return MachineLoad{.before = load, .processors = int(std::max(1u, std::thread::hardware_concurrency()))};
+}
+// A method with one thread that took longer by the clock than on the processor waited for it.
+void fillWaited(RunResults& run) {
+    if (!run.load || run.threads != 1) return;
+    double wall = 0, processor = 0;
+    for (const auto& m : run.methods)
+        for (const auto& f : m.frames) wall += f.wallSeconds, processor += f.seconds;
+    if (wall > 0) run.load->waited = std::max(0.0, 1 - processor / wall);
+}
+}  // namespace
 
 namespace {
 // Results as they grow: an earlier run's are replaced before the first frame, and no more than some seconds are lost.
@@ -52,10 +104,17 @@ class KeepsResults {
 
 RunResults run(const ShotReader& shot, const RunOptions& o, const Progress& progress) {
     RunOptions writing = o;
+    const DefaultMetrics defaults = defaultsOf(o, shot.manifest());
+    if (defaults.fit()) writing.measure.ofJudged = defaults.metrics;
+    const auto leftOut = leftOutOf(defaults);
     KeepsResults keeps{o};
-    writing.checkpoint = [&](const RunResults& r) { keeps(r); };
+    writing.checkpoint = [&](RunResults r) {
+        r.leftOut = leftOut;
+        keeps(r);
+    };
     std::vector<TileErrors> errors;
     RunResults results = runMethods(shot, writing, progress, errors);
+    results.leftOut = leftOut;
     keeps.finish(results, errors);
     return results;
 }
@@ -63,6 +122,8 @@ RunResults run(const ShotReader& shot, const RunOptions& o, const Progress& prog
 RunResults resume(const ShotReader& shot, const RunOptions& o, const Progress& progress) {
     RunOptions going = o;
     const Resumption resumption = goOnWith(readResults(o.out), shot, going);
+    // What the first run decided holds for the methods that join it.
+    if (resumption.before.leftOut.empty()) going.measure.ofJudged = defaultMetrics(o.measure, 0).metrics;
     RunResults results;
     std::vector<TileErrors> errors;
     if (!going.methods.empty()) {
@@ -71,33 +132,17 @@ RunResults resume(const ShotReader& shot, const RunOptions& o, const Progress& p
             RunResults all = r;
             std::vector<TileErrors> none;
             merge(resumption, all, none);
+            all.leftOut = resumption.before.leftOut;
             keeps(all);
         };
         results = runMethods(shot, going, progress, errors);
     }
     merge(resumption, results, errors);
+    results.leftOut = resumption.before.leftOut;
     finish(results, errors);
     writeResults(results, o.out);
     return results;
 }
-
-namespace {
-// The methods' indices: the one that the others are held against first.
-std::vector<size_t> orderOfWork(const std::vector<RunningMethod>& methods, const std::string& reference) {
-    std::vector<size_t> order(methods.size());
-    for (size_t k = 0; k < order.size(); k++) order[k] = k;
-    std::stable_partition(order.begin(), order.end(), [&](size_t k) { return methods[k].spec.text == reference; });
-    return order;
-}
-const FrameResult* knownFrame(const RunOptions& o, const std::string& method, size_t i) {
-    const auto known = o.known.find(method);
-    return known != o.known.end() && i < known->second.size() ? &known->second[i] : nullptr;
-}
-bool isThere(const std::filesystem::path& out, const std::string& image) {
-    std::error_code ignored;
-    return !image.empty() && std::filesystem::exists(out / image, ignored);
-}
-}  // namespace
 
 RunResults runMethods(const ShotReader& shot, const RunOptions& o, const Progress& progress,
                       std::vector<TileErrors>& errors) {
@@ -109,6 +154,7 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, const Progres
             timed.push_back(isExternal(spec) ? nullptr : gpu::create(*o.device, spec, shotInfo(manifest)));
     Rgb unused;
     RunResults results = describeRun(manifest, o);
+    if (!o.device || o.timeOnly) results.load = loadNow();
     const InputPlan plan = planInput(shot, o);
     Judge judge(manifest, o, plan.overTime);
 
@@ -148,16 +194,23 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, const Progres
         for (const size_t k : order) {
             const bool isReference = standsIn && k == order.front();
             const Frame& input = plan.readsCentre(methods[k].spec) ? *item->centre : *frame;
-            const double seconds = methods[k].resolve(input, input.display, o.exec);
+            ResolveSeconds seconds = methods[k].resolve(input, input.display, o.exec);
             const bool isOurs = !isExternal(methods[k].spec);
+            if ((o.device && !o.timeOnly) || !isOurs) seconds = {};
+            const FrameResult* known = knownFrame(o, methods[k].spec.text, i);
+            for (size_t n = o.frames.size();
+                 n < kTimings && !known && seconds.processor > 0 && methods[k].isRepeatable(); n += o.frames.size())
+                results.methods[k].moreSeconds.push_back(methods[k].again(input, o.exec).processor);
             if (!timed.empty() && isOurs) timed[k]->resolve(input, o.exec, unused);
             if (o.protocol.eightBit) quantise8(methods[k].outEncoded, o.exec);
             if (isReference) judge.look(*frame, nullptr, &methods[k]);
-            const FrameResult* known = knownFrame(o, methods[k].spec.text, i);
-            FrameResult result = judge.judge(k, methods[k], (o.device && !o.timeOnly) || !isOurs ? 0 : seconds, known);
+            FrameResult result = judge.judge(k, methods[k], seconds, known);
             if (o.device && isOurs)
                 result.deviceSeconds = (timed.empty() ? *methods[k].method : *timed[k]).deviceSeconds();
-            if (known) result.seconds = known->seconds, result.deviceSeconds = known->deviceSeconds;
+            if (known) {
+                result.seconds = known->seconds, result.wallSeconds = known->wallSeconds;
+                result.deviceSeconds = known->deviceSeconds;
+            }
             if (isWritten() && (!known || !isThere(o.out, known->image))) {
                 result.image = writeImage(methods[k], frame->number, o);
                 if (judge.reference() && !isReference) writeMaps(methods[k], judge.measured(), frame->number, o);
@@ -181,6 +234,7 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, const Progres
     feed.stop();
     if (o.device) o.device->forget();
     judge.finish(results, passes == 0);
+    fillWaited(results);
     results.sanitised = counted(stream.counts());
     results.complete = results.framesDone() == o.frames.size();
     errors = judge.errors();

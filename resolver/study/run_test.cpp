@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <map>
+#include <thread>
 
 #include "image/error.h"
 #include "image/io.h"
@@ -61,6 +65,50 @@ TEST(Study, AnInterruptedRunHoldsTheFramesThatWereFinished) {
     EXPECT_EQ(r.methods[0].frames.size(), 2u);
     EXPECT_EQ(r.methods[1].frames.size(), 2u);
 }
+TEST(Study, TimesAreOfTheProcessorAndRepeated) {
+    const RunResults r = run(shot("moving"), optionsFor("moving", {"noaa", "fxaa311", "taaSimplest"}), {});
+    ASSERT_TRUE(r.load);
+    EXPECT_GE(r.load->processors, 1);
+    EXPECT_EQ(r.methods[1].timings, 3 + 4) << "four frames, resolved twice, the first one of all left out";
+    EXPECT_EQ(r.methods[2].timings, 3) << "what keeps a history is resolved once a frame";
+    for (const auto& m : r.methods) {
+        EXPECT_GT(m.secondsLow, 0);
+        EXPECT_LE(m.secondsMin, m.secondsLow);
+        EXPECT_LE(m.secondsLow, m.secondsMedian);
+        EXPECT_LE(m.secondsMedian, m.secondsHigh);
+        EXPECT_GT(m.wallMedian, 0);
+        EXPECT_DOUBLE_EQ(m.nsPerPixel, m.secondsMedian * 1e9 / (48 * 32));
+    }
+    MachineLoad quiet{.before = 0.2, .processors = 8}, full{.before = 6, .processors = 8},
+        waiting{.before = 0.2, .processors = 8, .waited = 0.3};
+    EXPECT_FALSE(quiet.busy());
+    EXPECT_TRUE(full.busy());
+    EXPECT_TRUE(waiting.busy());
+}
+// A sum that other threads run counts; what the thread itself does not run (a sleep) does not.
+TEST(Study, ProcessorTimeCountsTheThreadsThatHelp) {
+    std::atomic<double> sink = 0;
+    const auto work = [&] {
+        const ProcessorTime time;
+        parallelRows(64, 1, [&](int y0, int y1) {
+            double sum = 0;
+            for (int i = 0; i < 200'000 * (y1 - y0); i++) sum += std::sqrt(double(i + y0));
+            sink = sum;
+        });
+        return time.seconds();
+    };
+    work();
+    const ProcessorTime alone;
+    double sum = 0;
+    for (int i = 0; i < 200'000 * 64; i++) sum += std::sqrt(double(i));
+    sink = sum;
+    const double one = alone.seconds();
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    EXPECT_LT(alone.seconds() - one, 0.05);
+    const double shared = work();
+    EXPECT_GT(shared, 0.5 * one);
+    EXPECT_LT(shared, 3 * one);
+}
 TEST(Study, AFullHistoryRunsTenPeriodsBefore) {
     RunOptions o = optionsFor("half_planes", {"noaa", "uncharted"});
     o.protocol.history = History::full;
@@ -93,10 +141,20 @@ TEST(Study, AWarmUpIsTheSameWhetherItsFramesAreKeptOrReadAgain) {
 }
 TEST(Study, FiguresThatAreAskedForAreMeasured) {
     RunOptions o = optionsFor("half_planes", {"noaa"});
-    const auto flipOf = [&] { return run(shot("half_planes"), o, {}).methods[0].pooled->mean.figure("flip"); };
-    EXPECT_FALSE(flipOf());
-    o.measure = measureOptions({"flip"});
-    EXPECT_GT(flipOf().value(), 0);
+    const RunResults byDefault = run(shot("half_planes"), o, {});
+    for (const char* name : {"flip", "flipFirstQuartile", "flipMedian", "flipThirdQuartile", "ssimRgb"})
+        EXPECT_GT(byDefault.methods[0].pooled->mean.figure(name).value(), 0) << name;
+    EXPECT_FALSE(byDefault.methods[0].frames[2].metrics->figure("flip")) << "of a static shot the last frame is judged";
+    EXPECT_FALSE(byDefault.methods[0].pooled->mean.figure("fmagMse"));
+    o.measure = measureOptions({"flip", "fmagMse"});
+    const RunResults asked = run(shot("half_planes"), o, {});
+    EXPECT_GT(asked.methods[0].frames[2].metrics->figure("flip").value(), 0);
+    EXPECT_GT(asked.methods[0].pooled->mean.figure("fmagMse").value(), 0);
+    EXPECT_EQ(asked.methods[0].pooled->mean.figure("flip"), byDefault.methods[0].pooled->mean.figure("flip"));
+    // Long runs do without what was not asked for.
+    EXPECT_TRUE(defaultMetrics({}, 480.0 * 270 * 16 * 42).fit());
+    EXPECT_FALSE(defaultMetrics({}, 1920.0 * 1080 * 16 * 20).fit());
+    EXPECT_TRUE(defaultMetrics(measureOptions({"flip", "ssimRgb"}), 1e9).fit()) << "nothing is left to add";
     EXPECT_THROW(measureOptions({"flop"}), UsageError);
 }
 // What a run wrote of a method, or of what it was held against, as it was compared.

@@ -93,11 +93,37 @@ std::optional<PooledMetrics> pool(const MethodResult& method, double noise) {
     p.meanFinitePsnr = finiteFrames ? finite / finiteFrames : std::numeric_limits<double>::infinity();
     return p;
 }
-double median(std::vector<double> v) {
+// Between the two nearest; the share 0.5 is the median.
+double quantile(std::vector<double> v, double share) {
     if (v.empty()) return 0;
     std::sort(v.begin(), v.end());
-    const size_t half = v.size() / 2;
-    return v.size() % 2 ? v[half] : (v[half - 1] + v[half]) / 2;
+    const double at = share * double(v.size() - 1);
+    const size_t below = size_t(at), above = std::min(below + 1, v.size() - 1);
+    return v[below] + (at - double(below)) * (v[above] - v[below]);
+}
+double median(const std::vector<double>& v) { return quantile(v, 0.5); }
+
+// The first frame allocates, touches memory for the first time and has no history to read: where others are, it does
+// not count.
+template <class Get>
+std::vector<double> timingsOf(const MethodResult& m, Get get) {
+    std::vector<double> timings;
+    const size_t skipped = m.frames.size() + m.moreSeconds.size() > 2 ? 1 : 0;
+    for (size_t i = skipped; i < m.frames.size(); i++) timings.push_back(get(m.frames[i]));
+    return timings;
+}
+void fillTimes(MethodResult& m, double pixels) {
+    std::vector<double> seconds = timingsOf(m, [](const FrameResult& f) { return f.seconds; });
+    seconds.insert(seconds.end(), m.moreSeconds.begin(), m.moreSeconds.end());
+    if (seconds.empty()) return;
+    m.timings = int(seconds.size());
+    m.secondsMedian = median(seconds);
+    m.secondsMin = *std::min_element(seconds.begin(), seconds.end());
+    constexpr size_t kFew = 4;
+    m.secondsLow = seconds.size() < kFew ? m.secondsMin : quantile(seconds, 0.25);
+    m.secondsHigh = seconds.size() < kFew ? *std::max_element(seconds.begin(), seconds.end()) : quantile(seconds, 0.75);
+    m.nsPerPixel = m.secondsMedian * 1e9 / pixels;
+    m.wallMedian = median(timingsOf(m, [](const FrameResult& f) { return f.wallSeconds; }));
 }
 }  // namespace
 
@@ -118,19 +144,6 @@ std::optional<FigureRange> rangeOverFrames(const MethodResult& method, const Fig
     return range;
 }
 
-TileErrors tileErrorsOf(const RunResults& run, const MethodResult& m) {
-    TileErrors tiles;
-    if (!m.pooled || m.tileSquares.empty()) return tiles;
-    tiles.sum = m.tileSquares;
-    const Window area = run.protocol.region.value_or(Window{0, 0, run.width, run.height});
-    for (int y = 0; y < area.height; y += TileErrors::kTilePx)
-        for (int x = 0; x < area.width; x += TileErrors::kTilePx)
-            tiles.values.push_back(3.0 * std::min(TileErrors::kTilePx, area.width - x) *
-                                   std::min(TileErrors::kTilePx, area.height - y) * m.pooled->frames);
-    tiles.referenceSum = m.pooled->mean.reference * tiles.totalValues();
-    return tiles;
-}
-
 std::string rerunLine(const RunResults& run, const MethodResult& m) {
     const std::string& line = run.provenance.rerun;
     if (line.empty()) return {};
@@ -149,23 +162,31 @@ std::string incompleteInWords(const RunResults& run) {
 
 bool RunResults::jitterCentred() const { return std::abs(jitterMeanPx[0]) < 1e-4 && std::abs(jitterMeanPx[1]) < 1e-4; }
 
+std::optional<Comparison> compared(const RunResults& run, size_t a, size_t b) {
+    const auto pair = std::find_if(run.pairs.begin(), run.pairs.end(), [&](const PairResult& p) {
+        return (p.first == a && p.second == b) || (p.first == b && p.second == a);
+    });
+    if (pair == run.pairs.end()) return {};
+    Comparison c = pair->comparison;
+    if (pair->first == a) return c;
+    c.mseDifference = -c.mseDifference, c.gainDb = -c.gainDb;
+    std::swap(c.low, c.high), std::swap(c.gainLow, c.gainHigh);
+    for (double* v : {&c.low, &c.high, &c.gainLow, &c.gainHigh}) *v = -*v;
+    return c;
+}
+
 void finish(RunResults& run, const std::vector<TileErrors>& errors) {
     const double noise = run.truthNoise.value_or(0);
     const MethodResult* noaa = nullptr;
     for (auto& m : run.methods) {
-        std::vector<double> seconds;
         std::vector<double> onDevice;
-        for (const auto& f : m.frames) {
-            seconds.push_back(f.seconds);
+        for (const auto& f : m.frames)
             if (f.deviceSeconds) onDevice.push_back(*f.deviceSeconds);
-        }
         if (!onDevice.empty()) {
             m.deviceSecondsMedian = median(onDevice);
             m.deviceSecondsMin = *std::min_element(onDevice.begin(), onDevice.end());
         }
-        m.secondsMedian = median(seconds);
-        m.secondsMin = seconds.empty() ? 0 : *std::min_element(seconds.begin(), seconds.end());
-        m.nsPerPixel = m.secondsMedian * 1e9 / (double(run.width) * run.height);
+        fillTimes(m, double(run.width) * run.height);
         m.pooled = pool(m, noise);
         if (m.id == "noaa" && m.pooled) noaa = &m;
     }
@@ -177,12 +198,20 @@ void finish(RunResults& run, const std::vector<TileErrors>& errors) {
     for (auto& m : run.methods)
         if (noaa && noaa->temporal && noaa->temporal->ghostMse.value_or(0) > 0 && m.temporal && m.temporal->ghostMse)
             m.temporal->ghostExcess = *m.temporal->ghostMse / *noaa->temporal->ghostMse;
-    for (size_t i = 0; i < errors.size() && i < run.methods.size(); i++) run.methods[i].tileSquares = errors[i].sum;
+    for (size_t i = 0; i < errors.size() && i < run.methods.size(); i++) {
+        if (errors[i].sum.empty()) continue;
+        run.methods[i].tileSquares = errors[i].coarse(kResultTilePx / TileErrors::kTilePx);
+        run.methods[i].parts = errorParts(errors[i]);
+    }
     run.pairs.clear();
-    for (size_t i = 0; i < errors.size(); i++)
-        for (size_t k = i + 1; k < errors.size(); k++)
-            if (!errors[i].sum.empty() && errors[i].sum.size() == errors[k].sum.size())
-                run.pairs.push_back({i, k, compareMethods(errors[i], errors[k], noise)});
+    const auto comparable = [](const MethodResult& a, const MethodResult& b) {
+        return !a.parts.empty() && a.parts.size() == b.parts.size() &&
+               a.parts[0].squares.size() == b.parts[0].squares.size();
+    };
+    for (size_t i = 0; i < run.methods.size(); i++)
+        for (size_t k = i + 1; k < run.methods.size(); k++)
+            if (comparable(run.methods[i], run.methods[k]))
+                run.pairs.push_back({i, k, compareMethods(run.methods[i].parts, run.methods[k].parts)});
     addErrorsOverTime(run);
 }
 

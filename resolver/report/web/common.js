@@ -40,10 +40,12 @@ const axis = (text, more = {}) => ({ title: { display: true, text }, ...more });
 // Horizontal bars, as tall as their number asks for; whiskers from intervalOf(k), [from, to] or null.
 const barChart = (canvas, { labels, values, colours, axisTitle, tip, intervalOf, range = {} }) => {
   canvas.parentElement.style.height = Math.max(160, 60 + 22 * labels.length) + "px";
+  const ends = intervalOf ? labels.flatMap((_, k) => intervalOf(k) ?? []) : [];  // the whiskers stay within the chart
+  const whole = ends.length ? { suggestedMin: Math.min(...ends), suggestedMax: Math.max(...ends), ...range } : range;
   return new Chart(canvas, {
     type: "bar",
     data: { labels, datasets: [{ data: values, backgroundColor: colours, maxBarThickness: 18 }] },
-    options: { indexAxis: "y", scales: { x: axis(axisTitle, range), y: { ticks: { autoSkip: false } } },
+    options: { indexAxis: "y", scales: { x: axis(axisTitle, whole), y: { ticks: { autoSkip: false } } },
       plugins: { legend: { display: false }, tooltip: { callbacks: { label: (t) => tip(t.parsed.x, t.dataIndex) } } } },
     plugins: intervalOf ? [{
       afterDatasetsDraw: (chart) => {

@@ -1,21 +1,13 @@
 // The report's page: everything is drawn from the JSON in #data, which `aaresolve report` wrote. No network, no storage.
 "use strict";
 (() => {
-  const { run, order, words, protocol, space, reference, region, figures, passBytes, publishedMemory: published } = JSON.parse(document.getElementById("data").textContent);
+  const { run, order, words, protocol, space, reference, region, figures, advice, passBytes, publishedMemory: published } = JSON.parse(document.getElementById("data").textContent);
   const $ = (id) => document.getElementById(id);
   const methods = run.methods;
   const standIn = run.run.reference;  // the method that the others are held against; undefined: the truth
   const measured = (m) => m.frames.filter((f) => f.metrics);
 
-  // ---- numbers: JSON carries Inf and NaN as text ----
-  const value = (v) => (v === "Inf" ? Infinity : v === "-Inf" ? -Infinity : v === "NaN" ? NaN : v);
-  const fixed = (v, digits) => {
-    const n = value(v);
-    return n == null ? "–" : Number.isFinite(n) ? n.toFixed(digits) : n > 0 ? "Inf" : n < 0 ? "−Inf" : "NaN";
-  };
-  const minus = (text) => (/^-0\.?0*$/.test(text) ? text.slice(1) : text.replace("-", "−"));
-  const signed = (v) => (value(v) > 0 ? "+" : "") + fixed(v, 2).replace("-", "−");
-  const short = (v) => (v == null ? "–" : Number.isFinite(value(v)) ? Number(value(v).toPrecision(4)).toString() : fixed(v, 0));
+  // ---- numbers ----
   const millionths = (v) => { const n = value(v) * 1e6; return Number.isFinite(n) ? (n >= 1000 ? n.toFixed(0) : Number(n.toPrecision(3)).toString()) : fixed(v, 0); };
   const psnr = (mse) => (mse > 0 ? -10 * Math.log10(mse) : Infinity);
 
@@ -24,11 +16,22 @@
   $("subtitle").textContent = "Anti-aliasing methods against " + reference + ", " + run.shot.resolution.join(" × ") + ", " +
     (run.shot.static ? "static" : "moving") + " shot";
   $("words").append(...words.map((w) => element("li", {}, w)));
+  $("advice").append(...advice.map((w) => element("li", {}, w)));
+  $("advice-box").hidden = !advice.length;
   $("version").textContent = run.run.program;
 
   // ---- the table of figures ----
+  const perPixel = (m, seconds) => seconds * 1e9 / (run.shot.resolution[0] * run.shot.resolution[1]);
   const pair = (a, b) => run.pairs.find((p) => (p.indices[0] === a && p.indices[1] === b) || (p.indices[0] === b && p.indices[1] === a));
   const noaa = methods.findIndex((m) => m.id === "noaa");
+  // The comparison of a with b, whichever way round it was stored: gains are positive where a is nearer to the truth.
+  const compared = (a, b) => {
+    const p = a !== b && a >= 0 && b >= 0 && pair(a, b);
+    if (!p) return null;
+    const turned = p.indices[0] !== a, of = (key) => (turned ? -value(p[key]) : value(p[key]));
+    const low = of(turned ? "gainHigh95" : "gainLow95"), high = of(turned ? "gainLow95" : "gainHigh95");
+    return { gain: of("gainDb"), low, high, resolved: p.resolved, why: p.unresolved };
+  };
   const pooled = (key) => (m) => (m.pooled ? value(m.pooled[key]) : null);
   const has = (key) => methods.some((m) => m.pooled && m.pooled[key] != null);
   // The graphics device that ran the methods or was timed beside the processor. Software is never shown as a card.
@@ -42,19 +45,19 @@
         ? "to " + fixed(psnr(m.pooled.mseCorrected), 2) : null) },
     { title: "Over noaa, dB", better: "high", get: pooled("gainDb"), show: (m) => (m.pooled && m.pooled.gainDb != null && m.id !== "noaa" ? signed(m.pooled.gainDb) : "–"),
       tone: (m) => (!m.pooled || m.pooled.gainDb == null || m.id === "noaa" ? "" : value(m.pooled.gainDb) >= 0 ? "better" : "worse"),
-      small: (m, i) => { const p = i !== noaa && pair(i, noaa); return p && !p.resolved ? "not resolved" : null; } },
+      small: (m, i) => doubt(compared(i, noaa)) },
     { title: "To the next better, dB", get: (m, i) => { const g = toNext(i); return g ? g.gain : null; },
       show: (m, i) => { const g = toNext(i); return g ? signed(g.gain) : "–"; },
-      small: (m, i) => { const g = toNext(i); return g && !g.resolved ? "not resolved" : null; } },
+      small: (m, i) => doubt(toNext(i)?.doubt) },
     // Every other figure of the program's table that this run holds.
     ...figures.map((f) => has(f.name) && { title: f.title, better: f.better, get: pooled(f.name),
-      show: (m) => (!m.pooled || m.pooled[f.name] == null ? "–" : f.form === "similarity" ? fixed(m.pooled[f.name], 6)
-        : f.form === "decibels" ? fixed(m.pooled[f.name], 2) : short(m.pooled[f.name])) }),
+      show: (m) => inForm(f, m.pooled?.[f.name]),
+      small: f.spread && ((m) => (m.pooled?.[f.spread[0]] == null ? null : f.spread.map((name) => Number(value(m.pooled[name]).toPrecision(2))).join(" · "))) }),
     { title: "MSE, 10⁻⁶", better: "low", get: pooled("mse"), show: (m) => (m.pooled ? millionths(m.pooled.mse) : "–"),
       small: () => (run.truth.noiseMse > 0 ? "± " + millionths(run.truth.noiseMse) : null) },
     { title: "SNR, dB", better: "high", get: pooled("snr"), show: (m) => (m.pooled ? fixed(m.pooled.snr, 2) : "–") },
     methods.some((m) => m.nsPerPixel > 0) && { title: "Time, ns/px", better: "low", get: (m) => m.nsPerPixel || null,
-      show: (m) => (m.nsPerPixel > 0 ? short(m.nsPerPixel) : "–"), small: (m) => short(m.secondsMedian * 1000) + " ms per frame" },
+      show: (m) => (m.nsPerPixel > 0 ? short(m.nsPerPixel) : "–"), small: (m) => (m.timings > 1 ? `${short(perPixel(m, m.secondsLow))} to ${short(perPixel(m, m.secondsHigh))}` : "measured once") },
     device && { title: onDevice, better: "low", get: deviceMs, show: (m) => (deviceMs(m) == null ? "–" : short(deviceMs(m))) },
     { title: "State, MB", better: "low", get: (m) => m.stateBytes, show: (m) => (m.stateBytes / 1048576).toFixed(2) },
   ].filter(Boolean);
@@ -63,44 +66,17 @@
     const place = ranked.indexOf(i);
     if (place < 1) return null;
     const p = pair(i, ranked[place - 1]);
-    return { gain: value(methods[i].pooled.psnr) - value(methods[ranked[place - 1]].pooled.psnr), resolved: !p || p.resolved };
+    return { gain: value(methods[i].pooled.psnr) - value(methods[ranked[place - 1]].pooled.psnr), doubt: p && compared(i, ranked[place - 1]) };
   }
-  // A table of methods whose columns sort on a click: {title, get, show, small, tone, better}.
-  const sortableTable = (table, shown, columns) => {
-    let rows = shown.slice(), sortedBy = null, descending = true;
-    const draw = () => {
-      const heads = columns.map((c, k) => element("th", { scope: "col", "aria-sort": sortedBy === k ? (descending ? "descending" : "ascending") : "none" },
-        Object.assign(element("button", { type: "button" }, c.title), { onclick: () => sortBy(k) })));
-      table.replaceChildren(
-        element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "Method"), ...heads)),
-        element("tbody", {}, ...rows.map((i) => {
-          const m = methods[i];
-          return element("tr", {}, element("th", { scope: "row" }, m.text, element("small", {}, m.title)), ...columns.map((c) => {
-            const small = c.small && c.small(m, i);
-            return element("td", { class: c.tone ? c.tone(m) : null }, c.show ? c.show(m, i) : short(c.get(m, i)),
-              small ? element("small", { class: small.startsWith("not resolved") ? "unresolved" : null }, small) : null);
-          }));
-        })));
-    };
-    const sortBy = (k) => {
-      descending = sortedBy === k ? !descending : columns[k].better !== "low";
-      sortedBy = k;
-      const key = (i) => { const v = columns[k].get(methods[i], i); return v == null || Number.isNaN(v) ? null : v; };
-      rows = shown.slice().sort((a, b) => {
-        const x = key(a), y = key(b);
-        if (x === null || y === null) return (x === null) - (y === null);
-        return x === y ? 0 : (x < y) === descending ? 1 : -1;
-      });
-      draw();
-      table.querySelectorAll("thead button")[k].focus();
-    };
-    draw();
-  };
-  sortableTable($("figures"), order, columns);
+  const methodTable = (table, shown, columns) => sortableTable(table, shown, columns, (i) => methods[i], (m) => [m.text, element("small", {}, m.title)]);
+  methodTable($("figures"), order, columns);
   const judgedFrames = methods.find((m) => m.pooled)?.pooled.frames ?? 0;
   $("figures-note").textContent = judgedFrames
     ? `Figures of ${space}${region ? `, of the region of ${region} alone` : ""}, pooled over ${judgedFrames} frame${judgedFrames > 1 ? "s" : ""} with ${standIn ? "images of " + reference : "ground truth"}: the mean squared error is averaged, never the decibels. ` +
-      "“to” is the PSNR after the truth’s own noise is taken off. “Not resolved”: the difference is below that noise, or not consistent over the picture (95 % bootstrap over tiles of 32 × 32 px)."
+      "“to” is the PSNR after the truth’s own noise is taken off. Under a gain stands its 95 % interval, for pictures like this one and an exact truth; where it holds 0 the gain is not resolved, and the table says why: " +
+      "most of the doubt is the truth’s noise (more samples help), or the difference varies over the picture (more pictures help), or the picture is too small to judge." +
+      (figures.some((f) => f.spread) ? " Under FLIP: 1st quartile, median and 3rd quartile, weighted by the error." : "") +
+      " Time: processor time of all threads; below it the quartiles over frames." + (run.run.load?.busy ? " The machine was busy." : "")
     : "This run has no ground truth, so only times are known.";
 
   // ---- over time ----
@@ -140,7 +116,7 @@
   ].filter(Boolean);
   $("time").hidden = !judged.length;
   if (judged.length) {
-    sortableTable($("time-figures"), judged, timeColumns);
+    methodTable($("time-figures"), judged, timeColumns);
     const t = time(judged[0]);
     $("time-note").textContent = `Over ${t.frames} frames, after ${t.warmupFrames} that each history needs to fill. Flicker is in 8-bit codes: 1 is one step of 255. ` +
       (run.shot.static
@@ -178,7 +154,7 @@
   const bytesOf = (m) => (m.inputBytes ?? 0) + (m.targetBytes ?? 0) + m.stateBytes;
   const beyondNoaa = (m) => megabytes1080((bytesOf(m) - bytesOf(methods[noaa])) / (run.shot.resolution[0] * run.shot.resolution[1]));
   const publishedMemory = (m) => published[m.id]?.megabytes ?? null;
-  sortableTable($("price-figures"), order, [
+  methodTable($("price-figures"), order, [
     { title: "Passes, s per frame", better: "low", get: (m, i) => priceOf(i)?.render ?? null, small: (m) => m.passes.join(", ") },
     methods.some((m) => m.nsPerPixel > 0) && { title: "Method, ms per frame", better: "low", get: (m) => m.secondsMedian * 1000 || null },
     device && { title: "Method, " + onDevice, better: "low", get: deviceMs },
@@ -205,38 +181,48 @@
     const shown = order.filter((i) => methods[i].pooled && finite(methods[i].pooled.psnr) !== null);
     const show = (id, config) => charts.push(new Chart($(id), config));
     if (!shown.length) { $("charts").hidden = true; return; }
-    // Cost against accuracy, for each of the two costs that the run holds.
+    // Cost against accuracy, for each of the costs that the run holds. The line joins the methods that no other one
+    // beats in both: whoever is below and right of it costs more than one that is better.
+    const front = (priced, costOf) => {
+      let best = -Infinity;
+      return priced.slice().sort((a, b) => costOf(a) - costOf(b) || value(methods[b].pooled.psnr) - value(methods[a].pooled.psnr))
+        .filter((i) => value(methods[i].pooled.psnr) > best && ((best = value(methods[i].pooled.psnr)), true));
+    };
     const scatter = (id, costOf, axisTitle, unit) => {
-      const priced = shown.filter((i) => costOf(methods[i]) > 0);
+      const priced = shown.filter((i) => costOf(i) > 0);
       $(id).closest("figure").hidden = !priced.length;
       if (!priced.length) return;
+      const point = (i) => ({ x: costOf(i), y: value(methods[i].pooled.psnr) }), best = front(priced, costOf);
+      const steps = best.flatMap((i, k) => (k ? [{ x: costOf(i), y: value(methods[best[k - 1]].pooled.psnr) }, point(i)] : [point(i)]));
       show(id, {
         type: "scatter",
-        data: { datasets: priced.map((i) => ({ label: methods[i].text, data: [{ x: costOf(methods[i]), y: value(methods[i].pooled.psnr) }],
-          backgroundColor: colourOf(i), borderColor: colourOf(i), pointStyle: markerOf(i), pointRadius: 7, pointHoverRadius: 9, borderWidth: 2 })) },
+        data: { datasets: [...priced.map((i) => ({ label: methods[i].text, data: [point(i)],
+          backgroundColor: colourOf(i), borderColor: colourOf(i), pointStyle: markerOf(i), pointRadius: best.includes(i) ? 8 : 6, pointHoverRadius: 9, borderWidth: 2 })),
+          { label: "best for its cost", data: steps, showLine: true, borderColor: css("--quiet"), borderWidth: 1.5, borderDash: [4, 3], pointRadius: 0, pointHoverRadius: 0, pointHitRadius: 0, pointStyle: "line" }] },
         options: { scales: { x: axis(axisTitle + " (logarithmic)", { type: "logarithmic" }), y: axis("PSNR, dB", { grace: "8%" }) },
           plugins: { legend: { position: "bottom", labels: { usePointStyle: true, boxWidth: 8, boxHeight: 8 } },
             tooltip: { callbacks: { label: (t) => `${t.dataset.label}: ${t.parsed.x.toPrecision(3)} ${unit}, ${t.parsed.y.toFixed(2)} dB` } } } },
       });
     };
-    scatter("scatter", (m) => m.nsPerPixel, "time, ns per pixel", "ns/px");
+    scatter("scatter", (i) => methods[i].nsPerPixel, "processor time, ns per pixel", "ns/px");
     if (device) {
       $("device-title").textContent = device.kind === "cpu" ? "Shaders in software against accuracy" : "GPU time against accuracy: up and left is better";
       $("device-note").textContent = `${device.name}, ${device.precision}; by the device's own clock, without transfers.` +
         (device.kind === "cpu" ? " Software on the processor, which checks the shaders: these are no card's times." : "");
-      scatter("device-scatter", deviceMs, onDevice, "ms");
+      scatter("device-scatter", (i) => deviceMs(methods[i]), onDevice, "ms");
     }
-    const bars = (id, indices, get, axisTitle, colour, tip, errorOf) => {
+    const bars = (id, indices, get, axisTitle, colour, tip, errorOf, intervalOf) => {
       $(id).closest("figure").hidden = !indices.length;
       if (!indices.length) return;
       charts.push(barChart($(id), { labels: indices.map((i) => methods[i].text), values: indices.map(get), colours: indices.map(colour), axisTitle,
         tip: (v, k) => tip(v, indices[k]),
-        intervalOf: errorOf && ((k) => { const e = errorOf(indices[k]), v = get(indices[k]); return e > 0 ? [Math.max(0, v - e), v + e] : null; }) }));
+        intervalOf: intervalOf ? (k) => intervalOf(indices[k]) : errorOf && ((k) => { const e = errorOf(indices[k]), v = get(indices[k]); return e > 0 ? [Math.max(0, v - e), v + e] : null; }) }));
     };
     bars("gain", order.filter((i) => i !== noaa && methods[i].pooled && methods[i].pooled.gainDb != null && finite(methods[i].pooled.gainDb) !== null),
-      (i) => methods[i].pooled.gainDb, "dB; grey = not resolved",
-      (i) => { const p = pair(i, noaa); return p && !p.resolved ? css("--line") : methods[i].pooled.gainDb >= 0 ? css("--better") : css("--worse"); },
-      (v) => `${signed(v)} dB`);
+      (i) => methods[i].pooled.gainDb, "dB; whiskers: 95 % interval; grey = not resolved",
+      (i) => { const c = compared(i, noaa); return c && !c.resolved ? css("--quiet") : methods[i].pooled.gainDb >= 0 ? css("--better") : css("--worse"); },
+      (v, i) => `${signed(v)} dB` + [doubt(compared(i, noaa))].flat().filter(Boolean).map((s) => `, ${s}`).join(""), null,
+      (i) => { const c = compared(i, noaa); return c && Number.isFinite(c.low) && Number.isFinite(c.high) ? [c.low, c.high] : null; });
     // Lines of many methods: a few are drawn, a click on a name shows or hides it.
     const kLines = 8;
     const lines = (id, indices, labels, dataOf, xTitle, yAxis, tip, preferred = indices.slice(0, kLines)) => {
@@ -265,16 +251,7 @@
     const withHistory = ghosting.filter((i) => methods[i].family === "temporal"); // the least and the worst of them
     lines("ghost", ghosting, Array.from({ length: ages }, (_, k) => k + 1), (i) => time(i).ghostFraction, "age, frames", axis("share of the stale colour left"),
       (v) => v.toFixed(3), [...withHistory.slice(0, kLines / 2), ...withHistory.slice(-kLines / 2)]);
-    const priced = shown.filter((i) => priceOf(i) !== null);
-    if (priced.length) show("price-scatter", {
-      type: "scatter",
-      data: { datasets: priced.map((i) => ({ label: methods[i].text, data: [{ x: priceOf(i).all, y: value(methods[i].pooled.psnr) }],
-        backgroundColor: colourOf(i), borderColor: colourOf(i), pointStyle: markerOf(i), pointRadius: 7, pointHoverRadius: 9, borderWidth: 2 })) },
-      options: { scales: { x: axis("seconds per frame (logarithmic)", { type: "logarithmic" }), y: axis("PSNR, dB", { grace: "8%" }) },
-        plugins: { legend: { position: "bottom", labels: { usePointStyle: true, boxWidth: 8, boxHeight: 8 } },
-          tooltip: { callbacks: { label: (t) => `${t.dataset.label}: ${t.parsed.x.toPrecision(3)} s, ${t.parsed.y.toFixed(2)} dB` } } } },
-    });
-    $("price-scatter").closest("figure").hidden = !priced.length;
+    scatter("price-scatter", (i) => priceOf(i)?.all ?? 0, "seconds per frame: passes and method", "s");
   };
   drawCharts();
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", drawCharts);
@@ -296,6 +273,8 @@
       (run.run.display.transfer === "identity" ? "clamped values shown as they are" : "sRGB")],
     run.truth.clipped && ["Truth clipped", `${run.truth.clipped.pixels} of ${run.truth.clipped.of} pixels exceed the display`],
     ["Machine", `${run.run.machine}, ${run.run.instructionSet}, ${run.run.threads} thread${run.run.threads > 1 ? "s" : ""}, precision ${run.run.precision}`],
+    run.run.load && ["Machine's load", `${run.run.load.before.toFixed(2)} of ${run.run.load.processors} processors before the run` +
+      (run.run.load.waitedShare != null ? `; methods waited for one ${(100 * run.run.load.waitedShare).toFixed(0)} % of their time` : "")],
     ["Program", `AA Resolve ${run.run.program}`],
     ["Input repaired", Object.entries(run.run.sanitised).filter(([, n]) => n > 0).map(([what, n]) => `${what} ${n}`).join(", ") || "nothing"],
     run.shot.renderSeconds && ["Render time per frame", Object.entries(run.shot.renderSeconds).map(([what, s]) => `${what} ${short(s)} s`).join(", ")],

@@ -1,0 +1,123 @@
+#include "report/summary.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace aa {
+namespace {
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+// A run whose methods have these mean squared errors; every tile of a method is off its mean by up to `scatter`.
+RunResults runOf(const std::string& shot, std::vector<std::pair<std::string, double>> methods, double scatter = 0.05) {
+    RunResults run;
+    run.shot = shot, run.width = run.height = 32, run.programVersion = "1", run.isa = "x", run.precision = "fast";
+    std::vector<TileErrors> errors;
+    for (const auto& [text, mse] : methods) {
+        MethodResult m;
+        m.id = m.text = m.folder = text;
+        FrameResult f;
+        f.frame = 1, f.seconds = 1e-5;
+        f.metrics = frameMetrics(SquaredError{mse, 0.2});
+        f.metrics->others["ssimLuma"] = 0.9;
+        m.frames = {f};
+        run.methods.push_back(m);
+        TileErrors e;
+        e.columns = 4;
+        e.values.assign(16, 192);
+        for (size_t i = 0; i < 16; i++)
+            e.sum.push_back(192 * mse * (1 + scatter * std::sin(double(i * i + 3 * run.methods.size()))));
+        errors.push_back(e);
+    }
+    finish(run, errors);
+    return run;
+}
+const SummaryRow& rowOf(const Summary& s, const std::string& text) {
+    return *std::find_if(s.rows.begin(), s.rows.end(), [&](const auto& r) { return r.text == text; });
+}
+
+TEST(Summary, AveragesDifferencesInDecibels) {
+    const auto runs = namedRuns({{"out/a", runOf("easy", {{"noaa", 1e-4}, {"fxaa311", 5e-5}, {"dear", 1e-5}})},
+                                 {"out/b", runOf("hard", {{"noaa", 1e-2}, {"fxaa311", 1e-3}, {"late", 2e-2}})},
+                                 {"out/c", runOf("exact", {{"noaa", 1e-3}, {"fxaa311", 0}, {"dear", 1e-3}})}});
+    EXPECT_EQ(runs[1].name, "hard");
+    const Summary s = summarise(runs);
+    const SummaryRow& fxaa = rowOf(s, "fxaa311");
+    // About 3.0 and 10 dB; the scene without error is counted apart, and no mean becomes infinite.
+    EXPECT_EQ(fxaa.scenes, 2);
+    EXPECT_EQ(fxaa.infinite, 1);
+    EXPECT_NEAR(*fxaa.meanGainDb, (3.01 + 10) / 2, 0.3);
+    EXPECT_DOUBLE_EQ(*fxaa.meanGainDb, (fxaa.cells[0]->gain->gainDb + fxaa.cells[1]->gain->gainDb) / 2);
+    EXPECT_EQ(fxaa.cells[2]->gain->gainDb, kInf);
+    EXPECT_NEAR(fxaa.least, 3.01, 0.3);
+    EXPECT_NEAR(fxaa.most, 10, 0.3);
+    EXPECT_EQ(fxaa.cells[0]->rank, 2);
+    EXPECT_EQ(*fxaa.meanRank, (2 + 1 + 1) / 3.0);
+    // The interval of a mean of two is narrower than the wider of its parts, and about it.
+    ASSERT_TRUE(fxaa.ofThese);
+    const auto half = [](const Comparison& c) { return (c.gainHigh - c.gainLow) / 2; };
+    const double expected = std::hypot(half(*fxaa.cells[0]->gain), half(*fxaa.cells[1]->gain)) / 2;
+    EXPECT_NEAR((fxaa.ofThese->second - fxaa.ofThese->first) / 2, expected, 0.05 * expected);
+    EXPECT_FALSE(fxaa.ofSuch) << "two scenes say nothing of others";
+    EXPECT_FALSE(rowOf(s, "noaa").meanGainDb);
+    EXPECT_EQ(rowOf(s, "late").cells[0], std::nullopt);
+    EXPECT_EQ(s.rows.front().text, "fxaa311") << "in all three scenes, while dear is in two";
+    EXPECT_EQ(s.rows.back().text, "noaa");
+    EXPECT_NE(summaryInWords(runs, s, {})[0].find("fxaa311 gains most over no anti-aliasing: +"), std::string::npos);
+}
+TEST(Summary, ScenesLikeTheseFromFourUp) {
+    std::vector<std::pair<std::string, RunResults>> four;
+    const double gains[] = {2, 3, 4, 7};
+    for (const double g : gains)
+        four.emplace_back("r",
+                          runOf("scene" + std::to_string(g), {{"noaa", 1e-3}, {"m", 1e-3 * std::pow(10, -g / 10)}}, 0));
+    const Summary s = summarise(namedRuns(four));
+    const SummaryRow& m = rowOf(s, "m");
+    EXPECT_NEAR(*m.meanGainDb, 4, 1e-9);
+    ASSERT_TRUE(m.ofSuch);
+    // t(3) = 3.182, standard deviation 2.1602
+    EXPECT_NEAR(m.ofSuch->second - 4, 3.182 * 2.160247 / 2, 1e-4);
+    EXPECT_NEAR(4 - m.ofSuch->first, 3.182 * 2.160247 / 2, 1e-4);
+}
+TEST(Summary, ASceneCountsOnceAndItsRunsAreHeldAgainstEachOther) {
+    RunResults before = runOf("pipe", {{"noaa", 1e-3}, {"a", 5e-4}, {"b", 4e-4}, {"gone", 1e-4}}),
+               after = runOf("pipe", {{"noaa", 1e-3}, {"a", 2.5e-4}, {"b", 4e-4}, {"new", 1e-4}});
+    after.threads = 2;
+    const auto runs =
+        namedRuns({{"old/run", before}, {"new/run/", after}, {"x", runOf("other", {{"noaa", 1e-3}, {"a", 1e-3}})}});
+    EXPECT_EQ(runs[0].name, "pipe (run)");
+    EXPECT_EQ(runs[1].name, "pipe (run) 2");
+    const Summary s = summarise(runs);
+    EXPECT_EQ(rowOf(s, "a").scenes, 2);
+    EXPECT_DOUBLE_EQ(*rowOf(s, "a").meanGainDb,
+                     (rowOf(s, "a").cells[1]->gain->gainDb + rowOf(s, "a").cells[2]->gain->gainDb) / 2);
+    EXPECT_FALSE(s.differences.empty());
+    const auto against = againstEachOther(runs);
+    ASSERT_EQ(against.size(), 1u);
+    EXPECT_EQ(against[0].before, 0u);
+    EXPECT_EQ(against[0].after, 1u);
+    EXPECT_EQ(against[0].onlyBefore, std::vector<std::string>{"gone"});
+    EXPECT_EQ(against[0].onlyAfter, std::vector<std::string>{"new"});
+    EXPECT_EQ(against[0].differences, std::vector<std::string>{"threads: 1 against 2"});
+    for (const RunChange& c : against[0].changes) {
+        EXPECT_EQ(c.comparison.resolved, c.text == "a");
+        if (c.text == "a")
+            EXPECT_NEAR(c.comparison.gainDb, 3.01, 0.01);
+        else
+            EXPECT_EQ(c.comparison.why, Unresolved::equal) << c.text;
+    }
+    // Other frames are other pictures.
+    after.methods[0].frames[0].frame = 2;
+    EXPECT_TRUE(againstEachOther(namedRuns({{"a", before}, {"b", after}})).empty());
+}
+TEST(Summary, ThePageHoldsNoScriptOfAName) {
+    const auto runs = namedRuns({{"a", runOf("</script><b>", {{"noaa", 1e-3}, {"m", 5e-4}})},
+                                 {"b", runOf("second", {{"noaa", 1e-3}, {"m", 5e-4}})}});
+    const std::string page = summaryHtml(runs);
+    EXPECT_EQ(page.find("</script><b>"), std::string::npos);
+    EXPECT_NE(page.find("<\\/script><b>"), std::string::npos);
+    EXPECT_EQ(page.find("{{"), std::string::npos);
+}
+}  // namespace
+}  // namespace aa

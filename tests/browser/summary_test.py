@@ -1,0 +1,137 @@
+"""summary_test.py PROGRAM ROOT BROWSER: the page of several runs, opened from disk without a network, in light and dark
+and from 390 to 1400 px wide: tables, their sorting, the choice of a figure, charts, runs of one shot held together."""
+
+from __future__ import annotations
+
+import html
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(sys.argv[2]).resolve() / "tests/e2e"))
+BROWSER = sys.argv[3]
+del sys.argv[3]  # unittest reads the rest
+
+from program import ProgramTest, main  # noqa: E402
+
+METHODS = ("noaa", "fxaa311", "smaa1x", "taaSimplest")
+# Reads the page as it is, then sorts by the mean and asks for another figure.
+VISITOR = """
+<pre id="collected"></pre>
+<script>
+  const told = {}, all = (css) => [...document.querySelectorAll(css)].map((e) => e.innerText);
+  told.width = innerWidth;
+  told.overflow = document.documentElement.scrollWidth - innerWidth;
+  told.ground = getComputedStyle(document.body).backgroundColor;
+  told.words = all("#words li");
+  told.mean = all("#mean tbody tr");
+  told.scenes = all("#scenes thead th");
+  told.gains = all("#scenes tbody tr");
+  told.against = all("#against tbody tr");
+  told.chart = Chart.getChart(document.getElementById("gains")).data.labels;
+  document.querySelector("#mean thead button").click();
+  document.querySelector("#mean thead button").click();
+  told.sorted = all("#mean tbody th");
+  const pick = document.getElementById("figure");
+  told.figures = [...pick.options].map((o) => o.value);
+  pick.value = "psnr";
+  pick.dispatchEvent(new Event("change"));
+  told.psnr = all("#scenes tbody tr");
+  document.getElementById("collected").textContent = JSON.stringify(told);
+</script>
+"""
+
+
+class SummaryPage(ProgramTest):
+    def open(self, page: Path, width: int, dark: bool) -> dict:
+        done = subprocess.run(
+            [
+                BROWSER,
+                "--headless=new",
+                "--no-sandbox",
+                "--disable-gpu",
+                f"--user-data-dir={self.folder}/profile",
+                "--host-resolver-rules=MAP * ~NOTFOUND",
+                "--enable-logging=stderr",
+                f"--window-size={width},900",
+                *(["--blink-settings=preferredColorScheme=0"] if dark else []),
+                "--dump-dom",
+                page.as_uri(),
+            ],
+            capture_output=True,
+            text=True,
+            timeout=100,
+        )
+        said = [line for line in done.stderr.splitlines() if "CONSOLE" in line]
+        self.assertFalse([s for s in said if re.search("error|uncaught|failed|refused", s, re.I)])
+        collected = re.search(r'<pre id="collected">(.+?)</pre>', done.stdout, re.S)
+        self.assertTrue(collected, done.stderr[-2000:])
+        return json.loads(html.unescape(collected[1]))
+
+    def test_methods_over_scenes(self) -> None:
+        methods = [word for m in METHODS for word in ("-m", m)]
+        for scene, frames in (("moving", 4), ("half_planes", 4)):
+            self.synth(scene, self.folder / scene, (96, 64), frames)
+            self.aaresolve(
+                "run", self.folder / scene, *methods, "--write", "none", "-q",
+                "-o", self.folder / f"runs/{scene}",
+            )  # fmt: skip
+        changed = ("-m", "noaa", "-m", "taaSimplest", "-m", "smaa1x:preset=LOW")
+        self.aaresolve(
+            "run", self.folder / "moving", *changed, "--write", "none", "-q",
+            "-o", self.folder / "runs/again",
+        )  # fmt: skip
+        runs = [self.folder / f"runs/{name}" for name in ("moving", "half_planes", "again")]
+        done = self.aaresolve("report", *runs)
+        page = self.folder / "runs/summary.html"
+        self.assertEqual(Path(done.stdout.strip()), page)
+        results = [json.loads((r / "results.json").read_text()) for r in runs]
+        visited = self.folder / "visited.html"
+        visited.write_text(page.read_text() + VISITOR)
+        grounds = set()
+        for width, dark in ((1400, False), (390, True)):
+            told = self.open(visited, width, dark)
+            grounds.add(told["ground"])
+            self.assertLessEqual(told["overflow"], 0, told["width"])
+        self.assertEqual(len(grounds), 2)
+        self.holds(told, results)
+        twice = self.aaresolve("report", runs[0], runs[0], expect=2)
+        self.assertIn("given twice", twice.stderr)
+
+    def holds(self, told: dict, results: list[dict]) -> None:
+        self.assertEqual(told["scenes"][1:], ["moving (moving)", "half_planes", "moving (again)"])
+        self.assertIn("gains most over no anti-aliasing", told["words"][0])
+        self.assertEqual(len(told["mean"]), len(METHODS) + 1)
+        self.assertTrue(told["mean"][-1].startswith("noaa"))
+        self.assertEqual(len(told["chart"]), len(METHODS))
+
+        def gain(result: dict, method: str) -> float:
+            for pair in result["pairs"]:
+                if {pair["first"], pair["second"]} == {"noaa", method}:
+                    return pair["gainDb"] * (1 if pair["first"] == method else -1)
+            raise KeyError(method)
+
+        # Of the scene that was run twice the last run counts where it has the method.
+        mean = {row.split()[0]: row for row in told["mean"]}
+        for method, first in (("fxaa311", 0), ("taaSimplest", 2)):
+            expected = (gain(results[first], method) + gain(results[1], method)) / 2
+            self.assertIn(f"{expected:+.2f}".replace("-", "−"), mean[method])
+        self.assertIn("taaSimplest", "".join(told["against"]))
+        self.assertIn("equal", "".join(told["against"]))
+        found = {
+            m: float(re.search(r"[+−]\d+\.\d\d", row)[0].replace("−", "-"))
+            for m, row in mean.items()
+            if m != "noaa"
+        }
+        in_both = [v for m, v in found.items() if m != "smaa1x:preset=LOW"]
+        self.assertEqual(in_both, sorted(in_both, reverse=True))
+        self.assertEqual(told["sorted"][0].split()[0], min(found, key=found.get))
+        for figure in ("gain", "psnr", "ssimLuma", "flip", "nsPerPixel"):
+            self.assertIn(figure, told["figures"])
+        psnr = results[0]["methods"][0]["pooled"]["psnr"]
+        self.assertIn(f"{psnr:.2f}", next(row for row in told["psnr"] if row.startswith("noaa")))
+
+
+main()
