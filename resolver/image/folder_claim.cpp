@@ -25,8 +25,15 @@ bool isStillThere(int file, const fs::path& path) {
 }
 }  // namespace
 
+bool isEmptyButForClaim(const fs::path& folder) {
+    std::error_code failed;
+    for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed))
+        if (it->path().filename() != kClaimFile) return false;
+    return !failed;
+}
+
 FolderClaim::FolderClaim(const fs::path& folder)
-    : folder_(folder), lock_(folder / ".aaresolve.lock"), isNew_(!fs::exists(folder)) {
+    : folder_(folder), lock_(folder / kClaimFile), isNew_(!fs::exists(folder)) {
     makeWritableFolder(folder);
     while (true) {
         file_ = ::open(lock_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);

@@ -4,6 +4,10 @@
 
 namespace aa {
 
+// The file that a claim holds in its folder. A folder with nothing else counts as empty.
+inline constexpr const char* kClaimFile = ".aaresolve.lock";
+bool isEmptyButForClaim(const std::filesystem::path& folder);
+
 // While it lives no other process of this program claims the folder. The claim ends with the process, however that
 // ends.
 class FolderClaim {

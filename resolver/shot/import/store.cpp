@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "image/error.h"
+#include "image/folder_claim.h"
 #include "image/io.h"
 #include "image/json_text.h"
 
@@ -29,7 +30,7 @@ ImportStore::ImportStore(fs::path out, const json& settings, const std::vector<s
     std::error_code ignored;
     const fs::path file = out_ / ".aa" / "import.json";
     const bool ours = fs::exists(file, ignored);
-    if (!ours && fs::exists(out_, ignored) && (!fs::is_directory(out_, ignored) || !fs::is_empty(out_, ignored)))
+    if (!ours && fs::exists(out_, ignored) && (!fs::is_directory(out_, ignored) || !isEmptyButForClaim(out_)))
         throw UsageError(out_.string() + ": is not empty and holds no import; choose a new folder");
     if (ours) {
         const json then = readJson(file);
