@@ -97,7 +97,7 @@ void addReport(CommandLine& line, Context&) {
         .typeName("MB");
     c.flag("--hdr", o->hdr,
            "embed linear light as the EXR files hold it, 32-bit floats, instead of the displayed 8-bit codes: exposure "
-           "shows what lies beyond white; 4 to 8 times as large");
+           "shows what lies beyond white; about 10 times as large");
     addWorkOptions(c, o->work);
     c.run([o] { o->runs.size() > 1 ? writeSummary(*o) : writeReport(*o); });
 }
