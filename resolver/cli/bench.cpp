@@ -14,6 +14,7 @@
 #include "image/json_text.h"
 #include "methods/driver.h"
 #include "shot/pass_table.h"
+#include "study/json_number.h"
 
 namespace aa {
 namespace {
@@ -23,6 +24,7 @@ struct Row {
     std::string text;
     double nsMedian = 0, nsMin = 0, nsPerEdgePixel = 0, maxError = NAN, rmsError = NAN;
     size_t inputBytes = 0, targetBytes = 0, stateBytes = 0;
+    size_t nonFinite = 0;  // values of the results that are no numbers, over all frames
 };
 
 // Seconds of this thread's processor, which other programs on the machine cannot lengthen; with several threads only
@@ -75,8 +77,9 @@ void compareWithDouble(Row& row, const MethodSpec& spec, const std::vector<Frame
             for (int y = 0; y < f.height; y++)
                 for (int x = 0; x < f.width; x++, count++) {
                     const double d = double(lanes.out.c[c].at(x, y)) - double(oracle.out.c[c].at(x, y));
+                    row.nonFinite += !std::isfinite(lanes.out.c[c].at(x, y));
                     sum += d * d;
-                    largest = std::max(largest, std::fabs(d));
+                    largest = std::max(largest, std::isfinite(d) ? std::fabs(d) : INFINITY);
                 }
     }
     row.maxError = largest;
@@ -110,6 +113,12 @@ void printHead(const Options& o, const Frames& f, const Exec& exec) {
         std::string(name(exec.isa)).c_str(), o.work.threads, exec.parallel ? "wall clock" : "processor time", "method",
         "ns/px", "min", "ns/edge", "ms", "input MB", "target MB", "state MB", "planes", "max error", "rms error");
 }
+void printCounted(const SanitiseCounts& counts) {
+    for (const auto& [what, count] : counted(counts))
+        if (count > 0)
+            std::printf("input values that no method can use: %s %llu\n", what.c_str(),
+                        static_cast<unsigned long long>(count));
+}
 void printRow(const Options& o, const Row& row, const ShotInfo& info) {
     if (o.json) return;
     const double planes = statePlanes(row, info), ms = row.nsMedian * 1e-6 * info.width * info.height;
@@ -120,6 +129,8 @@ void printRow(const Options& o, const Row& row, const ShotInfo& info) {
                     row.nsMedian, row.nsMin, row.nsPerEdgePixel, ms, double(row.inputBytes) / (1 << 20),
                     double(row.targetBytes) / (1 << 20), double(row.stateBytes) / (1 << 20), planes, row.maxError,
                     row.rmsError);
+    if (row.nonFinite > 0)
+        std::printf("%s: %zu values of its results are no numbers\n", row.text.c_str(), row.nonFinite);
     std::fflush(stdout);
 }
 
@@ -127,7 +138,7 @@ void execute(const Options& o) {
     const std::vector<MethodSpec> specs = o.shot.empty() ? chosen(o.methods) : chosenFor(o.shot, o.methods);
     const Exec exec = o.work.exec();
     if (o.work.device != "cpu") return benchDevice(o, specs);
-    BenchFrames source{o.shot, o.scene, 0, 0, o.frames};
+    BenchFrames source{o.shot, o.scene, 0, 0, o.frames, inputPolicyByName(o.nonFinite)};
     std::tie(source.width, source.height) = sizeOf("--size", o.sizes.front());
     if (o.sizes.size() > 1) throw UsageError("--size: more than one size needs --device vulkan");
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
@@ -138,6 +149,7 @@ void execute(const Options& o) {
             framesFor(frames, source, spec, specs, exec);
             const ShotInfo& info = frames->info;
             if (k == 0) printHead(o, *frames, exec);
+            if (k == 0 && !o.json) printCounted(frames->counts);
             Row row = time(spec, *frames, exec, o.repeats);
             compareWithDouble(row, spec, frames->of(spec), info, exec);
             printRow(o, row, info);
@@ -149,8 +161,9 @@ void execute(const Options& o) {
                            {"inputBytes", row.inputBytes},
                            {"targetBytes", row.targetBytes},
                            {"stateBytes", row.stateBytes},
-                           {"maxError", row.maxError},
-                           {"rmsError", row.rmsError}});
+                           {"maxError", jsonNumber(row.maxError)},
+                           {"rmsError", jsonNumber(row.rmsError)},
+                           {"nonFinite", row.nonFinite}});
         }
     });
     if (o.json) std::cout << jsonText(all) << "\n";
@@ -173,6 +186,7 @@ void addBench(CommandLine& line, Context&) {
     c.option("--runs", o->runs, "frames timed on a device").range(1, 100000);
     c.flag("--json", o->json, "as JSON");
     c.flag("--markdown", o->markdown, "a table of memory and errors, the same on every machine").excludes("--json");
+    addNonFinite(c, o->nonFinite);
     addWorkOptions(c, o->work);
     addDeviceOptions(c, o->work);
     c.run([o] { execute(*o); });

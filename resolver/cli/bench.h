@@ -11,7 +11,7 @@ namespace aa {
 
 struct BenchOptions {
     std::vector<std::string> methods, sizes = {"1920x1080"};
-    std::string shot, scene;
+    std::string shot, scene, nonFinite = "sanitise";
     int frames = 8, repeats = 3, runs = 200;
     bool json = false, markdown = false;
     WorkOptions work = {.threads = 1};

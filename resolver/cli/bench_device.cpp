@@ -125,7 +125,7 @@ void benchDevice(const BenchOptions& o, const std::vector<MethodSpec>& methods) 
     std::vector<MethodSpec> both = methods;
     both.push_back(copy);
     for (const auto& size : o.sizes) {
-        BenchFrames source{o.shot, o.scene, 0, 0, 2};
+        BenchFrames source{o.shot, o.scene, 0, 0, 2, inputPolicyByName(o.nonFinite)};
         std::tie(source.width, source.height) = sizeOf("--size", size);
         std::optional<Frames> frames;
         double copyRate = 0;  // bytes per second of the shader that copies a picture: what this size can reach

@@ -14,15 +14,15 @@ namespace {
 
 Frames shotFrames(const BenchFrames& o, const std::vector<MethodSpec>& methods) {
     const PassSet wanted = passesOf(methods, Sampling::jittered), wantedOfCentre = passesOf(methods, Sampling::centre);
-    const ShotReader reader(o.shot);
+    const ShotReader reader(o.shot, o.policy);
     Frames r;
     r.info = shotInfo(reader.manifest());
     const size_t count = std::min(size_t(o.frames), reader.manifest().frames.size());
     for (size_t i = 0; i < count; i++) {
-        if (!wanted.empty()) r.jittered.push_back(reader.read(i, wanted));
+        if (!wanted.empty()) r.jittered.push_back(reader.read(i, wanted, &r.counts));
         if (wantedOfCentre.empty()) continue;
-        r.centre.push_back(reader.hasCentreFrames() ? reader.readCentre(i, wantedOfCentre)
-                                                    : reader.read(i, wantedOfCentre));
+        r.centre.push_back(reader.hasCentreFrames() ? reader.readCentre(i, wantedOfCentre, &r.counts)
+                                                    : reader.read(i, wantedOfCentre, &r.counts));
     }
     return r;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "methods/spec.h"
+#include "shot/reader.h"
 
 namespace aa {
 
@@ -12,6 +13,7 @@ struct BenchFrames {
     std::string shot, scene;  // a shot's folder; or a synthetic scene, empty: the one that serves the method
     int width = 1920, height = 1080;
     int frames = 8;
+    InputPolicy policy = InputPolicy::sanitise;  // of a shot's frames
 };
 
 // In the sampling that the methods read.
@@ -20,6 +22,7 @@ struct Frames {
     ShotInfo info;
     std::string scene, subsamples;  // of the synthetic frames
     double edgeShare = 0;
+    SanitiseCounts counts;  // what a shot's frames held that the policy knows
     const std::vector<Frame>& of(const MethodSpec& m) const {
         return m.method->sampling() == Sampling::jittered ? jittered : centre;
     }

@@ -34,6 +34,8 @@ struct WorkOptions {
 void addWorkOptions(Command& command, WorkOptions& work);
 // --device and what goes with it.
 void addDeviceOptions(Command& command, WorkOptions& work);
+// --non-finite, of every command that reads pictures; `whatSanitiseDoes` is its word in the help.
+void addNonFinite(Command& command, std::string& policy, const std::string& whatSanitiseDoes = "replace and count");
 // Width and height of an option's "480x270"; one number is a square. Throws UsageError.
 std::pair<int, int> sizeOf(const std::string& option, const std::string& text);
 // Runs `body` in an arena of the asked number of threads.

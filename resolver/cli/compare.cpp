@@ -10,10 +10,12 @@
 #include "gpu/metrics.h"
 #include "image/colour.h"
 #include "image/error.h"
+#include "image/exr.h"
 #include "image/io.h"
 #include "image/json_text.h"
 #include "metrics/maps.h"
 #include "metrics/measure.h"
+#include "metrics/non_finite.h"
 #include "report/format.h"
 #include "report/gallery.h"
 #include "study/protocol.h"
@@ -23,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-    std::string a, b, pair = "auto", map, mapOf, region, display = "srgb";
+    std::string a, b, pair = "auto", map, mapOf, region, layer, display = "srgb", nonFinite = "sanitise";
     std::vector<std::string> metrics = {"mse", "psnr", "ssimLuma"}, thresholds;
     double exposure = 0;
     bool json = false, q8 = false;
@@ -51,16 +53,53 @@ std::vector<Threshold> thresholdsOf(const Options& o) {
     return all;
 }
 
+// What a picture holds beside the colours that are compared; summed over the frames.
+struct Aside {
+    ColourCounts values;     // of which NaN and Inf alone are counted
+    uint64_t notOpaque = 0;  // pixels
+    std::string layer;       // of the first frame, where there are several
+};
 struct Both {
     Rgb encodedA, encodedB, linearA, linearB;  // linear: empty for 8-bit images
+    Aside a, b;
+    uint64_t alphaDiffers = 0;  // pixels
+    bool isBroken() const { return a.values.nonFinite() + b.values.nonFinite() > 0; }
 };
+uint64_t notOpaque(const LoadedImage& image) {
+    uint64_t count = 0;
+    for (int y = 0; y < image.alpha.height(); y++)
+        for (int x = 0; x < image.alpha.width(); x++) count += image.alpha.at(x, y) != 1;
+    return count;
+}
+uint64_t alphaDiffers(const LoadedImage& a, const LoadedImage& b) {
+    if (a.alpha.empty() && b.alpha.empty()) return 0;
+    const auto at = [](const LoadedImage& image, int x, int y) {
+        return image.alpha.empty() ? 1.0f : image.alpha.at(x, y);
+    };
+    uint64_t count = 0;
+    for (int y = 0; y < a.rgb.height(); y++)
+        for (int x = 0; x < a.rgb.width(); x++) count += at(a, x, y) != at(b, x, y);
+    return count;
+}
+LoadedImage load(const fs::path& file, const Options& o) {
+    const InputPolicy policy = inputPolicyByName(o.nonFinite);
+    // Replaced values would have to be told from others below, where they count as the largest difference.
+    LoadedImage image =
+        readImage(file, {isExr(file) ? o.layer : "", policy == InputPolicy::strict ? policy : InputPolicy::raw});
+    showDisplayWindow(image, file);
+    return image;
+}
 Both loadBoth(const FramePair& pair, const Options& o, const Exec& exec) {
-    LoadedImage a = readImage(pair.a), b = readImage(pair.b);
+    LoadedImage a = load(pair.a, o), b = load(pair.b, o);
+    if (!o.layer.empty() && !isExr(pair.a) && !isExr(pair.b))
+        throw UsageError("--layer: neither " + pair.a.string() + " nor " + pair.b.string() + " is an EXR");
     if (a.rgb.width() != b.rgb.width() || a.rgb.height() != b.rgb.height())
         throw InputError(pair.b.string() + ": expected " + std::to_string(a.rgb.width()) + "x" +
                          std::to_string(a.rgb.height()) + " like " + pair.a.string() + ", found " +
                          std::to_string(b.rgb.width()) + "x" + std::to_string(b.rgb.height()));
     Both both;
+    both.a = {a.counts, notOpaque(a), a.layer}, both.b = {b.counts, notOpaque(b), b.layer};
+    both.alphaDiffers = alphaDiffers(a, b);
     const auto prepare = [&](LoadedImage& image, Rgb& encoded, Rgb& linear) {
         if (image.space == FileSpace::encoded) {
             encoded = std::move(image.rgb);
@@ -73,11 +112,17 @@ Both loadBoth(const FramePair& pair, const Options& o, const Exec& exec) {
     };
     prepare(a, both.encodedA, both.linearA);
     prepare(b, both.encodedB, both.linearB);
+    const auto sourceOf = [](const Aside& of, const Rgb& linear) { return of.values.nonFinite() ? &linear : nullptr; };
+    if (both.isBroken())
+        putFarthest(sourceOf(both.a, both.linearA), sourceOf(both.b, both.linearB), both.encodedB, both.encodedA);
     if (!o.region.empty()) {
         const Window w =
             windowFrom(o.region, "--region", pair.a.string(), both.encodedA.width(), both.encodedA.height());
         for (Rgb* image : {&both.encodedA, &both.encodedB, &both.linearA, &both.linearB})
             if (!image->empty()) *image = cropped(*image, w);
+        for (auto [of, linear] : {std::pair{&both.a, &both.linearA}, {&both.b, &both.linearB}})
+            if (of->values.nonFinite())
+                of->values = sanitiseColour(*linear, false, InputPolicy::raw, ColourUse::measured, {});
     }
     return both;
 }
@@ -108,15 +153,27 @@ FrameMetrics deviceFiguresOf(const Both& p, const std::set<const Metric*>& wante
 FrameMetrics figuresOf(const Both& p, const std::set<const Metric*>& wanted, const Exec& exec, Measuring& device) {
     FrameMetrics figures =
         device.session ? deviceFiguresOf(p, wanted, device) : frameMetrics(squaredError(p.encodedA, p.encodedB, exec));
+    // Of linear light there is no largest difference: a picture with values that are no numbers has no such figure.
     const bool linear = !p.linearA.empty() && !p.linearB.empty();
     const ImagePair images{p.encodedA, p.encodedB, linear ? &p.linearA : nullptr, linear ? &p.linearB : nullptr};
     for (const Metric* metric : wanted) {
         if (device.session && hasShader(*metric)) continue;
         if (!metric->isPossible(images))
             throw UsageError(std::string(metric->figures[0].name) + " needs linear images: two EXR files");
-        addFigures(figures, *metric, images, exec);
+        if (p.isBroken() && metric->space == ColourSpace::linear)
+            for (const Figure& f : metric->figures) figures.others[std::string(f.name)] = NAN;
+        else
+            addFigures(figures, *metric, images, exec);
     }
     return figures;
+}
+// No figure at all, under --non-finite raw.
+FrameMetrics noFigures(const std::set<const Metric*>& wanted) {
+    FrameMetrics none = frameMetrics({NAN, NAN});
+    for (const Metric* metric : wanted)
+        for (const Figure& f : metric->figures)
+            if (!f.ofSquares) none.others[std::string(f.name)] = NAN;
+    return none;
 }
 nlohmann::ordered_json numbers(const FrameMetrics& m, const std::vector<const Figure*>& wanted) {
     nlohmann::ordered_json j;
@@ -150,6 +207,9 @@ void compare(const Options& o, Context& context) {
     if (device.session && device.session->fast())
         throw UsageError("compare: --gpu-precision fast: pictures are compared in 32 bits alone");
 
+    const bool raw = inputPolicyByName(o.nonFinite) == InputPolicy::raw;
+    Aside a, b;
+    uint64_t alphaDiffers = 0;
     SquaredError squares;
     std::map<std::string, double, std::less<>> others;
     std::vector<FrameMetrics> frames;
@@ -157,7 +217,13 @@ void compare(const Options& o, Context& context) {
     withThreads(o.work.threads, [&] {
         for (const auto& pair : pairs) {
             const Both both = loadBoth(pair, o, exec);
-            frames.push_back(figuresOf(both, wanted, exec, device));
+            frames.push_back(raw && both.isBroken() ? noFigures(wanted) : figuresOf(both, wanted, exec, device));
+            for (auto [all, one] : {std::pair{&a, &both.a}, {&b, &both.b}}) {
+                all->values.nan += one->values.nan, all->values.inf += one->values.inf;
+                all->notOpaque += one->notOpaque;
+                if (all->layer.empty()) all->layer = one->layer;
+            }
+            alphaDiffers += both.alphaDiffers;
             const FrameMetrics& f = frames.back();
             squares.mse += f.mse / count, squares.reference += f.reference / count;
             for (const auto& [name, value] : f.others) others[name] += value / count;
@@ -174,12 +240,20 @@ void compare(const Options& o, Context& context) {
         if (const double v = pooled.figure(t.figure->name).value(); !(v >= t.limit))
             failures.push_back(std::string(t.figure->name) + " " + shown(*t.figure, v) + " is below " +
                                shown(*t.figure, t.limit));
+    for (const auto& [name, of] : {std::pair{&o.a, &a}, {&o.b, &b}})
+        if (!thresholds.empty() && of->values.nonFinite())
+            failures.push_back(*name + " holds " + inWords(of->values) + ", which no figure calls good");
     if (o.json) {
         nlohmann::ordered_json j = {
             {"a", o.a}, {"b", o.b}, {"frames", pairs.size()}, {"pooled", numbers(pooled, figures)}};
         for (size_t i = 0; i < pairs.size() && pairs.size() > 1; i++)
             j["perFrame"][pairs[i].name] = numbers(frames[i], figures);
         if (!paired.by.empty()) j["pairedBy"] = paired.by;
+        j["nonFinite"] = {{"a", a.values.nonFinite()}, {"b", b.values.nonFinite()}};
+        if (a.notOpaque + b.notOpaque > 0)
+            j["alpha"] = {{"notOpaqueA", a.notOpaque}, {"notOpaqueB", b.notOpaque}, {"differs", alphaDiffers}};
+        for (const auto& [key, of] : {std::pair{"layerA", &a}, {"layerB", &b}})
+            if (!of->layer.empty()) j[key] = of->layer;
         if (!o.region.empty()) j["region"] = o.region;
         if (!o.map.empty()) j["map"] = {{"of", map.name}, {"scale", map.scale}};
         if (device.session) j["device"]["name"] = device.name();
@@ -199,6 +273,17 @@ void compare(const Options& o, Context& context) {
         if (!paired.by.empty() && paired.by != "name")
             std::printf("paired by %s: %s with %s\n", paired.by.c_str(), pairs[0].a.filename().c_str(),
                         pairs[0].b.filename().c_str());
+        for (const auto& [name, of] : {std::pair{&o.a, &a}, {&o.b, &b}}) {
+            if (!of->layer.empty()) std::printf("%s: layer '%s'\n", name->c_str(), of->layer.c_str());
+            if (of->values.nonFinite())
+                std::printf("%s: %s; %s\n", name->c_str(), inWords(of->values).c_str(),
+                            raw ? "there is no figure (--non-finite raw)"
+                                : "each counts as the largest difference that the display allows");
+        }
+        if (a.notOpaque + b.notOpaque > 0)
+            std::printf("alpha is not compared: %llu and %llu pixels are not opaque, %llu differ in it\n",
+                        static_cast<unsigned long long>(a.notOpaque), static_cast<unsigned long long>(b.notOpaque),
+                        static_cast<unsigned long long>(alphaDiffers));
         if (!o.map.empty()) std::printf("map %s: %s\n", o.map.c_str(), std::string(map.scale).c_str());
         if (!o.region.empty()) std::printf("figures of the region %s\n", o.region.c_str());
         if (device.session) {
@@ -232,6 +317,8 @@ void addCompare(CommandLine& line, Context& context) {
         .oneOf({"srgb", "identity"});
     c.option("--region", o->region,
              "X,Y,WIDTH,HEIGHT: figures and map of these pixels alone, as if they were the picture");
+    c.option("--layer", o->layer, "layer of multilayer and multi-part EXR files; default: the one colour, or Combined");
+    addNonFinite(c, o->nonFinite, "count them as the largest difference");
     c.flag("--q8", o->q8, "round both to 8-bit codes first");
     c.flag("--json", o->json, "as JSON");
     addWorkOptions(c, o->work);

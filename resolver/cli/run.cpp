@@ -111,7 +111,17 @@ void printTable(const RunResults& r) {
     std::printf("figures: %s\n", inWords(r.protocol).c_str());
     for (const auto& [what, count] : r.sanitised)
         if (count > 0)
-            std::printf("replaced input values: %s %llu\n", what.c_str(), static_cast<unsigned long long>(count));
+            std::printf("input values that no method can use: %s %llu\n", what.c_str(),
+                        static_cast<unsigned long long>(count));
+    for (const auto& m : r.methods) {
+        uint64_t broken = 0;
+        for (const auto& f : m.frames) broken += f.nonFinite;
+        if (broken > 0)
+            std::printf(
+                "%s: %llu values of its pictures or their truth are no numbers; each counts as the largest "
+                "difference\n",
+                m.text.c_str(), static_cast<unsigned long long>(broken));
+    }
 }
 
 namespace {

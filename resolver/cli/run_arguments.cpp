@@ -48,8 +48,7 @@ void addRunArguments(Command& c, RunArguments& a) {
          "--reference", a.reference,
          "a method: the others are held against its images instead of the shot's truth; added where it is not there")
         .typeName("METHOD");
-    c.option("--input", a.input, "NaN and Inf in the input: sanitise = replace and count, strict = refuse")
-        .oneOf({"sanitise", "strict"});
+    addNonFinite(c, a.nonFinite);
     c.flag("--json", a.json, "print results.json instead of the table");
     c.flag("-q,--quiet", a.quiet, "no progress");
     addWorkOptions(c, a.work);
@@ -89,7 +88,7 @@ ShotReader openShot(const RunArguments& a, RunOptions& run) {
     if (a.dither && !run.writePng) throw UsageError("--dither: no effect without --write png");
     if (a.dither && a.quantise)
         throw UsageError("--dither: no effect with --quantise, which rounds before images are written");
-    ShotReader shot(a.shot, a.input == "strict" ? InputPolicy::strict : InputPolicy::sanitise);
+    ShotReader shot(a.shot, inputPolicyByName(a.nonFinite));
     run.frames = selectFrames(shot.manifest(), a.frames);
     if (!a.region.empty())
         run.protocol.region = windowFrom(a.region, "--region", "shot '" + shot.manifest().name + "'",

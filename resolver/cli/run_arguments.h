@@ -10,7 +10,7 @@ namespace aa {
 
 struct RunArguments {
     std::string shot, out, frames, write = "exr", writeFrames = "truth", toneMap = "none", display = "srgb",
-                                   history = "first", input = "sanitise", region, reference;
+                                   history = "first", nonFinite = "sanitise", region, reference;
     double exposure = 0;
     std::vector<std::string> metrics, maps;
     std::vector<std::string> externals;  // NAME=FOLDER: rows of pictures made elsewhere

@@ -35,6 +35,14 @@ void addDeviceOptions(Command& command, WorkOptions& work) {
                  "run under Vulkan's validation layer; its first complaint ends the run");
 }
 
+void addNonFinite(Command& command, std::string& policy, const std::string& whatSanitiseDoes) {
+    command
+        .option("--non-finite", policy,
+                "NaN, Inf and other values that no method can use: sanitise = " + whatSanitiseDoes +
+                    ", strict = refuse, raw = leave and count")
+        .oneOf({"sanitise", "strict", "raw"});
+}
+
 std::pair<int, int> sizeOf(const std::string& option, const std::string& text) {
     int width = 0, height = 0, read = 0;
     int found = std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &read);

@@ -11,21 +11,25 @@ using OIIO::ImageInput;
 
 #define AA_EXPORT extern "C" __attribute__((visibility("default")))
 
-AA_EXPORT void* aaOpenPicture1(const char* file, AaPicture* picture) {
+AA_EXPORT void* aaOpenPicture2(const char* file, AaPicture* picture) {
     try {
-        auto in = ImageInput::open(file);
+        OIIO::ImageSpec straight;
+        straight.attribute("oiio:UnassociatedAlpha", 1);
+        auto in = ImageInput::open(file, &straight);
         if (!in) {
             OIIO::geterror();
             return nullptr;
         }
         const OIIO::ImageSpec& spec = in->spec();
-        *picture = {spec.width, spec.height, spec.nchannels, spec.format.is_floating_point()};
+        *picture = {spec.width,         spec.height,
+                    spec.nchannels,     spec.format.is_floating_point(),
+                    spec.alpha_channel, spec.get_int_attribute("Orientation", 1)};
         return in.release();
     } catch (...) {  // nothing may pass the border
         return nullptr;
     }
 }
-AA_EXPORT int aaReadPicture1(void* opened, int channels, float* pixels) {
+AA_EXPORT int aaReadPicture2(void* opened, int channels, float* pixels) {
     try {
         auto* in = static_cast<ImageInput*>(opened);
         if (in->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, pixels)) return 1;
@@ -35,8 +39,8 @@ AA_EXPORT int aaReadPicture1(void* opened, int channels, float* pixels) {
         return 0;
     }
 }
-AA_EXPORT void aaClosePicture1(void* opened) { delete static_cast<ImageInput*>(opened); }
+AA_EXPORT void aaClosePicture2(void* opened) { delete static_cast<ImageInput*>(opened); }
 
-static_assert(std::is_same_v<decltype(&aaOpenPicture1), AaOpenPicture> &&
-              std::is_same_v<decltype(&aaReadPicture1), AaReadPicture> &&
-              std::is_same_v<decltype(&aaClosePicture1), AaClosePicture>);
+static_assert(std::is_same_v<decltype(&aaOpenPicture2), AaOpenPicture> &&
+              std::is_same_v<decltype(&aaReadPicture2), AaReadPicture> &&
+              std::is_same_v<decltype(&aaClosePicture2), AaClosePicture>);

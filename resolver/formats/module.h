@@ -5,7 +5,9 @@ extern "C" {
 
 struct AaPicture {
     int width, height, channels;
-    int isFloat;  // 1: linear light; 0: codes / max
+    int isFloat;      // 1: linear light; 0: codes / max
+    int alpha;        // its channel; -1: none. Colours are not multiplied by it
+    int orientation;  // as EXIF counts: 1 upright
 };
 // Null when the file is no picture that the module knows.
 typedef void* (*AaOpenPicture)(const char* file, AaPicture* picture);
@@ -15,5 +17,5 @@ typedef void (*AaClosePicture)(void* opened);
 }
 
 // The functions' names; a module of another interface has others.
-inline constexpr const char kAaOpenPicture[] = "aaOpenPicture1", kAaReadPicture[] = "aaReadPicture1",
-                            kAaClosePicture[] = "aaClosePicture1";
+inline constexpr const char kAaOpenPicture[] = "aaOpenPicture2", kAaReadPicture[] = "aaReadPicture2",
+                            kAaClosePicture[] = "aaClosePicture2";

@@ -103,6 +103,10 @@ int lengthOf(int first, int last) {
     constexpr int64_t kMost = std::numeric_limits<int>::max();
     return int(std::clamp<int64_t>(int64_t(last) - first + 1, 0, kMost));
 }
+int apart(int a, int b) {
+    constexpr int64_t kMost = std::numeric_limits<int>::max();
+    return int(std::clamp<int64_t>(int64_t(a) - b, -kMost, kMost));
+}
 ExrPart described(const Imf::Header& header) {
     const auto data = header.dataWindow(), display = header.displayWindow();
     ExrPart part;
@@ -110,8 +114,10 @@ ExrPart described(const Imf::Header& header) {
     part.width = lengthOf(data.min.x, data.max.x);
     part.height = lengthOf(data.min.y, data.max.y);
     part.compression = nameOf(header.compression());
+    part.storage = header.hasType() ? header.type() : header.hasTileDescription() ? "tiledimage" : "scanlineimage";
     part.deep = header.hasType() && header.type().starts_with("deep");
-    part.cropped = data != display;
+    part.shown = {apart(display.min.x, data.min.x), apart(display.min.y, data.min.y),
+                  lengthOf(display.min.x, display.max.x), lengthOf(display.min.y, display.max.y)};
     for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
         part.channels.push_back(
             {c.name(), typeOf(c.channel().type), c.channel().xSampling != 1 || c.channel().ySampling != 1});
@@ -181,9 +187,15 @@ class OutputStream : public Imf::OStream {
 std::pair<int, int> sizeOf(const ChannelSource& source) {
     return std::visit([](auto* plane) { return std::pair(plane->width(), plane->height()); }, source.plane);
 }
+// The pixels' place where the display window begins at 0, 0.
 Imath::Box2i windowOf(const PartSource& part) {
     const auto [w, h] = sizeOf(part.channels.at(0));
-    return {{0, 0}, {w - 1, h - 1}};
+    const int x = part.shown ? -part.shown->x : 0, y = part.shown ? -part.shown->y : 0;
+    return {{x, y}, {x + w - 1, y + h - 1}};
+}
+Imath::Box2i displayWindowOf(const PartSource& part) {
+    if (!part.shown) return windowOf(part);
+    return {{0, 0}, {part.shown->width - 1, part.shown->height - 1}};
 }
 Imf::PixelType typeOf(const ChannelSource& source) {
     return std::holds_alternative<const PlaneU*>(source.plane) ? Imf::UINT : Imf::FLOAT;
@@ -269,7 +281,9 @@ void ExrFile::read(const ExrPart& part, std::vector<ChannelTarget>& targets) {
     if (part.width < 1 || part.height < 1 || part.width > kLargestSide || part.height > kLargestSide)
         throw InputError(where + ": " + std::to_string(part.width) + " x " + std::to_string(part.height) +
                          " pixels; expected 1..16384 a side");
-    if (part.deep) throw InputError(where + ": deep pixels; expected one value per pixel" + advice_);
+    if (part.deep)
+        throw InputError(where + ": deep pixels (" + part.storage +
+                         "), of which each holds several values; not supported, flatten it to one value per pixel");
     const uint64_t asked = uint64_t(part.width) * uint64_t(part.height) * sizeof(float) * targets.size();
     std::error_code ignored;
     const uint64_t stored = fs::file_size(path_, ignored);
@@ -290,7 +304,8 @@ void ExrFile::read(const ExrPart& part, std::vector<ChannelTarget>& targets) {
                              ", found " + std::string(name(c->type)) + "; export the shot again");
         if (c->subsampled)
             throw InputError(where + ", channel '" + t.channel +
-                             "': expected one value per pixel, found one for several; write R, G and B");
+                             "': sub-sampled, one value for several pixels, as luminance and chroma are stored; not "
+                             "supported, write R, G and B with one value per pixel");
         t.stored = c->type;
         std::visit([&](auto* p) { *p = std::remove_pointer_t<decltype(p)>(part.width, part.height); }, t.plane);
         assert(!samples.findSlice(t.channel));
@@ -319,7 +334,7 @@ void ExrFile::read(const ExrPart& part, std::vector<ChannelTarget>& targets) {
 void writeParts(const fs::path& file, const std::vector<PartSource>& parts) {
     startThreads();
     // All parts show one picture: a list of another size keeps its display window.
-    const Imath::Box2i displayWindow = windowOf(parts.at(0));
+    const Imath::Box2i displayWindow = displayWindowOf(parts.at(0));
     std::vector<Imf::Header> headers;
     for (const auto& part : parts) headers.push_back(headerOf(part, displayWindow));
     try {

@@ -7,12 +7,14 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
 #include "image/plane.h"
+#include "image/window.h"
 
 namespace aa {
 
@@ -27,12 +29,14 @@ struct ExrChannel {
 struct ExrPart {
     std::string name;
     int width = 0, height = 0;
-    std::vector<ExrChannel> channels;          // image/channel_order.h
-    std::string compression;                   // "zip", "dwaa", ...
-    bool deep = false;                         // several values per pixel
-    bool cropped = false;                      // the pixels stored are not the picture: a border, overscan
-    std::map<std::string, std::string> texts;  // attributes that are texts
-    std::map<std::string, int> integers;       // and whole numbers
+    std::vector<ExrChannel> channels;  // image/channel_order.h
+    std::string compression;           // "zip", "dwaa", ...
+    std::string storage;               // "scanlineimage", "tiledimage", "deepscanline", "deeptile"
+    bool deep = false;                 // several values per pixel
+    Window shown;                      // the display window, in pixels from the first one stored
+    bool cropped() const { return !(shown == Window{0, 0, width, height}); }  // a region, overscan
+    std::map<std::string, std::string> texts;                                 // attributes that are texts
+    std::map<std::string, int> integers;                                      // and whole numbers
     const ExrChannel* find(std::string_view channel) const;
 };
 
@@ -79,6 +83,7 @@ struct PartSource {
     std::string name;  // may be empty in a file of one part
     std::vector<ChannelSource> channels;
     std::map<std::string, int> integers = {};  // attributes
+    std::optional<Window> shown = {};  // the display window, in pixels from the first; none: all of the first part
 };
 // ZIP, float and uint, through a temporary name. Throws InputError when it cannot (disk full, permissions).
 void writeParts(const std::filesystem::path& file, const std::vector<PartSource>& parts);

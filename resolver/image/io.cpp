@@ -14,6 +14,7 @@
 
 #include "image/error.h"
 #include "image/exr.h"
+#include "image/exr_layers.h"
 #include "image/other_formats.h"
 #include "image/output_error.h"
 #include "image/png.h"
@@ -104,38 +105,104 @@ void fromCodes(const PlaneU& codes, PlaneF& values) {
     for (int y = 0; y < codes.height(); y++)
         for (int x = 0; x < codes.width(); x++) values.at(x, y) = float(codes.at(x, y)) * kScale;
 }
-LoadedImage readExr(const fs::path& file) {
+LoadedImage readExr(const fs::path& file, const std::string& asked) {
     ExrFile exr(file, "write the file again");
-    const ExrPart& part = exr.parts()[0];
-    const auto isUint = [](const ExrChannel& c) { return c.type == ChannelType::uint; };
-    if (part.channels.empty()) throw InputError(file.string() + ": has no pixels");
+    const ExrLayer layer = chooseLayer(exr, asked);
+    const ExrPart& part = exr.parts()[layer.part];
+    std::vector<std::string> names = layer.rgb;
+    if (names.empty())
+        names.assign(layer.channels.begin(), layer.channels.begin() + (layer.channels.size() < 3 ? 1 : 3));
+    const auto isUint = [&](const std::string& c) { return part.find(c)->type == ChannelType::uint; };
     LoadedImage image;
-    if (std::all_of(part.channels.begin(), part.channels.end(), isUint)) image.space = FileSpace::encoded;
+    if (std::all_of(layer.channels.begin(), layer.channels.end(), isUint)) image.space = FileSpace::encoded;
+    image.half = part.find(names[0])->type == ChannelType::half;
+    image.shown = part.shown;
+    if (layersOf(exr).size() > 1) image.layer = layer.name;
     const auto mark = part.integers.find(kDisplayReferred);
     image.displayReferred = mark != part.integers.end() && mark->second != 0;
-    const size_t channels = part.channels.size() < 3 ? 1 : 3;
-    std::array<PlaneU, 3> codes;
+    std::array<PlaneU, 4> codes;
+    std::array<PlaneF*, 4> planes = {&image.rgb.c[0], &image.rgb.c[1], &image.rgb.c[2], &image.alpha};
     std::vector<ChannelTarget> targets;
-    for (size_t c = 0; c < channels; c++)
-        if (isUint(part.channels[c]))
-            targets.push_back({part.channels[c].name, &codes[c]});
+    const size_t colours = names.size();
+    if (layer.alpha && std::find(names.begin(), names.end(), *layer.alpha) == names.end())
+        names.push_back(*layer.alpha);
+    const auto planeOf = [&](size_t i) { return i < colours ? i : 3; };
+    for (size_t i = 0; i < names.size(); i++)
+        if (isUint(names[i]))
+            targets.push_back({names[i], &codes[planeOf(i)]});
         else
-            targets.push_back({part.channels[c].name, &image.rgb.c[c]});
+            targets.push_back({names[i], planes[planeOf(i)]});
     exr.read(part, targets);
-    for (size_t c = 0; c < channels; c++)
-        if (isUint(part.channels[c])) fromCodes(codes[c], image.rgb.c[c]);
-    for (size_t c = channels; c < 3; c++) image.rgb.c[c] = image.rgb.c[0];
+    for (size_t i = 0; i < names.size(); i++)
+        if (isUint(names[i])) fromCodes(codes[planeOf(i)], *planes[planeOf(i)]);
+    for (size_t c = colours; c < 3; c++) image.rgb.c[c] = image.rgb.c[0];
     return image;
+}
+
+// Upright, of a picture that is to be shown as EXIF's orientation says (1 to 8; anything else: as it is).
+PlaneF upright(const PlaneF& in, int orientation) {
+    const bool swaps = orientation >= 5;
+    const int w = in.width(), h = in.height();
+    PlaneF out(swaps ? h : w, swaps ? w : h);
+    for (int y = 0; y < out.height(); y++)
+        for (int x = 0; x < out.width(); x++) {
+            int i = swaps ? y : x, j = swaps ? x : y;
+            if (orientation == 2 || orientation == 3 || orientation == 7 || orientation == 8) i = w - 1 - i;
+            if (orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7) j = h - 1 - j;
+            out.at(x, y) = in.at(i, j);
+        }
+    return out;
+}
+PlaneF shownOf(const PlaneF& in, const Window& shown) {
+    PlaneF out(shown.width, shown.height);
+    for (int y = 0; y < shown.height; y++)
+        for (int x = 0; x < shown.width; x++) {
+            const int64_t i = int64_t(x) + shown.x, j = int64_t(y) + shown.y;
+            if (i >= 0 && j >= 0 && i < in.width() && j < in.height()) out.at(x, y) = in.at(int(i), int(j));
+        }
+    out.fillBorder();
+    return out;
 }
 }  // namespace
 
-LoadedImage readImage(const fs::path& file) {
+bool LoadedImage::isOpaque() const {
+    return alpha.empty() || !anyValue(alpha, [](float v) { return v != 1; });
+}
+
+LoadedImage readImage(const fs::path& file, const ReadOptions& o) {
     if (!fs::exists(file)) throw InputError(file.string() + ": no such file");
-    LoadedImage image = isExr(file)   ? readExr(file)
-                        : isPng(file) ? LoadedImage{readPng(file), FileSpace::encoded}
-                                      : readOtherFormat(file);
+    const bool exr = isExr(file);
+    if (!exr && !o.layer.empty()) throw UsageError("--layer " + o.layer + ": " + file.string() + " is no EXR");
+    StoredPicture stored;
+    if (!exr) stored = isPng(file) ? readPng(file) : readOtherFormat(file);
+    LoadedImage image;
+    if (exr) {
+        image = readExr(file, o.layer);
+    } else {
+        image.rgb = std::move(stored.rgb), image.alpha = std::move(stored.alpha);
+        image.space = stored.isFloat ? FileSpace::linear : FileSpace::encoded;
+        if (stored.orientation > 1 && stored.orientation <= 8) {
+            for (auto& plane : image.rgb.c) plane = upright(plane, stored.orientation);
+            if (!image.alpha.empty()) image.alpha = upright(image.alpha, stored.orientation);
+        }
+        image.shown = {0, 0, image.rgb.width(), image.rgb.height()};
+    }
+    image.counts =
+        sanitiseColour(image.rgb, image.half, o.policy, o.use,
+                       {file.string() + (image.layer.empty() ? "" : ", layer '" + image.layer + "'"), {"R", "G", "B"}});
     image.rgb.fillBorder();
     return image;
+}
+
+void showDisplayWindow(LoadedImage& image, const fs::path& file) {
+    if (image.allShown()) return;
+    const Window& w = image.shown;
+    if (w.width < 1 || w.height < 1 || w.width > kLargestSide || w.height > kLargestSide)
+        throw InputError(file.string() + ": its display window has " + std::to_string(w.width) + " x " +
+                         std::to_string(w.height) + " pixels; expected 1..16384 a side");
+    for (auto& plane : image.rgb.c) plane = shownOf(plane, w);
+    if (!image.alpha.empty()) image.alpha = shownOf(image.alpha, w);
+    image.shown = {0, 0, w.width, w.height};
 }
 
 void writeLayers(const fs::path& file, const std::vector<NamedPlanes>& layers) {
@@ -148,13 +215,14 @@ void writeLayers(const fs::path& file, const std::vector<NamedPlanes>& layers) {
     writeParts(file, {part});
 }
 
-void writeExr(const fs::path& file, const Rgb& linear, bool displayReferred) {
-    const std::vector<ChannelSource> channels = {{"R", &linear.c[0]}, {"G", &linear.c[1]}, {"B", &linear.c[2]}};
-    writeParts(file, {{"", channels, {{kDisplayReferred, displayReferred ? 1 : 0}}}});
+void writeExr(const fs::path& file, const Rgb& linear, bool displayReferred, const Beside& beside) {
+    std::vector<ChannelSource> channels = {{"R", &linear.c[0]}, {"G", &linear.c[1]}, {"B", &linear.c[2]}};
+    if (beside.alpha) channels.push_back({"A", beside.alpha});
+    writeParts(file, {{"", channels, {{kDisplayReferred, displayReferred ? 1 : 0}}, beside.shown}});
 }
 
-void writePng(const fs::path& file, const Rgb& encoded) {
-    writeBytes(file, pngBytes(codesOf(encoded), encoded.width(), encoded.height(), {}));
+void writePng(const fs::path& file, const Rgb& encoded, const PlaneF* alpha) {
+    writeBytes(file, pngBytes(codesOf(encoded, alpha), encoded.width(), encoded.height(), {.alpha = alpha != nullptr}));
 }
 
 }  // namespace aa

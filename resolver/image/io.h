@@ -2,11 +2,14 @@
 // module (image/other_formats.h). Files are written under a temporary name and renamed when complete.
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "image/input_policy.h"
 #include "image/plane.h"
+#include "image/window.h"
 
 namespace aa {
 
@@ -18,20 +21,43 @@ enum class FileSpace {
     linear,   // float or half files: linear light
 };
 struct LoadedImage {
-    Rgb rgb;  // encoded in [0,1] or linear, by `space`
+    Rgb rgb;  // encoded in [0,1] or linear, by `space`; of files with alpha the stored colours, never multiplied
     FileSpace space = FileSpace::linear;
     bool displayReferred = false;  // written by writeExr(..., true): linear light that must not be tone mapped again
+    PlaneF alpha = {};             // in [0,1]; empty where the file has none
+    Window shown = {};             // the display window, in pixels from the first one stored
+    std::string layer = {};        // what was read, where the file holds more than one layer
+    bool half = false;             // stored in 16 bits
+    ColourCounts counts = {};      // of what is shown or hidden
+    bool allShown() const { return shown == Window{0, 0, rgb.width(), rgb.height()}; }
+    bool isOpaque() const;  // alpha is 1 everywhere, or there is none
+};
+// How a picture is read: the same for every command.
+struct ReadOptions {
+    std::string layer = {};  // of an EXR; empty: image/exr_layers.h tells
+    InputPolicy policy = InputPolicy::raw;
+    ColourUse use = ColourUse::measured;
 };
 
-// Reads the first three channels of the first picture in the file; of one or two channels the first is repeated. What
-// the file is, its content says, not its name. Integer files are taken as sRGB codes, float files as linear. Throws
-// InputError: missing, not an image, truncated, no pixels, larger than kLargestSide.
-LoadedImage readImage(const std::filesystem::path& file);
+// Reads one picture of the file; of one or two channels the first is repeated. What the file is, its content says, not
+// its name. Integer files are taken as sRGB codes, float files as linear. A picture that its file says lies turned is
+// turned upright. Throws InputError: missing, not an image, truncated, no pixels, larger than kLargestSide; deep or
+// sub-sampled pixels; several layers and no telling which; what the policy refuses.
+LoadedImage readImage(const std::filesystem::path& file, const ReadOptions& options = {});
+// What the display window shows: black, and clear, where nothing is stored. Throws InputError: larger than
+// kLargestSide.
+void showDisplayWindow(LoadedImage& image, const std::filesystem::path& file);
 
-// Float EXR, ZIP, three channels R G B. `displayReferred` marks images that must not be tone mapped again.
-void writeExr(const std::filesystem::path& file, const Rgb& linear, bool displayReferred);
+// What goes beside the colours of a picture that is written.
+struct Beside {
+    const PlaneF* alpha = nullptr;
+    std::optional<Window> shown = {};  // the display window, in pixels from the first
+};
+// Float EXR, ZIP, channels R G B and A where there is alpha. `displayReferred` marks images that must not be tone
+// mapped again.
+void writeExr(const std::filesystem::path& file, const Rgb& linear, bool displayReferred, const Beside& beside = {});
 // 8-bit codes floor(255 v + 0.5) of encoded values in [0,1].
-void writePng(const std::filesystem::path& file, const Rgb& encoded);
+void writePng(const std::filesystem::path& file, const Rgb& encoded, const PlaneF* alpha = nullptr);
 
 // As one float EXR: channels NAME, or NAME.R/.G/.B.
 void writeLayers(const std::filesystem::path& file, const std::vector<NamedPlanes>& layers);

@@ -8,6 +8,7 @@
 
 #include "formats/module.h"
 #include "image/error.h"
+#include "image/io.h"
 #include "image/own_module.h"
 
 namespace aa {
@@ -53,7 +54,7 @@ std::string kindOf(const fs::path& file) {
 }
 }  // namespace
 
-LoadedImage readOtherFormat(const fs::path& file) {
+StoredPicture readOtherFormat(const fs::path& file) {
     if (std::error_code ignored; fs::is_directory(file, ignored))
         throw InputError(file.string() + ": is a folder; expected an image, PNG or EXR");
     static const Module module = load();
@@ -64,22 +65,25 @@ LoadedImage readOtherFormat(const fs::path& file) {
     AaPicture picture{};
     const std::unique_ptr<void, AaClosePicture> opened(module.open(file.c_str(), &picture), module.close);
     if (!opened) throw InputError(file.string() + ": not an image that can be read; expected PNG or EXR");
-    const auto [w, h, stored, isFloat] = picture;
+    const auto [w, h, stored, isFloat, alpha, orientation] = picture;
     if (w < 1 || h < 1 || stored < 1) throw InputError(file.string() + ": has no pixels");
     if (w > kLargestSide || h > kLargestSide)
         throw InputError(file.string() + ": " + std::to_string(w) + " x " + std::to_string(h) +
                          " pixels; expected 1..16384 a side");
-    const size_t channels = size_t(std::min(stored, 3));
+    const size_t channels = size_t(std::min(stored, 4));
     std::vector<float> pixels(size_t(w) * size_t(h) * channels);
     if (!module.read(opened.get(), int(channels), pixels.data()))
         throw InputError(file.string() + ": truncated or damaged; write the file again");
-    LoadedImage image{Rgb(w, h), isFloat ? FileSpace::linear : FileSpace::encoded};
-    for (size_t c = 0; c < 3; c++) {
-        const float* from = pixels.data() + (channels == 3 ? c : 0);
-        for (int y = 0; y < h; y++)
-            for (int x = 0; x < w; x++, from += channels) image.rgb.c[c].at(x, y) = *from;
-    }
-    return image;
+    StoredPicture read{Rgb(w, h), {}, isFloat != 0, orientation};
+    const bool hasAlpha = alpha >= 0 && alpha < int(channels);
+    if (hasAlpha) read.alpha = PlaneF(w, h);
+    const float* from = pixels.data();
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++, from += channels) {
+            for (size_t c = 0; c < 3; c++) read.rgb.c[c].at(x, y) = from[channels < 3 ? 0 : c];
+            if (hasAlpha) read.alpha.at(x, y) = from[alpha];
+        }
+    return read;
 }
 
 }  // namespace aa

@@ -3,11 +3,11 @@
 // OpenImageIO, which reads them, brings hundreds of shared libraries; so it is loaded when such a file is named and not
 // before. The module is looked for beside the program, in ../lib/aaresolve from there, and at $AARESOLVE_FORMATS.
 #pragma once
-#include "image/io.h"
+#include "image/stored_picture.h"
 
 namespace aa {
 
 // Throws InputError: not a picture, truncated, larger than kLargestSide, no module.
-LoadedImage readOtherFormat(const std::filesystem::path& file);
+StoredPicture readOtherFormat(const std::filesystem::path& file);
 
 }  // namespace aa

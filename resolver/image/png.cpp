@@ -26,6 +26,22 @@ void jump(png_structp png, png_const_charp why) {
 }
 void ignore(png_structp, png_const_charp) {}
 
+// Tag 0x0112 of the first directory of EXIF's TIFF structure; 1 where it is not there or makes no sense.
+int orientationOf(std::span<const unsigned char> exif) {
+    const bool little = exif.size() > 8 && exif[0] == 'I', big = exif.size() > 8 && exif[0] == 'M';
+    if (!little && !big) return 1;
+    const auto number = [&](size_t at, size_t bytes) {
+        uint32_t n = 0;
+        for (size_t i = 0; i < bytes && at + bytes <= exif.size(); i++)
+            n = n << 8 | exif[at + (little ? bytes - 1 - i : i)];
+        return n;
+    };
+    const size_t directory = number(4, 4), entries = number(directory, 2);
+    for (size_t i = 0; i < entries && directory + 2 + 12 * (i + 1) <= exif.size(); i++)
+        if (const size_t entry = directory + 2 + 12 * i; number(entry, 2) == 0x0112) return int(number(entry + 8, 2));
+    return 1;
+}
+
 class Reader {
   public:
     explicit Reader(const fs::path& file) : file_(std::fopen(file.c_str(), "rb"), std::fclose) {
@@ -54,16 +70,16 @@ class Reader {
     int channels() const { return png_get_channels(png_, info_); }
     int bits() const { return png_get_bit_depth(png_, info_); }
     size_t rowBytes() const { return png_get_rowbytes(png_, info_); }
-    // Of the codes, to the nearest hundredth: 1 for sRGB and where nothing is stated.
-    float gamma() const {
-        int intent = 0;
-        double exponent = 0;
-        if (png_get_sRGB(png_, info_, &intent) || !png_get_gAMA(png_, info_, &exponent)) return 1;
-        return std::round(100.0f * float(1.0 / exponent)) / 100.0f;
+    // Of the EXIF data, which may stand behind the pixels: ask when they are read.
+    int orientation() {
+        png_uint_32 size = 0;
+        png_bytep bytes = nullptr;
+        return png_get_eXIf_1(png_, info_, &size, &bytes) ? orientationOf({bytes, size}) : 1;
     }
     bool readPixels(png_bytepp rows) {
         if (setjmp(png_jmpbuf(png_))) return false;
         png_read_image(png_, rows);
+        png_read_end(png_, info_);
         return true;
     }
     const std::string& why() const { return why_; }
@@ -75,22 +91,14 @@ class Reader {
     png_infop info_ = nullptr;
 };
 
-template <class T>
-T timesAlpha(T code, T alpha, float gamma) {
-    constexpr uint32_t kMax = std::numeric_limits<T>::max();
-    if (gamma == 1) return T(uint32_t(code) * alpha / kMax);
-    return T(float(code) * std::pow(float(alpha) * (1.0f / float(kMax)), gamma));
-}
 // One row of interleaved codes into row y of the planes.
 template <class T>
-void unpackRow(const T* codes, int channels, float gamma, int y, Rgb& to) {
+void unpackRow(const T* codes, int channels, int y, StoredPicture& to) {
     constexpr float kScale = 1.0f / float(std::numeric_limits<T>::max());
-    for (int x = 0; x < to.width(); x++, codes += channels)
-        for (int c = 0; c < 3; c++) {
-            T code = codes[channels < 3 ? 0 : c];
-            if (channels % 2 == 0) code = timesAlpha(code, codes[channels - 1], gamma);
-            to.c[size_t(c)].at(x, y) = float(code) * kScale;
-        }
+    for (int x = 0; x < to.rgb.width(); x++, codes += channels) {
+        for (int c = 0; c < 3; c++) to.rgb.c[size_t(c)].at(x, y) = float(codes[channels < 3 ? 0 : c]) * kScale;
+        if (!to.alpha.empty()) to.alpha.at(x, y) = float(codes[channels - 1]) * kScale;
+    }
 }
 
 class Writer {
@@ -108,11 +116,12 @@ class Writer {
         if (setjmp(png_jmpbuf(png_))) return false;
         png_set_write_fn(png_, &bytes_, append, [](png_structp) {});
         png_set_compression_level(png_, options.compressionLevel);
-        png_set_IHDR(png_, info_, width, height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-                     PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+        png_set_IHDR(png_, info_, width, height, 8, options.alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
+                     PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
         if (options.srgb) png_set_sRGB_gAMA_and_cHRM(png_, info_, PNG_sRGB_INTENT_ABSOLUTE);
         png_write_info(png_, info_);
-        for (png_uint_32 y = 0; y < height; y++) png_write_row(png_, codes + size_t(y) * width * 3);
+        for (png_uint_32 y = 0; y < height; y++)
+            png_write_row(png_, codes + size_t(y) * width * (options.alpha ? 4 : 3));
         png_write_end(png_, info_);
         return true;
     }
@@ -141,7 +150,7 @@ bool isPng(const fs::path& file) {
     return png_sig_cmp(bytes, 0, sizeof bytes) == 0;
 }
 
-Rgb readPng(const fs::path& file) {
+StoredPicture readPng(const fs::path& file) {
     Reader in(file);
     const auto damaged = [&](const char* what) {
         return InputError(file.string() + ": " + what + " (" + in.why() + "); write the file again");
@@ -162,30 +171,34 @@ Rgb readPng(const fs::path& file) {
     std::vector<png_bytep> rows;
     for (int y = 0; y < height; y++) rows.push_back(codes.data() + in.rowBytes() * size_t(y));
     if (!in.readPixels(rows.data())) throw damaged("truncated or damaged");
-    Rgb rgb(width, height);
+    StoredPicture picture{Rgb(width, height)};
+    if (in.channels() % 2 == 0) picture.alpha = PlaneF(width, height);
     for (int y = 0; y < height; y++)
         if (in.bits() == 16)
-            unpackRow(reinterpret_cast<const uint16_t*>(rows[size_t(y)]), in.channels(), in.gamma(), y, rgb);
+            unpackRow(reinterpret_cast<const uint16_t*>(rows[size_t(y)]), in.channels(), y, picture);
         else
-            unpackRow(rows[size_t(y)], in.channels(), in.gamma(), y, rgb);
-    return rgb;
+            unpackRow(rows[size_t(y)], in.channels(), y, picture);
+    picture.orientation = in.orientation();
+    return picture;
 }
 
-std::vector<unsigned char> codesOf(const Rgb& encoded) {
+std::vector<unsigned char> codesOf(const Rgb& encoded, const PlaneF* alpha) {
     const int w = encoded.width(), h = encoded.height();
+    std::vector<const PlaneF*> planes = {&encoded.c[0], &encoded.c[1], &encoded.c[2]};
+    if (alpha) planes.push_back(alpha);
     std::vector<unsigned char> codes;
-    codes.reserve(size_t(w) * size_t(h) * 3);
+    codes.reserve(size_t(w) * size_t(h) * planes.size());
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++)
-            for (const PlaneF& plane : encoded.c) {
-                const float v = plane.at(x, y);
+            for (const PlaneF* plane : planes) {
+                const float v = plane->at(x, y);
                 codes.push_back(uint8_t(std::floor(255.0f * (v > 0 ? (v < 1 ? v : 1.0f) : 0.0f) + 0.5f)));
             }
     return codes;
 }
 
 std::vector<unsigned char> pngBytes(std::span<const unsigned char> codes, int width, int height, PngOptions options) {
-    assert(codes.size() == size_t(width) * size_t(height) * 3);
+    assert(codes.size() == size_t(width) * size_t(height) * (options.alpha ? 4 : 3));
     Writer out;
     if (!out.write(codes.data(), png_uint_32(width), png_uint_32(height), options))
         throw InputError("a picture of " + std::to_string(width) + " x " + std::to_string(height) +

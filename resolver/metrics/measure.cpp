@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "image/input_policy.h"
 #include "metrics/error_bar.h"
 
 namespace aa {
@@ -19,6 +20,7 @@ Reference makeReference(const Rgb& halfA, const Rgb& halfB, const DisplayChain& 
         }
     r.linear.fillBorder();
     encode(r.linear, display, exec, r.encoded);
+    if (nonFiniteValues(r.linear) > 0) r.broken = r.linear;
     if (display.transfer == Transfer::identity) {
         r.clippedPixels = clippedPixels(r.linear, display);
         r.linear = r.encoded;

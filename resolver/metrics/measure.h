@@ -25,6 +25,7 @@ void addFigures(FrameMetrics& to, const Metric& metric, const ImagePair& images,
 // The ground truth of one frame, prepared once for all methods.
 struct Reference {
     Rgb linear, encoded;  // mean of the halves, and its display encoding; one and the same with the identity transfer
+    Rgb broken = {};      // what was encoded, where that holds values that are no numbers; otherwise empty
     double noise = 0;     // MSE(encoded a, encoded b) / 4, not rounded
     Rgb encodedA, encodedB;    // the halves as they are compared; empty where they are equal
     size_t clippedPixels = 0;  // of which the mean exceeds what the display shows (counted with the identity transfer)

@@ -35,7 +35,7 @@ FrameStream::Decoded FrameStream::decode(size_t index, const Last& last) const {
     if (withTruth_ && !entry.truth.empty())
         d.truth = last.truth && entry.truth == last.truthFile
                       ? last.truth
-                      : std::make_shared<const Truth>(*reader_.readTruth(index));
+                      : std::make_shared<const Truth>(*reader_.readTruth(index, &d.counts));
     return d;
 }
 

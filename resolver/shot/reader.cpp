@@ -185,7 +185,7 @@ Frame ShotReader::readCentre(size_t index, PassSet wanted, SanitiseCounts* count
     return decode(index, wanted, Sampling::centre, counts);
 }
 
-std::optional<Truth> ShotReader::readTruth(size_t index) const {
+std::optional<Truth> ShotReader::readTruth(size_t index, SanitiseCounts* counts) const {
     const FrameEntry& entry = manifest_.frames.at(index);
     if (entry.truth.empty()) return std::nullopt;
     ExrFile file(manifest_.folder / entry.truth);
@@ -202,10 +202,14 @@ std::optional<Truth> ShotReader::readTruth(size_t index) const {
                              "; export the truth again");
         std::vector<ChannelTarget> t = {{"R", &half->c[0]}, {"G", &half->c[1]}, {"B", &half->c[2]}};
         file.read(*part, t);
-        SanitiseCounts counts;
-        // A reference is not repaired: every figure rests on it.
-        sanitiseColour(*half, false, policy_ == InputPolicy::raw ? policy_ : InputPolicy::strict,
-                       {where + ", part '" + name + "'", {"R", "G", "B"}}, counts);
+        const ColourCounts found =
+            sanitiseColour(*half, false, policy_ == InputPolicy::raw ? policy_ : InputPolicy::strict, ColourUse::truth,
+                           {where + ", part '" + name + "'",
+                            {"R", "G", "B"},
+                            "render the truth again: it is never repaired, since every figure rests on it"});
+        if (counts) {
+            counts->truthNan += found.nan, counts->truthInf += found.inf, counts->truthNegative += found.negative;
+        }
         half->fillBorder();
     }
     return truth;

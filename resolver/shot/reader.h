@@ -1,24 +1,20 @@
 // Reads a shot selectively: only the parts of the EXR that the asked passes need are decoded.
 #pragma once
+#include "image/input_policy.h"
 #include "shot/frame.h"
 #include "shot/manifest.h"
 
 namespace aa {
 
-// Counts of what the input sanitiser replaced (conventions 8).
+// Counts of what the input sanitiser replaced (conventions 8), or under raw would have.
 struct SanitiseCounts {
-    uint64_t colourNan = 0, colourInf = 0, colourNegative = 0, depth = 0, normal = 0, motion = 0, edges = 0,
-             segments = 0;
+    uint64_t colourNan = 0, colourInf = 0, colourNegative = 0, colourLarge = 0, depth = 0, normal = 0, motion = 0,
+             edges = 0, segments = 0, truthNan = 0, truthInf = 0, truthNegative = 0;
     uint64_t total() const;
     SanitiseCounts& operator+=(const SanitiseCounts& o);
 };
 // By name, as results hold them; empty when nothing was replaced.
 std::map<std::string, uint64_t> counted(const SanitiseCounts& counts);
-enum class InputPolicy {
-    strict,    // any NaN, Inf or depth <= 0 is an InputError naming plane, pixel and frame
-    sanitise,  // replaced by the rules of conventions 8 and counted
-    raw,       // as stored (for `check`)
-};
 
 class ShotReader {
   public:
@@ -38,8 +34,9 @@ class ShotReader {
     // The same instant sampled at the pixel centres, from FrameEntry::centre: jitter 0. Asking it of a shot without
     // centre frames is a programming error.
     Frame readCentre(size_t index, PassSet wanted, SanitiseCounts* counts = nullptr) const;
-    // Ground truth of a frame; nullopt when the frame has none. Thread-safe.
-    std::optional<Truth> readTruth(size_t index) const;
+    // Ground truth of a frame; nullopt when the frame has none. Thread-safe. It is never repaired, since every figure
+    // rests on it: NaN and Inf throw unless the policy is raw, negative radiance becomes 0 and is counted.
+    std::optional<Truth> readTruth(size_t index, SanitiseCounts* counts = nullptr) const;
 
   private:
     Frame decode(size_t index, PassSet wanted, Sampling sampling, SanitiseCounts* counts) const;

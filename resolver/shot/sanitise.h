@@ -1,4 +1,5 @@
-// The input sanitiser (conventions 8): what a shot's planes may hold before any method sees them.
+// The input sanitiser (conventions 8): what a shot's planes may hold before any method sees them. Colours:
+// image/input_policy.h. Under raw what would be replaced is counted and stays.
 #pragma once
 #include <span>
 #include <string>
@@ -8,15 +9,6 @@
 
 namespace aa {
 
-// Names a plane in strict mode's errors: file, frame, part and the channels' names.
-struct PlaneName {
-    std::string where;  // "SHOT/frames/000001.exr: frame 1, part 'color'"
-    std::vector<std::string> channels;
-};
-
-// Radiance: NaN -> mean of the finite pixels of its 3x3 (none finite: 0), +Inf -> 1e30 (65504 where the file holds
-// half), -Inf and negative -> 0. The counts are pixels times channels. Under strict any NaN or Inf throws.
-void sanitiseColour(Rgb& colour, bool storedAsHalf, InputPolicy policy, const PlaneName& name, SanitiseCounts& counts);
 // NaN, <= 0, Inf -> background; everything beyond 1e9 becomes exactly 1e10 (uncounted). Under strict NaN, Inf and <= 0
 // throw.
 void sanitiseDepth(PlaneF& depth, InputPolicy policy, const PlaneName& name, SanitiseCounts& counts);

@@ -44,16 +44,14 @@ std::vector<EdgeSegment> unpackSegments(const SegmentPlanes& planes, InputPolicy
             std::array<float, 6> n;
             for (size_t c = 0; c < 6; c++) n[c] = planes[c].at(x, y);
             if (n[2] == 0) continue;
-            const int bad = policy == InputPolicy::raw ? -1 : unusable(n);
+            const int bad = unusable(n);
             if (bad >= 0 && policy == InputPolicy::strict)
                 throw InputError(name.where + ", channel '" + name.channels[size_t(bad)] + "', segment " +
                                  std::to_string(size_t(y) * size_t(planes[0].width()) + size_t(x)) + ": expected " +
                                  (bad % 3 == 2 ? "a finite depth > 0" : "a finite number") + ", found " +
                                  std::to_string(n[size_t(bad)]) + "; export the frame again");
-            if (bad >= 0)
-                counts.segments++;
-            else
-                segments.push_back({n[0], n[1], n[2], n[3], n[4], n[5]});
+            if (bad >= 0) counts.segments++;
+            if (bad < 0 || policy == InputPolicy::raw) segments.push_back({n[0], n[1], n[2], n[3], n[4], n[5]});
         }
     return segments;
 }

@@ -1,8 +1,11 @@
 #include "study/judge.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "image/error.h"
+#include "image/input_policy.h"
+#include "metrics/non_finite.h"
 
 namespace aa {
 
@@ -41,6 +44,7 @@ void Judge::lookAtMethod(const RunningMethod& m) {
         reference_->linear = m.out;
     else
         decode(m.out, p.display, options_.exec, reference_->linear);
+    if (nonFiniteValues(m.out) > 0) reference_->broken = m.out;
     if (p.region) {
         region_.emplace();
         region_->linear = cropped(reference_->linear, *p.region);
@@ -76,6 +80,24 @@ FrameMetrics Judge::again(const FrameMetrics& known, const Rgb& encoded, const R
     return known;
 }
 
+const Rgb* Judge::farthest(const RunningMethod& method, uint64_t& nonFinite) {
+    const Rgb* const broken = reference_ && !reference_->broken.empty() ? &reference_->broken : nullptr;
+    nonFinite = nonFiniteValues(method.out);
+    if (nonFinite == 0 && broken) nonFinite = nonFiniteValues(*broken);
+    if (nonFinite == 0 || !reference_) return nullptr;
+    farthest_ = method.outEncoded;
+    putFarthest(method.out.empty() ? nullptr : &method.out, broken, reference_->encoded, farthest_);
+    return &farthest_;
+}
+
+// Of linear light there is no largest difference.
+void Judge::noLinearFigures(FrameMetrics& to) const {
+    const auto& wanted = options_.measure.metrics;
+    for (const Metric& m : metrics())
+        if (m.space == ColourSpace::linear && (m.always || std::find(wanted.begin(), wanted.end(), &m) != wanted.end()))
+            for (const Figure& f : m.figures) to.others[std::string(f.name)] = NAN;
+}
+
 FrameResult Judge::judge(size_t k, const RunningMethod& method, const ResolveSeconds& seconds,
                          const FrameResult* known) {
     FrameResult result;
@@ -83,20 +105,23 @@ FrameResult Judge::judge(size_t k, const RunningMethod& method, const ResolveSec
     result.seconds = seconds.processor;
     result.wallSeconds = seconds.wall;
     if (&method == standIn_) return result;
+    const Rgb* const broken = farthest(method, result.nonFinite);
+    const Rgb& encoded = broken ? *broken : method.outEncoded;
     if (reference_) {
         const bool last = seen_ == options_.frames.size();
         const bool linear = method.spec.outputSpace() == Space::linear;
-        const auto take = [&](const Rgb& encoded, const Rgb& out) {
-            if (known && known->metrics) return again(*known->metrics, encoded, measured(), errors_[k]);
-            return measure(encoded, linear ? &out : nullptr, measured(), options_.measure, options_.exec, errors_[k],
-                           !manifest_.isStatic || last);
+        const auto take = [&](const Rgb& shown, const Rgb& out) {
+            if (known && known->metrics) return again(*known->metrics, shown, measured(), errors_[k]);
+            return measure(shown, linear && !broken ? &out : nullptr, measured(), options_.measure, options_.exec,
+                           errors_[k], !manifest_.isStatic || last);
         };
         const auto& region = options_.protocol.region;
-        result.metrics = region ? take(cropped(method.outEncoded, *region), cropped(method.out, *region))
-                                : take(method.outEncoded, method.out);
+        result.metrics =
+            region ? take(cropped(encoded, *region), cropped(method.out, *region)) : take(encoded, method.out);
+        if (linear && broken) noLinearFigures(*result.metrics);
     }
     if (overTime_) {
-        overTimeOf_[k].add(scene_, method.outEncoded, options_.exec);
+        overTimeOf_[k].add(scene_, encoded, options_.exec);
         if (int(seen_) > temporalWarmup(options_.frames.size())) result.temporal = overTimeOf_[k].latest();
     }
     return result;

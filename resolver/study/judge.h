@@ -36,12 +36,17 @@ class Judge {
                        TileErrors& pool) const;
     void lookAtTruth();
     void lookAtMethod(const RunningMethod& standIn);
+    // The method's displayed picture, with the largest difference wherever it or the reference holds no number; null
+    // where neither does, or there is no reference.
+    const Rgb* farthest(const RunningMethod& method, uint64_t& nonFinite);
+    void noLinearFigures(FrameMetrics& to) const;
     const Manifest& manifest_;
     const RunOptions& options_;
     bool overTime_;
     std::shared_ptr<const Truth> truth_;
     std::optional<Reference> reference_, region_;  // region_: the protocol's, where it has one
     const RunningMethod* standIn_ = nullptr;
+    Rgb farthest_;
     std::vector<TileErrors> errors_;
     TemporalScene scene_;
     std::vector<TemporalJudge> overTimeOf_;

@@ -28,6 +28,9 @@ struct FrameResult {
     // Squared error where this method, or the one that it fills, rejected its history; not of a frame without history.
     std::optional<FrameSum> rejected{};
     double wallSeconds = 0;
+    // Values of the method's picture, or of the truth where this one has numbers, that are none: they count as the
+    // largest difference that the display allows, and linear figures are NaN.
+    uint64_t nonFinite = 0;
     std::optional<double> deviceSeconds{};  // on RunResults::device, by its own clock
 };
 

@@ -267,6 +267,7 @@ void members(V v, S& f) {
     v.maybe("deviceSeconds", f.deviceSeconds);
     v.value("judged", f.judged);
     v.sparse("image", f.image, !f.image.empty());
+    v.sparse("nonFinite", f.nonFinite, f.nonFinite > 0);
     v.maybeObject("metrics", f.metrics);
     v.maybeObject("temporal", f.temporal);
     v.maybeObject("rejected", f.rejected);

@@ -134,7 +134,7 @@ class BadInput(ProgramTest):
             "-o",
             self.folder / "o",
             "-q",
-            "--input",
+            "--non-finite",
             "strict",
             says=("color", "10", "7"),
         )

@@ -259,7 +259,7 @@ class Case:
                 "1",
             ]
             if self.rng.random() < 0.3:
-                self.arguments += ["--input", "strict"]
+                self.arguments += ["--non-finite", "strict"]
 
     def manifest(self) -> None:
         shot = self._copy("shot")

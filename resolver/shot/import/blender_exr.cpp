@@ -1,6 +1,7 @@
 #include "shot/import/blender_exr.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "image/error.h"
 
@@ -51,18 +52,20 @@ std::string listed(const std::vector<std::string>& names) {
     return s;
 }
 
-// "LAYER.PASS" or "LAYER.PASS.VIEW" with a known pass; layers may hold dots.
+// "LAYER.PASS" or "LAYER.PASS.VIEW" with a known pass; layers may hold dots, and be called like a pass. Hence from the
+// right: a pass at the end is meant before one with a view behind it.
 std::optional<BlenderChannel> understand(const std::string& stem) {
     std::optional<BlenderChannel> best;
-    size_t longest = 0;
+    std::tuple<bool, size_t, size_t> bestRank;  // the pass ends the name; its length; where it begins
     for (const auto& info : table())
         for (const auto passName : info.names) {
             const std::string infix = "." + std::string(passName);
             for (size_t at = stem.find(infix); at != std::string::npos; at = stem.find(infix, at + 1)) {
                 const std::string rest = stem.substr(at + infix.size());
                 const bool isView = rest.size() > 1 && rest[0] == '.' && rest.find('.', 1) == std::string::npos;
-                if (at == 0 || !(rest.empty() || isView) || infix.size() < longest) continue;
-                longest = infix.size();
+                const std::tuple rank(rest.empty(), infix.size(), at);
+                if (at == 0 || !(rest.empty() || isView) || (best && rank < bestRank)) continue;
+                bestRank = rank;
                 best = BlenderChannel{stem.substr(0, at), isView ? rest.substr(1) : "", info.pass, 'R', 0, ""};
             }
         }
@@ -179,7 +182,11 @@ void BlenderExr::read() {
     for (size_t p = 0; p < targets_.size(); p++) {
         const ExrPart& part = file_.parts()[p];
         if (targets_[p].empty()) continue;
-        if (part.cropped)
+        const Window& shown = part.shown;
+        if (part.cropped() && shown.isInside(part.width, part.height))
+            throw InputError(path().string() + ": holds more than the picture (overscan, " + inWords(shown) +
+                             " of it are shown); render without overscan");
+        if (part.cropped())
             throw InputError(
                 path().string() +
                 ": holds a region of the picture; render whole frames, or switch on Crop to Render Region");
