@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdlib>
+#include <optional>
 #include <vector>
 
 #include "image/error.h"
@@ -24,13 +26,67 @@ int toFrame(std::string_view digits) {
 }
 }  // namespace
 
+namespace {
+// A group of digits in a name, and whether a minus stands before it that does not part two words.
+struct Digits {
+    int number = -1;
+    bool negative = false;
+};
+std::vector<Digits> digitsOf(const std::string& stem) {
+    const auto isDigit = [](char c) { return c >= '0' && c <= '9'; };
+    std::vector<Digits> all;
+    for (size_t i = 0; i < stem.size();) {
+        if (!isDigit(stem[i])) {
+            i++;
+            continue;
+        }
+        size_t end = i;
+        while (end < stem.size() && isDigit(stem[end])) end++;
+        const bool minus = i > 0 && stem[i - 1] == '-';
+        const bool partsWords = i > 1 && std::isalnum(static_cast<unsigned char>(stem[i - 2]));
+        all.push_back({toFrame(std::string_view(stem).substr(i, end - i)), minus && !partsWords});
+        i = end;
+    }
+    return all;
+}
+// The frame that the file's header names: "0001", "-004".
+std::optional<int> headerFrame(const fs::path& file) {
+    std::string text;
+    try {
+        text = BlenderExr(file).text("Frame").value_or("");
+    } catch (const InputError&) {  // damaged: said when its turn comes
+    }
+    const bool negative = text.starts_with('-');
+    const int n = toFrame(std::string_view(text).substr(negative));
+    return n < 0 ? std::nullopt : std::optional(negative ? -n : n);
+}
+[[noreturn]] void refuseNegative(const fs::path& file) {
+    throw InputError(file.string() +
+                     ": a frame before 0; a shot's frames count from 0 on: move the animation's start to 0 or later, "
+                     "or number the files anew");
+}
+// The header's frame where the name holds that number, else the name's last one, else the header's. A name alone does
+// not tell "shot-0004", frame 4 of "shot-", from frame -4 of "shot", nor frame 7 of "0007_v2" from frame 2.
+int frameOf(const fs::path& file) {
+    const std::vector<Digits> digits = digitsOf(file.stem().string());
+    const std::optional<int> header = headerFrame(file);
+    const auto inName = [&](int n) {
+        return std::any_of(digits.begin(), digits.end(), [&](const auto& d) { return d.number == std::abs(n); });
+    };
+    if (header && (digits.empty() || inName(*header))) {
+        if (*header < 0) refuseNegative(file);
+        return *header;
+    }
+    if (digits.empty() || digits.back().number < 0)
+        throw InputError(file.string() + ": no frame number in its name nor in its attributes; name it like 0001.exr");
+    if (digits.back().negative) refuseNegative(file);
+    return digits.back().number;
+}
+}  // namespace
+
 int frameNumberOf(const std::string& fileName) {
-    const std::string stem = fs::path(fileName).stem().string();
-    const size_t last = stem.find_last_of("0123456789");
-    if (last == std::string::npos) return -1;
-    size_t first = last;
-    while (first > 0 && stem[first - 1] >= '0' && stem[first - 1] <= '9') first--;
-    return toFrame(std::string_view(stem).substr(first, last + 1 - first));
+    const std::vector<Digits> digits = digitsOf(fs::path(fileName).stem().string());
+    return digits.empty() ? -1 : digits.back().number;
 }
 
 std::map<int, fs::path> renderedFrames(const fs::path& folder) {
@@ -57,11 +113,7 @@ std::map<int, fs::path> renderedFrames(const fs::path& folder) {
     std::sort(files.begin(), files.end());
     std::map<int, fs::path> frames;
     for (const auto& file : files) {
-        int number = frameNumberOf(file.filename().string());
-        if (number < 0) number = toFrame(BlenderExr(file).text("Frame").value_or(""));
-        if (number < 0)
-            throw InputError(file.string() +
-                             ": no frame number in its name nor in its attributes; name it like 0001.exr");
+        const int number = frameOf(file);
         const auto [other, isNew] = frames.emplace(number, file);
         if (!isNew)
             throw InputError(folder.string() + ": both " + other->second.filename().string() + " and " +

@@ -217,7 +217,33 @@ Rgb unlitAlbedo(const AlbedoPasses& p, const PlaneF& depthView, const Rgb& combi
     return r;
 }
 
-std::map<uint32_t, std::string> cryptomatteNames(const BlenderExr& file) {
+namespace {
+std::optional<uint32_t> hashOf(std::string_view text) {
+    uint32_t id = 0;
+    const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), id, 16);
+    if (failed != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+    return id;
+}
+// A list that is no JSON, because a name with a quote was written as it is: NAME":"8 digits", up to the next ,".
+std::map<uint32_t, std::string> namesOfBrokenList(const std::string& list) {
+    constexpr std::string_view kBetween = "\":\"";
+    constexpr size_t kDigits = 8;
+    std::map<uint32_t, std::string> names;
+    size_t start = list.find('"');
+    for (size_t at = list.find(kBetween); at != std::string::npos && start != std::string::npos;
+         at = list.find(kBetween, at + 1)) {
+        const size_t digits = at + kBetween.size(), end = digits + kDigits;
+        const auto id = end < list.size() && list[end] == '"' ? hashOf(std::string_view(list).substr(digits, kDigits))
+                                                              : std::nullopt;
+        if (!id || start >= at) continue;
+        names[*id] = list.substr(start + 1, at - start - 1);
+        start = list.find('"', end + 1);
+    }
+    return names;
+}
+}  // namespace
+
+std::map<uint32_t, std::string> cryptomatteNames(const BlenderExr& file, std::vector<std::string>& notes) {
     std::map<uint32_t, std::string> names;
     for (const auto& part : file.file().parts())
         for (const auto& [key, value] : part.texts) {
@@ -226,14 +252,17 @@ std::map<uint32_t, std::string> cryptomatteNames(const BlenderExr& file) {
             const auto manifest = part.texts.find(key.substr(0, key.size() - 4) + "manifest");
             if (manifest == part.texts.end()) continue;
             const auto j = nlohmann::json::parse(manifest->second, nullptr, false);
-            if (!j.is_object()) continue;
-            for (const auto& [name, hash] : j.items()) {
-                uint32_t id = 0;
-                if (!hash.is_string()) continue;
-                const auto text = hash.get<std::string>();
-                const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), id, 16);
-                if (failed == std::errc{} && end == text.data() + text.size()) names[id] = name;
+            if (!j.is_object()) {
+                names.merge(namesOfBrokenList(manifest->second));
+                notes.push_back(
+                    "Cryptomatte's list of names is no JSON (Blender writes a quote or a backslash in an "
+                    "object's name as it is): " +
+                    std::to_string(names.size()) + " names were read from it all the same");
+                continue;
             }
+            for (const auto& [name, hash] : j.items())
+                if (const auto id = hash.is_string() ? hashOf(hash.get<std::string>()) : std::nullopt)
+                    names[*id] = name;
         }
     return names;
 }

@@ -37,7 +37,8 @@ struct AlbedoPasses {
 };
 Rgb unlitAlbedo(const AlbedoPasses& passes, const PlaneF& depthView, const Rgb& combined);
 
-// Names of cryptomatte ids from the manifest in the file's header; empty when there is none.
-std::map<uint32_t, std::string> cryptomatteNames(const BlenderExr& file);
+// Names of cryptomatte ids from the manifest in the file's header; empty when there is none. A broken one is read as
+// far as it can be, with a note.
+std::map<uint32_t, std::string> cryptomatteNames(const BlenderExr& file, std::vector<std::string>& notes);
 
 }  // namespace aa

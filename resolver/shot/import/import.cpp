@@ -127,7 +127,7 @@ class Import {
         if (const auto v = first.text("Software")) m.extra["producer"]["source"] = *v;
         report_.passes = plan_.passes();
         for (auto& w : headerPitfalls(first)) report_.warnings.push_back(std::move(w));
-        if (plan_.ids == IdSource::cryptomatte) names_ = cryptomatteNames(first);
+        if (plan_.ids == IdSource::cryptomatte) names_ = cryptomatteNames(first, report_.notes);
         if (!truths_.empty()) {
             m.truthFilter = o_.truthFilter;
             m.truthFilterWidthPx = o_.truthFilterWidthPx;

@@ -311,6 +311,94 @@ TEST_F(ImportTest, FrameNumbers) {
                 AllOf(HasSubstr("other_042.exr"), HasSubstr("picture.exr"), HasSubstr("frame 42")));
 }
 
+// Blender writes frame -4 of "render_" as render_-0004.exr, and its header says which frame it is.
+TEST_F(ImportTest, FrameNumbersThatANameAloneDoesNotTell) {
+    const Channels c = nativeOf(shot("moving", 1).frame(0));
+    const auto frameOf = [&](const char* name, const char* header) {
+        fs::remove_all(folder / "in");
+        fs::create_directories(folder / "in");
+        writeNative(
+            folder / "in" / name, c,
+            header ? std::map<std::string, std::string>{{"Frame", header}} : std::map<std::string, std::string>{});
+        return renderedFrames(folder / "in").begin()->first;
+    };
+    EXPECT_EQ(frameOf("shot-0004.exr", nullptr), 4);
+    EXPECT_EQ(frameOf("shot-0004.exr", "0004"), 4);
+    EXPECT_EQ(frameOf("0007_v2.exr", "0007"), 7);
+    EXPECT_EQ(frameOf("0107.exr", "0007"), 107);  // numbered anew: the name counts
+    for (const auto& [name, header] : {std::pair<const char*, const char*>{"-0004.exr", nullptr},
+                                       {"shot_-0004.exr", nullptr},
+                                       {"shot-0004.exr", "-004"},
+                                       {"picture.exr", "-004"}})
+        try {
+            frameOf(name, header);
+            ADD_FAILURE() << name;
+        } catch (const InputError& e) {
+            EXPECT_THAT(e.what(), AllOf(HasSubstr(name), HasSubstr("before 0")));
+        }
+}
+
+TEST_F(ImportTest, ALayerCalledLikeAPassKeepsAllItsPasses) {
+    const Frame f = shot("moving", 1).frame(0);
+    for (const char* layer : {"Layer.Normal", "Depth", "A.Combined.B", "Vector"}) {
+        writeNative(file(1), nativeOf(f, layer));
+        BlenderExr exr(file(1));
+        EXPECT_THAT(exr.layers(), ::testing::ElementsAre(layer));
+        exr.choose("", "");
+        for (const BlenderPass pass : {BlenderPass::combined, BlenderPass::depth, BlenderPass::normal,
+                                       BlenderPass::vector, BlenderPass::objectIndex, BlenderPass::denoisingAlbedo})
+            EXPECT_TRUE(exr.has(pass)) << layer << " " << blenderPass(pass).names[0];
+    }
+}
+
+TEST_F(ImportTest, ANameWithAQuoteCostsNoOtherName) {
+    const Frame f = shot("moving", 1).frame(0);
+    const std::string key = "cryptomatte/abcdef0";
+    const auto namesOf = [&](const std::string& list, std::vector<std::string>& notes) {
+        writeNative(file(1), nativeOf(f), {{key + "/name", "ViewLayer.CryptoObject"}, {key + "/manifest", list}});
+        return cryptomatteNames(BlenderExr(file(1)), notes);
+    };
+    std::vector<std::string> notes;
+    const std::map<uint32_t, std::string> plain = {{0x1au, "Cube"}, {0x2bu, "Wall"}};
+    EXPECT_EQ(namesOf(R"({"Cube":"0000001a","Wall":"0000002b"})", notes), plain);
+    EXPECT_THAT(notes, IsEmpty());
+    const std::map<uint32_t, std::string> all = {{0x1au, "Cube"}, {0x3cu, "Monitor 24\""}, {0x2bu, "Wall"}};
+    EXPECT_EQ(namesOf(R"({"Cube":"0000001a","Monitor 24"":"0000003c","Wall":"0000002b"})", notes), all);
+    EXPECT_THAT(notes, Contains(HasSubstr("3 names")));
+    notes.clear();
+    EXPECT_EQ(namesOf(R"({"Cube":"0000001a","W\all":"0000002b","a":"b)", notes).at(0x2b), R"(W\all)");
+}
+
+// What a frame may be that is no plain picture: said by what it is, or read.
+TEST_F(ImportTest, TiledFramesAreReadAndOthersNamed) {
+    const SynthShot original = shot("moving", 1);
+    const Channels channels = nativeOf(original.frame(0));
+    const int w = channels[0].plane.width(), h = channels[0].plane.height(), n = int(channels.size());
+    const auto write = [&](int tile, int x, int fullWidth) {
+        ImageSpec spec(w, h, n, TypeDesc::FLOAT);
+        spec.channelnames.clear();
+        for (const auto& c : channels) spec.channelnames.push_back(c.name);
+        spec.tile_width = spec.tile_height = tile;
+        spec.x = x, spec.full_width = fullWidth;
+        std::vector<float> pixels;
+        for (int y = 0; y < h; y++)
+            for (int i = 0; i < w; i++)
+                for (const auto& c : channels) pixels.push_back(c.plane.at(i, y));
+        auto out = ImageOutput::create("exr");
+        ASSERT_TRUE(out->open(file(1).string(), spec)) << out->geterror();
+        ASSERT_TRUE(out->write_image(TypeDesc::FLOAT, pixels.data())) << out->geterror();
+        ASSERT_TRUE(out->close());
+    };
+    write(16, 0, w);
+    EXPECT_EQ(importBlender(options).manifest.frames.size(), 1u);
+    EXPECT_TRUE(ShotReader(options.out).read(0, Pass::color).colorLinear.samePixels(original.frame(0).colorLinear));
+    fs::remove_all(options.out);
+    write(0, 0, 2 * w);
+    EXPECT_THAT(refusal<InputError>(), HasSubstr("a region of the picture"));
+    write(0, -8, w - 16);
+    EXPECT_THAT(refusal<InputError>(), HasSubstr("overscan"));
+}
+
 TEST_F(ImportTest, GapsResetTheHistory) {
     renderAll(shot());
     fs::remove(file(2));
