@@ -114,7 +114,7 @@ template <class R>
 AA_INLINE R pqEncode(const aa::PqTables& t, R linear) {
     using P = aa::PqTables;
     if constexpr (std::is_same_v<Elem<R>, double>)
-        return pqEncode(linear);
+        return pqEncode(min(max(R(Elem<R>(0)), linear), R(Elem<R>(1e4))));  // NaN: black, as below
     else {
         const R darkest(5.4210108624275222e-20f);             // 2^-64
         const R inside = min(max(darkest, linear), R(1e4f));  // NaN: darkest

@@ -104,12 +104,19 @@ vec3 shade(ivec2 p, int i) {
 vec3 resolve(ivec2 p) {
     vec3 sum = vec3(0.0), origin = vec3(0.0);
     float weights = 0.0;
+    if (INVERSE_LUMINANCE) {  // about the least: a bright colour of next to no weight would take all digits
+        origin = vec3(3e38);
+        for (int i = 0; i < count; i++) {
+            const vec3 c = shade(p, i);
+            if (isFinite(c)) origin = min(origin, c);
+        }
+    }
     for (int i = 0; i < count; i++) {
         const vec3 c = shade(p, i);
         if (!isFinite(c)) continue;
         float w = float(bitCount(members[i]));
         if (INVERSE_LUMINANCE) w = w / (1.0 + max(0.0, luma709(c)));
-        if (!(weights > 0.0)) origin = c;
+        if (!INVERSE_LUMINANCE && !(weights > 0.0)) origin = c;
         weights = weights + w;
         sum = sum + (c - origin) * w;
     }

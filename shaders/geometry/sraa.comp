@@ -101,5 +101,5 @@ void main() {
     const vec3 centre = texel(colourImage, p).rgb;
     vec3 sum = vec3(0.0);  // about the pixel's own colour: constants stay exact
     for (int k = 0; k < SAMPLES; k++) sum = sum + reconstruct(k, p, centre);
-    imageStore(resultImage, p, vec4(centre + sum / float(SAMPLES), 1.0));
+    imageStore(resultImage, p, vec4(max(centre + sum / float(SAMPLES), vec3(0.0)), 1.0));
 }

@@ -30,7 +30,7 @@ vec2 sharedOut(vec2 shares) {
 }
 vec3 blended(vec3 own, vec2 shares, vec3 first, vec3 second) {
     shares = sharedOut(shares);
-    return own + shares.x * (first - own) + shares.y * (second - own);
+    return greater(own + shares.x * (first - own) + shares.y * (second - own), vec3(0.0));
 }
 vec3 acrossHorizontalLines(ivec2 p) {
     const vec2 shares = verticalShares(p);
@@ -54,7 +54,7 @@ void main() {
             const vec3 own = colourAt(p);
             const vec3 left = colourAt(p + ivec2(-1, 0)), right = colourAt(p + ivec2(1, 0));
             const vec3 sum = c - own + (shares.x * (left - own) + shares.y * (right - own));
-            c = own + (verticalShares(p) != vec2(0.0) ? sum * 0.5 : sum);
+            c = greater(own + (verticalShares(p) != vec2(0.0) ? sum * 0.5 : sum), vec3(0.0));
         } else
             c = blended(c, shares, acrossHorizontalLines(p + ivec2(-1, 0)), acrossHorizontalLines(p + ivec2(1, 0)));
     }

@@ -216,7 +216,7 @@ void main() {
     vec2 top = vec2(0.0), left = vec2(0.0);
     bool onDiagonal = false;
     if (edgeAt(p, TOP)) {
-        const vec2 w = DIAGONAL_STEPS > 0 ? diagonalWeights(p) : vec2(0.0);
+        const vec2 w = DIAGONAL_STEPS > 0 ? min(diagonalWeights(p), vec2(1.0)) : vec2(0.0);  // two may cross
         onDiagonal = w.x + w.y > 0.0;
         top = onDiagonal ? stored(w) : lineWeights(Axis(ivec2(1, 0), ivec2(0, 1), TOP, LEFT, frame.offset.x, 0), p);
     }

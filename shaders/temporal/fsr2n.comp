@@ -94,6 +94,13 @@ vec3 toneMappedMean(vec3 h, vec3 c, float a) {
 }
 vec3 toRgb(vec3 c) { return max(fromYcocg(c), vec3(0.0)); }
 
+// As FSR 2 prepares them: what a half float holds. x / (1 + max) comes so near to 1 beyond that float cannot tell one from
+// another. NaN stays.
+vec3 preparedColour(ivec2 p) {
+    const vec3 c = colourAt(p);
+    return mix(c, vec3(65504.0), greaterThan(c, vec3(65504.0)));
+}
+
 void store(ivec2 p, vec3 result, float lock, float usual, float reason) {
     storeBlend(p, result, isFinite(lock) ? lock : 0.0, result);
     imageStore(nextLumaImage, p, vec4(isFinite(usual) ? usual : 0.0, 0.0, 0.0, 0.0));
@@ -103,13 +110,13 @@ void store(ivec2 p, vec3 result, float lock, float usual, float reason) {
 void main() {
     const ivec2 p = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(p, frame.size))) return;
-    const vec3 raw = colourAt(p);
+    const vec3 raw = preparedColour(p);
     if (frame.firstFrame != 0u) {
         store(p, sanitised(raw, raw, vec3(0.0)), 0.0, toYcocg(raw).x, REJECTED_FIRST_FRAME);
         return;
     }
     vec3 window[9];
-    for (int k = 0; k < 9; k++) window[k] = toYcocg(k == 4 ? raw : colourAt(p + ivec2(k % 3 - 1, k / 3 - 1)));
+    for (int k = 0; k < 9; k++) window[k] = toYcocg(k == 4 ? raw : preparedColour(p + ivec2(k % 3 - 1, k / 3 - 1)));
 
     // 1
     const Surface surface = closestSurface(p, false);

@@ -117,7 +117,8 @@ void main() {
         vec3 k = vec3(0.9);
         if (TEMPORAL_FILTERING) {
             const vec3 divisor = SIGNED_DIVISOR ? current : max(current, vec3(1e-4));
-            const vec3 contrast = lesser(greater(abs(bounds.high - bounds.low) / divisor, vec3(0.0)), vec3(1.0));
+            // 0 / 0 as printed is no number: no contrast
+            const vec3 contrast = lesser(greater(vec3(0.0), abs(bounds.high - bounds.low) / divisor), vec3(1.0));
             k = vec3(0.25) + contrast * 0.6;
         }
         for (int c = 0; c < 3; c++) {

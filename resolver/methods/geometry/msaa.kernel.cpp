@@ -72,17 +72,24 @@ struct Msaa {
             }
             for (int k = m.a.slots; k < m.g.samples; k++) cover(k);
         }
-        // Coverage-weighted mean about the first surface's colour, which keeps constants exact; colours that are not
-        // finite are left out.
+        // Coverage-weighted mean about one surface's colour, which keeps constants exact; colours that are not finite
+        // are left out. It is the first one's; but a bright one of next to no weight would take all digits from the
+        // mean, so that weights by luminance take the least of every channel.
         AA_INLINE vec3<T> resolve() const {
             vec3<T> sum(T(0)), origin(T(0));
             T weights = 0;
+            const bool aboutLeast = m.a.inverseLuminance;
+            if (aboutLeast) {
+                origin = vec3<T>(T(3e38));
+                for (int i = 0; i < count; i++)
+                    if (isFinite(surfaces[i].color)) origin = min(origin, surfaces[i].color);
+            }
             for (int i = 0; i < count; i++) {
                 const vec3<T> c = surfaces[i].color;
                 if (!isFinite(c)) continue;
                 T w = T(surfaces[i].count);
                 if (m.a.inverseLuminance) w = w / (T(1) + max(T(0), luma709(c)));
-                if (!(weights > T(0))) origin = c;
+                if (!aboutLeast && !(weights > T(0))) origin = c;
                 weights = weights + w;
                 sum = sum + (c - origin) * w;
             }

@@ -88,7 +88,8 @@ struct Sraa {
                 R ownShare(T(0));
                 for (int k = 0; k < g.samples; k++) sum = sum + reconstruct(k, x, y, ownShare);
                 const R samples{T(g.samples)};
-                const vec3<R> c = load3<R>(a.color, o) + sum / samples;
+                // A dark result beside a bright own colour is rounded, which must not make light negative.
+                const vec3<R> c = max(load3<R>(a.color, o) + sum / samples, vec3<R>(R(T(0))));
                 store(c.x, a.out.c[0] + o), store(c.y, a.out.c[1] + o), store(c.z, a.out.c[2] + o);
                 if (a.ownShareLayer) store(ownShare / samples, a.ownShareLayer + o);
             }

@@ -167,7 +167,8 @@ AA_INLINE void blendPixel(const MlaaBlendArgs& a, long o, T toFirst, T toSecond,
     shareOut(toFirst, toSecond);
     for (int c = 0; c < 3; c++) {
         const T own = a.out.c[c][o];
-        a.out.c[c][o] = float(own + toFirst * (first[c] - own) + toSecond * (second[c] - own));
+        // Rounded, two shares that sum to 1 may leave less than nothing of a bright pixel between black ones.
+        a.out.c[c][o] = float(max(own + toFirst * (first[c] - own) + toSecond * (second[c] - own), T(0)));
     }
 }
 // Horizontal lines blend the original rows; vertical lines blend the row that this gives, or (simultaneous) the
@@ -202,7 +203,7 @@ AA_INLINE void blendRow(const MlaaBlendArgs& a, int y, const float* top, const f
                     const float* p = a.in.c[c] + o;
                     const T own = p[0], moved = toLeft * (T(p[-1]) - own) + toRight * (T(p[1]) - own);
                     const T sum = T(a.out.c[c][o]) - own + moved;
-                    a.out.c[c][o] = float(own + (both ? sum * T(0.5) : sum));
+                    a.out.c[c][o] = float(max(own + (both ? sum * T(0.5) : sum), T(0)));
                 }
                 return;
             }

@@ -149,7 +149,7 @@ class ReferenceSmaa {
             own += second ? a[1] : a[0];
             opposite += second ? a[0] : a[1];
         }
-        return {own, opposite};
+        return {std::min(own, 1.0), std::min(opposite, 1.0)};  // as the published target of 8 bits
     }
     // Areas below (own) and above (opposite) the base line in [l, l + 1] under straight pieces (t0, h0)-(t1, h1).
     using Pieces = std::vector<std::array<double, 4>>;

@@ -271,6 +271,31 @@ TEST(Smaa1x, DebugLayersShowEdgesWeightsAndSearches) {
     EXPECT_FLOAT_EQ(layers[2].planes[1].at(32, 4), .078125f);
     EXPECT_EQ(layers[3].planes[1].at(24, 4), 7.0f);  // px to the step
 }
+// Where a rising and a falling diagonal cross their areas may sum to more than 1, which the published target cannot
+// hold.
+TEST(Smaa1x, CrossingDiagonalsWeighNoMoreThanOne) {
+    float most = 0;
+    for (const char* more : {"", ",weights=unorm8"})
+        for (unsigned seed = 1; seed <= 40; seed++) {
+            Rgb image(32, 32);
+            std::mt19937 random(seed);
+            for (int y = 0; y < 32; y++)
+                for (int x = 0; x < 32; x++) {
+                    const float v = float(random() & 1);
+                    for (auto& p : image.c) p.at(x, y) = v;
+                }
+            const auto method =
+                parseMethod(std::string("smaa1x:preset=ULTRA") + more).create({.width = 32, .height = 32});
+            Rgb out(32, 32);
+            method->keepDebugLayers = true;
+            method->resolve(frameOf(image), {}, out);
+            for (const auto& layer : method->debugLayers())
+                for (const auto& plane : layer.planes)
+                    for (int y = 0; layer.name.starts_with("weights") && y < 32; y++)
+                        for (int x = 0; x < 32; x++) most = std::max(most, plane.at(x, y));
+        }
+    EXPECT_LE(most, 1.0f);
+}
 // Along an endless edge the left search stops at 2 steps - 1 px, the right one at 2 steps.
 TEST(Smaa1x, SearchesEndAtTheirCaps) {
     Rgb image(200, 10, 0.0f);

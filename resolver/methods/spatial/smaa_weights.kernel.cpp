@@ -123,7 +123,8 @@ AA_INLINE Pair<T> diagonalWeights(const SmaaBlendArgs& a, int x, int y) {
             sum = sum + Pair<T>{w.opposite, w.own};
         }
     }
-    return sum;
+    // Where a rising and a falling one cross they sum to up to 1.185; the published target of 8 bits holds 1.
+    return {min(sum.own, T(1)), min(sum.opposite, T(1))};
 }
 
 // ---- lines along rows or columns

@@ -7,6 +7,7 @@
 // 3. Current colour: Lanczos-2 over 3x3 around the jittered samples, deringed. Colour box: Gaussian mean and deviation
 //    in YCoCg, cut with the window's bounds.
 // 4. Blend in the tone-mapped space x / (1 + max), history read by Lanczos-2.
+// Light ends at 65504, as in FSR 2, which renders into half floats.
 // Differs from FSR 2: no upscaling, no reactive masks, no auto-exposure; a lock watches the 3x3 mean of luma against
 // its running mean over a jitter period, not a blurred pyramid; the box's Gaussian goes from exp(-2 d^2) to exp(-3 d^2)
 // by mixing the two.

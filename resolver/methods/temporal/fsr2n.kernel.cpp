@@ -106,15 +106,22 @@ AA_INLINE vec3<R> toneMappedMean(vec3<R> h, vec3<R> c, R a) {
     return select(a == one, c, select(a == zero, h, max(mean, vec3<R>(zero))));
 }
 
+// Colours as FSR 2 prepares them: what a half float holds. x / (1 + max) comes so near to 1 beyond that float cannot
+// tell one from another.
+template <class R>
+AA_INLINE vec3<R> preparedColour(const TemporalIn& in, long o) {
+    return min(load3<R>(in.color.c, o), vec3<R>(R(Elem<R>(65504))));
+}
+
 template <class R>
 AA_INLINE void fsr2nPixel(const Fsr2nArgs& a, int x, int y) {
     using T = Elem<R>;
     const TemporalIn& in = a.in;
     const R zero(T(0)), one(T(1));
     const long o = long(y) * in.stride + x;
-    const vec3<R> raw = load3<R>(in.color.c, o);
+    const vec3<R> raw = preparedColour<R>(in, o);
     const Window<R> at([&](int i, int j) __attribute__((always_inline)) {
-        return toYcocg(load3<R>(in.color.c, o + long(j) * in.stride + i));
+        return toYcocg(preparedColour<R>(in, o + long(j) * in.stride + i));
     });
 
     // 1
@@ -186,8 +193,9 @@ __attribute__((flatten)) void fsr2nRows(const Fsr2nArgs& a, int y0, int y1) {
                 continue;
             }
             const long o = long(y) * a.in.stride + x;
-            const R zero(Elem<R>(0)), luma = toYcocg(load3<R>(a.in.color.c, o)).x;
-            storeFirst<R>(a.in, x, y, load3<R>(a.in.color.c, long(y) * a.in.stride + x), zero);
+            const vec3<R> colour = preparedColour<R>(a.in, o);
+            const R zero(Elem<R>(0)), luma = toYcocg(colour).x;
+            storeFirst<R>(a.in, x, y, colour, zero);
             store(select(finite(luma), luma, zero), a.nextLuma + o);
             if (a.debugLock) store(zero, a.debugDepthClip + o), store(zero, a.debugLock + o);
         }

@@ -118,5 +118,28 @@ TEST(Fsr2n, ScatterDoesNotDependOnThreads) {
     for (const auto& o : outputs) EXPECT_TRUE(o.samePixels(outputs[0]));
 }
 
+// The tone-mapped space ends at 1: float keeps to double up to the end of FSR 2's range, and beyond both stay there.
+TEST(Fsr2n, LightEndsAtTheRangeOfHalfFloats) {
+    for (const float scale : {1.0f, 6e4f, 1e6f, 1e12f, 1e17f}) {
+        RunningMethod lanes = running("fsr2n", 24, 16), oracle = running("fsr2n", 24, 16);
+        double worst = 0, most = 0;
+        for (int n = 0; n < 4; n++) {
+            const Picture noise = noisePicture(unsigned(n));
+            const Frame f = temporalFrame(
+                n, 24, 16, [&](int x, int y, int c) { return scale * (0.01f + noise(x, y, c)); }, {0.3, 0.2});
+            lanes.resolve(f, {}, {}), oracle.resolve(f, {}, {.precision = Precision::oracle});
+            for (size_t c = 0; c < 3; c++)
+                for (int y = 0; y < 16; y++)
+                    for (int x = 0; x < 24; x++) {
+                        const double d = double(oracle.out.c[c].at(x, y));
+                        worst = std::max(worst, std::abs(double(lanes.out.c[c].at(x, y)) - d));
+                        most = std::max(most, d);
+                    }
+        }
+        EXPECT_LT(worst / most, scale == 1 ? 1e-5 : 2e-2) << scale;
+        EXPECT_LE(most, 65504 * 1.1) << scale;  // the mean in that space overshoots
+    }
+}
+
 }  // namespace
 }  // namespace aa

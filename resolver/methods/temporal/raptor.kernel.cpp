@@ -87,7 +87,8 @@ AA_INLINE void raptorPixel(const RaptorArgs& a, YCoCg ycocg, int x, int y) {
         vec3<R> k(R(T(0.9)));
         if (a.temporalFiltering) {
             const vec3<R> divisor = a.signedDivisor ? current : max(current, vec3<R>(R(T(1e-4))));
-            const vec3<R> contrast = saturate(abs(bounds.hi - bounds.lo) / divisor);
+            // Black without contrast has none: 0 / 0 as printed is no number.
+            const vec3<R> contrast = min(max(vec3<R>(zero), abs(bounds.hi - bounds.lo) / divisor), vec3<R>(one));
             k = vec3<R>(R(T(0.25))) + contrast * R(T(0.6));
         }
         k = {weighted(k.x), weighted(k.y), weighted(k.z)};
