@@ -165,7 +165,6 @@ RunResults made(std::vector<double> mse, std::vector<double> flip = {}, std::vec
     run.methods = {m};
     std::vector<TileErrors> errors(1);
     errors[0].sum = tiles.empty() ? std::vector<double>(32, mse[0] * 3072 * double(mse.size())) : tiles;
-    errors[0].columns = 8;
     errors[0].values.assign(32, 3072.0 * double(mse.size()));
     finish(run, errors);
     run.framesAsked = mse.size();
