@@ -118,6 +118,7 @@ test-bundle: bundle
 docs: program
 	@python3 blender_addon/write_scenes_page.py
 	@$(BUILD)/aaresolve list --markdown > docs/methods.md
+	@python3 resolver/metrics/write_page.py $(BUILD)/aaresolve docs/metrics.md
 	@$(BUILD)/aaresolve list --json > blender_addon/aa_resolve/methods.json
 	@$(BUILD)/aaresolve bench -m temporal --markdown --size 480x270 --frames 8 --repeats 1 --threads 1 > docs/precision.md
 

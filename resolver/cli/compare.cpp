@@ -7,6 +7,7 @@
 
 #include "cli/cli.h"
 #include "cli/frame_pairs.h"
+#include "cli/run_arguments.h"
 #include "gpu/metrics.h"
 #include "image/colour.h"
 #include "image/error.h"
@@ -29,6 +30,7 @@ struct Options {
     std::vector<std::string> metrics = {"mse", "psnr", "ssimLuma"}, thresholds;
     double exposure = 0;
     bool json = false, q8 = false;
+    ViewingArguments viewing;
     WorkOptions work;
 };
 
@@ -150,12 +152,14 @@ FrameMetrics deviceFiguresOf(const Both& p, const std::set<const Metric*>& wante
     return figures;
 }
 // Figures of `wanted` metrics; `b` is the reference.
-FrameMetrics figuresOf(const Both& p, const std::set<const Metric*>& wanted, const Exec& exec, Measuring& device) {
+FrameMetrics figuresOf(const Both& p, const std::set<const Metric*>& wanted, double flipPixelsPerDegree,
+                       const Exec& exec, Measuring& device) {
     FrameMetrics figures =
         device.session ? deviceFiguresOf(p, wanted, device) : frameMetrics(squaredError(p.encodedA, p.encodedB, exec));
     // Of linear light there is no largest difference: a picture with values that are no numbers has no such figure.
     const bool linear = !p.linearA.empty() && !p.linearB.empty();
-    const ImagePair images{p.encodedA, p.encodedB, linear ? &p.linearA : nullptr, linear ? &p.linearB : nullptr};
+    const ImagePair images{p.encodedA, p.encodedB, linear ? &p.linearA : nullptr, linear ? &p.linearB : nullptr,
+                           flipPixelsPerDegree};
     for (const Metric* metric : wanted) {
         if (device.session && hasShader(*metric)) continue;
         if (!metric->isPossible(images))
@@ -174,6 +178,42 @@ FrameMetrics noFigures(const std::set<const Metric*>& wanted) {
         for (const Figure& f : metric->figures)
             if (!f.ofSquares) none.others[std::string(f.name)] = NAN;
     return none;
+}
+// A metric of a sequence at work: the pairs are its frames, in their order.
+struct Watch {
+    explicit Watch(const Metric* m) : metric(m) {}
+    const Metric* metric;
+    std::unique_ptr<SequenceReference> reference = {};
+    std::unique_ptr<SequenceTest> test = {};
+    bool broken = false;  // a frame that is no picture is in it: there is no figure
+    void add(const Both& p, const SequenceSetting& setting, const Exec& exec, FrameMetrics& figures) {
+        const std::string name(metric->figures[0].name);
+        const bool linear = !p.linearA.empty() && !p.linearB.empty();
+        if (setting.viewing.display->isHdr && !linear)
+            throw UsageError(name + ": --metric-display " + std::string(setting.viewing.display->name) +
+                             " is fed linear light: two EXR files");
+        if (!reference)
+            reference = metric->watch(setting), test = reference->test(), size_ = {setting.width, setting.height};
+        if (size_ != std::pair(setting.width, setting.height))
+            throw InputError(name + ": the frames of a sequence have one size, and here they change from " +
+                             std::to_string(size_.first) + "x" + std::to_string(size_.second) + " to " +
+                             std::to_string(setting.width) + "x" + std::to_string(setting.height));
+        reference->add({p.encodedB, linear ? &p.linearB : nullptr}, exec);
+        put(test->add({p.encodedA, linear ? &p.linearA : nullptr}, exec), figures);
+    }
+    void put(const std::vector<double>& values, FrameMetrics& figures) const {
+        for (size_t i = 0; i < values.size(); i++)
+            figures.others.insert_or_assign(std::string(metric->figures[i].name), values[i]);
+    }
+
+  private:
+    std::pair<int, int> size_;
+};
+Rgb drawn(const MapKind& map, const Both& p, const std::vector<Watch>& watches, const Exec& exec) {
+    for (const Watch& w : watches)
+        if (map.drawValues && w.metric->figures[0].name == map.sequenceFigure && w.test && !w.broken)
+            return map.drawValues(w.test->latestMap(exec));
+    return map.draw(p.encodedA, p.encodedB, exec);
 }
 nlohmann::ordered_json numbers(const FrameMetrics& m, const std::vector<const Figure*>& wanted) {
     nlohmann::ordered_json j;
@@ -202,6 +242,15 @@ void compare(const Options& o, Context& context) {
     const MapKind& map = mapKindByName(o.mapOf.empty() ? "error" : o.mapOf);
     const FramePairs paired = pairFrames(o.a, o.b, o.pair);
     const auto& pairs = paired.pairs;
+    if (map.drawValues) wanted.insert(findFigure(map.sequenceFigure).metric);
+    std::vector<Watch> watches;
+    for (const Metric* metric : wanted)
+        if (metric->watch) watches.emplace_back(metric);
+    const double flipPpd = o.viewing.flipPixelsPerDegree;
+    if (o.work.session() && flipPpd != kFlipPixelsPerDegree)
+        throw UsageError(
+            "compare: --flip-ppd: the device looks at FLIP from the usual distance alone; leave out --device");
+    const Viewing viewing = viewingOf(o.viewing, Viewing{}.framesPerSecond);
     if (!o.map.empty() && pairs.size() > 1) makeWritableFolder(o.map);
     Measuring device{.session = o.work.session()};
     if (device.session && device.session->fast())
@@ -217,23 +266,40 @@ void compare(const Options& o, Context& context) {
     withThreads(o.work.threads, [&] {
         for (const auto& pair : pairs) {
             const Both both = loadBoth(pair, o, exec);
-            frames.push_back(raw && both.isBroken() ? noFigures(wanted) : figuresOf(both, wanted, exec, device));
+            frames.push_back(raw && both.isBroken()
+                                 ? noFigures(wanted)
+                                 : figuresOf(both, wanted, o.viewing.flipPixelsPerDegree, exec, device));
             for (auto [all, one] : {std::pair{&a, &both.a}, {&b, &both.b}}) {
                 all->values.nan += one->values.nan, all->values.inf += one->values.inf;
                 all->notOpaque += one->notOpaque;
                 if (all->layer.empty()) all->layer = one->layer;
             }
             alphaDiffers += both.alphaDiffers;
+            for (Watch& w : watches)
+                if (raw && both.isBroken())
+                    w.broken = true;
+                else
+                    w.add(both,
+                          {.width = both.encodedA.width(),
+                           .height = both.encodedA.height(),
+                           .viewing = viewing,
+                           .exposure = float(o.exposure),
+                           .still = pairs.size() == 1,
+                           .withMaps = bool(map.drawValues)},
+                          exec, frames.back());
             const FrameMetrics& f = frames.back();
             squares.mse += f.mse / count, squares.reference += f.reference / count;
             for (const auto& [name, value] : f.others) others[name] += value / count;
             if (!o.map.empty())
                 writePng(pairs.size() > 1 ? fs::path(o.map) / (pair.name + ".png") : fs::path(o.map),
-                         map.draw(both.encodedA, both.encodedB, exec));
+                         drawn(map, both, watches, exec));
         }
     });
     FrameMetrics pooled = frameMetrics(squares);
     pooled.others = std::move(others);
+    deriveFromMeans(pooled);
+    for (const Watch& w : watches)
+        w.put(w.broken ? std::vector<double>(w.metric->figures.size(), NAN) : w.test->overall(), pooled);
 
     std::vector<std::string> failures;
     for (const auto& t : thresholds)
@@ -255,6 +321,11 @@ void compare(const Options& o, Context& context) {
         for (const auto& [key, of] : {std::pair{"layerA", &a}, {"layerB", &b}})
             if (!of->layer.empty()) j[key] = of->layer;
         if (!o.region.empty()) j["region"] = o.region;
+        if (!watches.empty())
+            j["shownOn"] = {{"display", viewing.display->name},
+                            {"words", inWords(*viewing.display)},
+                            {"framesPerSecond", viewing.framesPerSecond}};
+        if (flipPpd != kFlipPixelsPerDegree) j["flipPixelsPerDegree"] = flipPpd;
         if (!o.map.empty()) j["map"] = {{"of", map.name}, {"scale", map.scale}};
         if (device.session) j["device"]["name"] = device.name();
         if (device.seconds > 0) j["device"]["seconds"] = device.seconds;
@@ -286,6 +357,11 @@ void compare(const Options& o, Context& context) {
                         static_cast<unsigned long long>(alphaDiffers));
         if (!o.map.empty()) std::printf("map %s: %s\n", o.map.c_str(), std::string(map.scale).c_str());
         if (!o.region.empty()) std::printf("figures of the region %s\n", o.region.c_str());
+        if (!watches.empty()) {
+            std::printf("JOD as seen on %s", inWords(*viewing.display).c_str());
+            if (pairs.size() > 1) std::printf("; %g frames per second", viewing.framesPerSecond);
+            std::printf("\n");
+        }
         if (device.session) {
             std::printf("on %s", device.name().c_str());
             if (device.seconds > 0) std::printf(": %.4f ms", 1e3 * device.seconds);
@@ -319,6 +395,7 @@ void addCompare(CommandLine& line, Context& context) {
              "X,Y,WIDTH,HEIGHT: figures and map of these pixels alone, as if they were the picture");
     c.option("--layer", o->layer, "layer of multilayer and multi-part EXR files; default: the one colour, or Combined");
     addNonFinite(c, o->nonFinite, "count them as the largest difference");
+    addViewingArguments(c, o->viewing, "30");
     c.flag("--q8", o->q8, "round both to 8-bit codes first");
     c.flag("--json", o->json, "as JSON");
     addWorkOptions(c, o->work);

@@ -9,6 +9,7 @@
 #include "image/json_text.h"
 #include "methods/asymmetry.h"
 #include "methods/stage.h"
+#include "metrics/metric.h"
 #include "shot/pass_table.h"
 #include "study/runnable.h"
 
@@ -84,6 +85,50 @@ void printMarkdown() {
         std::printf("| `%s` | %s | %s | %s |\n", std::string(s.value.name).c_str(), allowed.c_str(),
                     std::string(s.value.help).c_str(), std::string(s.value.source).c_str());
     }
+}
+std::string_view unitOf(const Figure& f) {
+    return f.form == FigureForm::decibels ? "dB" : f.form == FigureForm::jod ? "JOD" : "";
+}
+std::string_view spaceOf(const Metric& m) { return m.space == ColourSpace::linear ? "linear" : "encoded"; }
+std::string_view usedBy(const Metric& m) { return m.always ? "every run" : m.byDefault ? "by default" : "when asked for"; }
+// The table of docs/metrics.md.
+void printMetricsMarkdown() {
+    std::puts("| figure | column | what it is | unit | better | of | measured | ns/px | source |");
+    std::puts("|---|---|---|---|---|---|---|---|---|");
+    for (const Metric& m : metrics())
+        for (const Figure& f : m.figures) {
+            const std::string cost = &f == &m.figures.front() ? std::to_string(m.nsPerPixel) : "";
+            std::printf("| `%s` | %s | %s | %s | %s | %s%s | %s | %s | %s |\n", std::string(f.name).c_str(),
+                        std::string(f.title).c_str(), std::string(f.help).c_str(), std::string(unitOf(f)).c_str(),
+                        f.higherIsBetter ? "higher" : "lower", m.watch ? "the sequence, " : "",
+                        std::string(spaceOf(m)).c_str(), std::string(usedBy(m)).c_str(), cost.c_str(),
+                        std::string(m.source).c_str());
+        }
+}
+void printMetrics() {
+    for (const Metric& m : metrics()) {
+        for (const Figure& f : m.figures)
+            std::printf("%-18s %-18s %-6s %-4s %s\n", std::string(f.name).c_str(), std::string(f.title).c_str(),
+                        f.higherIsBetter ? "higher" : "lower", std::string(unitOf(f)).c_str(),
+                        std::string(f.help).c_str());
+        std::printf("  %s, of %s%s values, about %d ns/px; source: %s\n", std::string(usedBy(m)).c_str(),
+                    m.watch ? "a sequence's " : "", std::string(spaceOf(m)).c_str(), m.nsPerPixel,
+                    std::string(m.source).c_str());
+    }
+}
+nlohmann::ordered_json describe(const Metric& m) {
+    nlohmann::ordered_json j = {{"space", spaceOf(m)},
+                                {"always", m.always},
+                                {"ofSequence", bool(m.watch)},
+                                {"nsPerPixel", m.nsPerPixel},
+                                {"source", m.source}};
+    for (const Figure& f : m.figures)
+        j["figures"].push_back({{"name", f.name},
+                                {"title", f.title},
+                                {"help", f.help},
+                                {"unit", unitOf(f)},
+                                {"better", f.higherIsBetter ? "higher" : "lower"}});
+    return j;
 }
 void printStages() {
     std::puts("\nStages, on any method's output, in the order written: METHOD+stage=value");
@@ -190,7 +235,7 @@ nlohmann::ordered_json describeRegistry() {
 
 namespace {
 struct ListOptions {
-    bool json = false, markdown = false;
+    bool json = false, markdown = false, metrics = false;
     std::vector<std::string> words;
     std::string shot;
 };
@@ -240,7 +285,17 @@ void printForShot(const std::vector<const MethodDescriptor*>& methods, const std
     for (const auto& [why, names] : refused) std::printf("  %s: %s\n", names.c_str(), why.c_str());
 }
 
+void listMetrics(const ListOptions& o) {
+    if (!o.words.empty()) throw UsageError("list --metrics: lists all figures; leave out '" + o.words[0] + "'");
+    if (!o.shot.empty()) throw UsageError("list --metrics: no shot decides which figures there are; leave out --shot");
+    if (o.markdown) return printMetricsMarkdown();
+    if (!o.json) return printMetrics();
+    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+    for (const Metric& m : metrics()) all.push_back(describe(m));
+    std::cout << jsonText(all) << "\n";
+}
 void list(const ListOptions& o) {
+    if (o.metrics) return listMetrics(o);
     if (o.markdown) return printMarkdown();
     const auto methods = listed(o.words);
     if (o.json) {
@@ -279,6 +334,7 @@ void addList(CommandLine& line, Context&) {
     c.option("--shot", o->shot, "what this shot can run, and what it lacks for the others").typeName("SHOT");
     c.flag("--json", o->json, "as JSON; with --shot each method has whyNot, which is empty where it can run");
     c.flag("--markdown", o->markdown, "as the page docs/methods.md");
+    c.flag("--metrics", o->metrics, "the figures of `run` and `compare` instead of the methods: docs/metrics.md");
     c.run([o] { list(*o); });
 }
 

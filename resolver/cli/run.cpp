@@ -21,6 +21,28 @@ struct Options {
     bool debugLayers = false, overFrames = false, withoutBaseline = false;
 };
 constexpr const char* kBaseline = "noaa";
+// Figures that were asked for by --metrics; and where those that need a viewer were seen.
+void printAsked(const RunResults& r, const std::vector<const MethodResult*>& rows, size_t width) {
+    std::vector<const Figure*> asked;
+    for (const Figure* f : figuresIn(r))
+        if (!findFigure(f->name).metric->always) asked.push_back(f);
+    if (asked.empty()) return;
+    std::printf("%-*s", int(width), "method");
+    for (const Figure* f : asked) std::printf(" %*s", std::max(10, int(f->name.size())), std::string(f->name).c_str());
+    std::puts("");
+    for (const auto* m : rows) {
+        if (!m->pooled) continue;
+        std::printf("%-*s", int(width), m->text.c_str());
+        for (const Figure* f : asked) {
+            const auto value = m->pooled->mean.figure(f->name);
+            std::printf(" %*s", std::max(10, int(f->name.size())), value ? shown(*f, *value).c_str() : "-");
+        }
+        std::puts("");
+    }
+    if (r.shownOn)
+        std::printf("JOD as seen on %s; %g frames per second\n", r.shownOn->words.c_str(), r.shownOn->framesPerSecond);
+    if (r.flipPixelsPerDegree) std::printf("FLIP as seen at %g pixels per degree\n", *r.flipPixelsPerDegree);
+}
 }  // namespace
 
 void printReplaced(const RunResults& r, const std::filesystem::path& out) {
@@ -82,6 +104,7 @@ void printTable(const RunResults& r) {
         if (m->deviceSecondsMedian) std::printf(" %10.4f", 1e3 * *m->deviceSecondsMedian);
         std::puts("");
     }
+    printAsked(r, rows, width);
     if (!r.complete)
         std::printf("%s: these figures are not those of the whole shot; the same command with --resume goes on\n",
                     incompleteInWords(r).c_str());

@@ -10,6 +10,19 @@
 
 namespace aa {
 
+void addViewingArguments(Command& c, ViewingArguments& a, const std::string& own) {
+    c.option("--metric-display", a.display, "where `cvvdp` sees the sequence:" + listOfDisplayModels());
+    c.option("--metric-fps", a.framesPerSecond, "frames per second at which `cvvdp` sees it; 0 = " + own)
+        .range(0.0, 1000.0);
+    c.option("--flip-ppd", a.flipPixelsPerDegree,
+             "pixels per degree at which `flip` and `hdrFlip` are seen: distance / pixel size x pi / 180; maps keep 67")
+        .range(kLeastFlipPixelsPerDegree, kMostFlipPixelsPerDegree)
+        .defaultText("67.02");
+}
+Viewing viewingOf(const ViewingArguments& a, double own) {
+    return {&displayModelByName(a.display), a.framesPerSecond > 0 ? a.framesPerSecond : own};
+}
+
 void addRunArguments(Command& c, RunArguments& a) {
     c.option("SHOT", a.shot, "the shot's folder").required().typeName("SHOT");
     c.option("-o,--out", a.out, "folder for images, results.json and results.csv").required().typeName("FOLDER");
@@ -41,6 +54,7 @@ void addRunArguments(Command& c, RunArguments& a) {
          "--maps", a.maps,
          "pictures of the differences from the truth, comma-separated, into OUT/maps/KIND/METHOD:" + listOfMapKinds())
         .separatedBy(',');
+    addViewingArguments(c, a.viewing, "the shot's own");
     c.option(
         "--region", a.region,
         "X,Y,WIDTH,HEIGHT: figures of these pixels alone, as if they were the picture; methods still see all of it");
@@ -90,10 +104,13 @@ ShotReader openShot(const RunArguments& a, RunOptions& run) {
         throw UsageError("--dither: no effect with --quantise, which rounds before images are written");
     ShotReader shot(a.shot, inputPolicyByName(a.nonFinite));
     run.frames = selectFrames(shot.manifest(), a.frames);
+    run.measure.viewing = viewingOf(a.viewing, shot.manifest().fps);
+    run.measure.flipPixelsPerDegree = a.viewing.flipPixelsPerDegree;
     if (!a.region.empty())
         run.protocol.region = windowFrom(a.region, "--region", "shot '" + shot.manifest().name + "'",
                                          shot.manifest().width, shot.manifest().height);
     if (!a.reference.empty()) judgeAgainst(run, a.reference);
+    requireSequence(run, shot.manifest());
     std::string without;
     for (const auto& method : applyHistory(run, shot.manifest())) without += (without.empty() ? "" : ", ") + method;
     if (!without.empty()) std::fprintf(stderr, "--history ramp: no ramp in %s; run as they are\n", without.c_str());

@@ -8,11 +8,21 @@
 
 namespace aa {
 
+// Where metrics of a sequence see it.
+struct ViewingArguments {
+    std::string display = std::string(displayModels().front().name);
+    double framesPerSecond = 0;  // 0: the frames' own
+    double flipPixelsPerDegree = kFlipPixelsPerDegree;
+};
+void addViewingArguments(Command& command, ViewingArguments& arguments, const std::string& ownFramesPerSecond);
+Viewing viewingOf(const ViewingArguments& arguments, double ownFramesPerSecond);
+
 struct RunArguments {
     std::string shot, out, frames, write = "exr", writeFrames = "truth", toneMap = "none", display = "srgb",
                                    history = "first", nonFinite = "sanitise", region, reference;
     double exposure = 0;
     std::vector<std::string> metrics, maps;
+    ViewingArguments viewing;
     std::vector<std::string> externals;  // NAME=FOLDER: rows of pictures made elsewhere
     int quantise = 0;                    // 0: off
     bool timeOnly = false, dither = false;

@@ -2,35 +2,77 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <numbers>
 #include <numeric>
 #include <span>
-#include <utility>
 
 #include "image/colour.h"
 #include "metrics/flip_kernels.h"
-#include "metrics/metric.h"
 #include "metrics/metrics_kernels.h"
 
 namespace aa {
 
-double flip(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map) {
-    assert(test.width() == reference.width() && test.height() == reference.height());
-    constexpr int kRowsPerBlock = 128;  // each block repeats 20 rows of the pass along x
-    const int w = test.width(), h = test.height();
+namespace {
+// [Andersson 2020] at another distance; flip_constants.h says what each filter is.
+FlipFilters filtersAt(double pixelsPerDegree) {
+    constexpr double kPi = std::numbers::pi;
+    FlipFilters f{};
+    f.csfReach = f.narrowReach = int(std::ceil(3 * std::sqrt(0.04 / (2 * kPi * kPi)) * pixelsPerDegree));
+    const auto gaussian = [&](double* taps, double b) {
+        double sum = 0;
+        for (int i = 0; i <= f.csfReach; i++) {
+            taps[i] = std::exp(-kPi * kPi * i * i / (pixelsPerDegree * pixelsPerDegree * b));
+            sum += (i ? 2 : 1) * taps[i];
+        }
+        for (int i = 0; i <= f.csfReach; i++) taps[i] /= sum;
+        return sum;
+    };
+    gaussian(f.csfY, 0.0047), gaussian(f.csfCx, 0.0053);
+    const double wide = gaussian(f.csfCzWide, 0.04), narrow = gaussian(f.csfCzNarrow, 0.025);
+    const double a = 34.1 * std::sqrt(kPi / 0.04) * wide * wide, b = 13.5 * std::sqrt(kPi / 0.025) * narrow * narrow;
+    f.czWideShare = a / (a + b);
+
+    const double sd = 0.5 * 0.082 * pixelsPerDegree;
+    f.featureReach = std::max(1, int(std::ceil(3 * sd)));
+    double total = 0, edges = 0, positive = 0, negative = 0;
+    for (int i = 0; i <= f.featureReach; i++) {
+        const double weight = i ? 2 : 1;
+        f.gauss[i] = std::exp(-i * i / (2 * sd * sd));
+        f.edge[i] = i * f.gauss[i];
+        f.point[i] = (i * i / (sd * sd) - 1) * f.gauss[i];
+        total += weight * f.gauss[i], edges += f.edge[i];
+        (f.point[i] > 0 ? positive : negative) += weight * std::abs(f.point[i]);
+    }
+    for (int i = 0; i <= f.featureReach; i++) {
+        f.gauss[i] /= total, f.edge[i] /= edges;
+        f.point[i] /= f.point[i] > 0 ? positive : negative;
+    }
+    return f;
+}
+}  // namespace
+
+double flip(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map, double pixelsPerDegree) {
     Rgb linearTest, linearReference;
     decode(test, {}, exec, linearTest);
     decode(reference, {}, exec, linearReference);
+    return flipOfLight(linearTest, linearReference, exec, map, pixelsPerDegree);
+}
+
+double flipOfLight(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map, double pixelsPerDegree) {
+    assert(test.width() == reference.width() && test.height() == reference.height());
+    assert(pixelsPerDegree >= kLeastFlipPixelsPerDegree && pixelsPerDegree <= kMostFlipPixelsPerDegree);
+    constexpr int kRowsPerBlock = 128;  // each block repeats 20 rows of the pass along x
+    const int w = test.width(), h = test.height();
     if (map && (map->width() != w || map->height() != h)) *map = PlaneF(w, h);
     std::vector<double> rows(size_t(h) * kSumStrands);
-    const FlipArgs args{view(std::as_const(linearTest)),
-                        view(std::as_const(linearReference)),
-                        linearTest.stride(),
-                        w,
-                        h,
-                        map ? map->row(0) : nullptr,
-                        map ? map->stride() : 0,
-                        rows.data()};
-    runKernel(flipKernelsFor(exec).flip, exec, args, h, kRowsPerBlock);
+    const bool usual = pixelsPerDegree == kFlipPixelsPerDegree;
+    const FlipFilters filters = usual ? FlipFilters{} : filtersAt(pixelsPerDegree);
+    const FlipArgs args{
+        view(test),  view(reference), test.stride(), w, h, map ? map->row(0) : nullptr, map ? map->stride() : 0,
+        rows.data(), &filters};
+    const auto& kernels = flipKernelsFor(exec);
+    runKernel(usual ? kernels.flip : kernels.given, exec, args, h, kRowsPerBlock);
     if (map) map->fillBorder();
     return std::accumulate(rows.begin(), rows.end(), 0.0) / (double(w) * h);
 }
@@ -48,7 +90,7 @@ Metric flipMetric() {
             .source = "[Andersson 2020]",
             .measure = [](const ImagePair& i, const Exec& exec) {
                 PlaneF map;
-                const double mean = flip(i.testEncoded, i.referenceEncoded, exec, &map);
+                const double mean = flip(i.testEncoded, i.referenceEncoded, exec, &map, i.flipPixelsPerDegree);
                 const FlipStatistics s = flipStatistics(map);
                 return std::vector{mean, s.firstQuartile, s.median, s.thirdQuartile};
             }};

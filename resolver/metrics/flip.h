@@ -1,21 +1,24 @@
-// LDR-FLIP [Andersson 2020]: the difference that a viewer sees when flipping between two images at 67 pixels per degree
-// (0.7 m from a 0.7 m wide monitor of 3840 px).
+// LDR-FLIP [Andersson 2020]: the difference that a viewer sees when flipping between two images, usually at 67 pixels
+// per degree (0.7 m from a 0.7 m wide monitor of 3840 px).
 //
 //   colour:  opponent space, blurred by the eye's contrast sensitivity, CIELab with Hunt's adjustment, HyAB distance
 //   feature: differences of edges and points of the unblurred luminance
 //   FLIP   = colour^(1 - feature)
 //
-// All filters are separable (the blue-yellow one is a sum of two), which is exact. The viewing place is fixed so that
-// the filters are constants.
+// All filters are separable (the blue-yellow one is a sum of two), which is exact.
 #pragma once
-#include "metrics/metrics.h"
+#include "metrics/metric.h"
 
 namespace aa {
 
 // Encoded images in [0,1]; values outside count as 0 or 1, NaN as 0. They are taken as sRGB codes whatever the transfer
 // of the run: with the identity transfer, too, a screen gets the displayed values as its codes. Mean over the pixels,
 // in [0,1]; the map when `map` is given.
-double flip(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr);
+double flip(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr,
+            double pixelsPerDegree = kFlipPixelsPerDegree);
+// The same of light that a display gives off, in [0,1].
+double flipOfLight(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr,
+                   double pixelsPerDegree = kFlipPixelsPerDegree);
 
 // Pooled values of a map: quartiles weighted by the error itself, as the reference implementation prints them.
 struct FlipStatistics {
@@ -23,7 +26,6 @@ struct FlipStatistics {
 };
 FlipStatistics flipStatistics(const PlaneF& map);
 
-struct Metric;
 Metric flipMetric();
 
 }  // namespace aa

@@ -5,6 +5,7 @@
 
 #include "image/colour_map.h"
 #include "image/error.h"
+#include "metrics/cvvdp.h"
 #include "metrics/flip.h"
 #include "metrics/fourier.h"
 #include "metrics/metrics.h"
@@ -46,6 +47,15 @@ Rgb drawFourier(const Rgb& test, const Rgb& reference, const Exec& exec) {
     return coloured(fourierDifference(test, reference, exec),
                     [](double v) { return v > 0 ? 1 + std::log10(v) / kDecades : 0.0; });
 }
+constexpr double kMostJod = 3;
+Rgb colouredJod(const PlaneF& lost) {
+    return coloured(lost, [](double v) { return v / kMostJod; });
+}
+Rgb drawCvvdp(const Rgb& test, const Rgb& reference, const Exec& exec) {
+    PlaneF map;
+    cvvdpOfStill(test, reference, displayModels().front(), exec, &map);
+    return colouredJod(map);
+}
 }  // namespace
 
 const std::vector<MapKind>& mapKinds() {
@@ -54,6 +64,8 @@ const std::vector<MapKind>& mapKinds() {
          drawError},
         {"ssim", "SSIM of luma: white 1, where both are alike, black 0 or less", drawSsim},
         {"flip", "FLIP at 67 pixels per degree: black 0, lightest 1", drawFlip},
+        {"cvvdp", "JOD that ColorVideoVDP takes off around a pixel: black 0, lightest 3 or more", drawCvvdp, "cvvdp",
+         colouredJod},
         {"fourier",
          "difference by frequency, 0 in the centre, |F_T - F_R| / sqrt(W H), RMS over R, G, B, logarithmic: black "
          "0.0001 "

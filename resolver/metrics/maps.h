@@ -16,6 +16,10 @@ struct MapKind {
     std::string_view scale;  // what a pixel shows, and from which value to which
     // Of two encoded images of one size with filled borders; a picture of their size.
     Rgb (*draw)(const Rgb& test, const Rgb& reference, const Exec& exec);
+    // Of a metric of a sequence: its first figure, and a picture of what SequenceTest::latestMap gives. There `draw`
+    // takes the two images as stills.
+    std::string_view sequenceFigure = {};
+    Rgb (*drawValues)(const PlaneF& values) = nullptr;
 };
 const std::vector<MapKind>& mapKinds();
 const MapKind& mapKindByName(std::string_view name);  // throws UsageError: unknown, with those that there are

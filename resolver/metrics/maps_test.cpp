@@ -90,7 +90,7 @@ TEST(Maps, UnknownKindsAreNamedWithThoseThatThereAre) {
         mapKindByName("ssmi");
         FAIL();
     } catch (const UsageError& e) {
-        EXPECT_NE(std::string(e.what()).find("expected one of error, ssim, flip, fourier"), std::string::npos)
+        EXPECT_NE(std::string(e.what()).find("expected one of error, ssim, flip, cvvdp, fourier"), std::string::npos)
             << e.what();
     }
 }

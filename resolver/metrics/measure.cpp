@@ -63,6 +63,11 @@ void addFigures(FrameMetrics& to, const Metric& metric, const ImagePair& images,
     for (size_t i = 0; i < values.size(); i++) to.others.emplace(metric.figures[i].name, values[i]);
 }
 
+void deriveFromMeans(FrameMetrics& means) {
+    for (auto& [name, value] : means.others)
+        if (const Figure* f = figureByName(name); f && f->ofMeans) value = f->ofMeans(means);
+}
+
 MeasureOptions measureOptions(const std::vector<std::string>& names) {
     MeasureOptions options;
     for (const auto& name : names)
@@ -87,7 +92,8 @@ FrameMetrics measure(const Rgb& encoded, const Rgb* linear, const Reference& ref
     const TileErrors errors = tileErrors(encoded, reference, exec);
     pool += errors;
     FrameMetrics m = frameMetrics(errors.squaredError());
-    const ImagePair images{encoded, reference.encoded, linear, linear ? &reference.linear : nullptr};
+    const ImagePair images{encoded, reference.encoded, linear, linear ? &reference.linear : nullptr,
+                           options.flipPixelsPerDegree};
     const auto add = [&](const Metric& metric) {
         if (metric.isPossible(images)) addFigures(m, metric, images, exec);
     };

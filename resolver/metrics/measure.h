@@ -22,6 +22,9 @@ FrameMetrics frameMetrics(const SquaredError& squares);
 // Measures what is not of squared error and adds it. The images must be those that the metric asks for (isPossible).
 void addFigures(FrameMetrics& to, const Metric& metric, const ImagePair& images, const Exec& exec);
 
+// Of means over frames: figures that follow from others' means (Figure::ofMeans).
+void deriveFromMeans(FrameMetrics& means);
+
 // The ground truth of one frame, prepared once for all methods.
 struct Reference {
     Rgb linear, encoded;  // mean of the halves, and its display encoding; one and the same with the identity transfer
@@ -41,6 +44,8 @@ struct MeasureOptions {
     std::vector<const Metric*> metrics;  // beside those that every run has
     // Of the frames that are judged alone: those that a run measures without being asked.
     std::vector<const Metric*> ofJudged = {};
+    Viewing viewing = {};  // of metrics of a sequence
+    double flipPixelsPerDegree = kFlipPixelsPerDegree;
 };
 // The metrics that a run measures by default and that `asked` does not name; none where they would take more than
 // kDefaultSeconds on one processor. `pixels`: of all frames that are judged, times the methods.

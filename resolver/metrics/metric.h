@@ -7,11 +7,14 @@
 #include <vector>
 
 #include "metrics/metrics.h"
+#include "metrics/sequence.h"
 
 namespace aa {
 
-enum class FigureForm { significant, decibels, similarity };  // how it is written (report/format.h)
-enum class ColourSpace { encoded, linear };                   // display-encoded values in [0,1], or linear light
+enum class FigureForm { significant, decibels, similarity, jod };  // how it is written (report/format.h)
+enum class ColourSpace { encoded, linear };                        // display-encoded values in [0,1], or linear light
+
+struct FrameMetrics;
 
 // A number that a metric gives.
 struct Figure {
@@ -23,8 +26,15 @@ struct Figure {
     // Of squared error: pooled over frames it comes from the mean squares, so that a PSNR is never a mean of decibels.
     // Null: the mean over the frames.
     double (*ofSquares)(const SquaredError&) = nullptr;
+    // Pooled from other figures' means over the frames instead of its own: decibels of a mean, never a mean of
+    // decibels.
+    double (*ofMeans)(const FrameMetrics&) = nullptr;
     std::string_view spreadOf = {};  // the figure beside which it is shown, whose spread over the picture it tells
 };
+
+// Where FLIP looks from: 0.7 m from a 0.7 m wide monitor of 3840 px, 3840 pi / 180; and what it can be told.
+inline constexpr double kFlipPixelsPerDegree = 67.020643276582;
+inline constexpr double kLeastFlipPixelsPerDegree = 5, kMostFlipPixelsPerDegree = 177;
 
 // Two images of one size with filled borders. The linear ones are null where there is no linear light: 8-bit files,
 // methods that give encoded colour.
@@ -33,6 +43,7 @@ struct ImagePair {
     const Rgb& referenceEncoded;
     const Rgb* testLinear = nullptr;
     const Rgb* referenceLinear = nullptr;
+    double flipPixelsPerDegree = kFlipPixelsPerDegree;
 };
 
 struct Metric {
@@ -44,6 +55,9 @@ struct Metric {
     std::string_view source;
     // One value per figure, of one frame. Empty where every figure is of squared error, which is always there.
     std::function<std::vector<double>(const ImagePair&, const Exec&)> measure = {};
+    // Of a sequence: its frames are watched in order, and its figures are those of all of them together instead of
+    // means.
+    std::function<std::unique_ptr<SequenceReference>(const SequenceSetting&)> watch = {};
     bool isPossible(const ImagePair& images) const {
         return space == ColourSpace::encoded || (images.testLinear && images.referenceLinear);
     }

@@ -100,6 +100,17 @@ double relMse(const Rgb& test, const Rgb& reference, const Exec& exec) {
 double ssimLuma(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map) {
     return ssim(test, reference, exec, SsimSignal::luma, map);
 }
+double ssimValid(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map) {
+    constexpr int kReach = 5;
+    PlaneF own;
+    PlaneF& all = map ? *map : own;
+    const double everywhere = ssimLuma(test, reference, exec, &all);
+    if (std::min(all.width(), all.height()) <= 2 * kReach) return everywhere;
+    double sum = 0;
+    for (int y = kReach; y < all.height() - kReach; y++)
+        for (int x = kReach; x < all.width() - kReach; x++) sum += double(all.at(x, y));
+    return sum / (double(all.width() - 2 * kReach) * (all.height() - 2 * kReach));
+}
 double ssimRgb(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map) {
     constexpr SsimSignal kChannels[] = {SsimSignal::red, SsimSignal::green, SsimSignal::blue};
     double sum = 0;
@@ -156,6 +167,10 @@ Metric ssimMetric(Figure figure, bool always, int nsPerPixel,
 }
 }  // namespace
 Metric ssimLumaMetric() { return ssimMetric({"ssimLuma", "SSIM", "SSIM of luma 601"}, true, 25, ssimLuma); }
+Metric ssimValidMetric() {
+    return ssimMetric({"ssimValid", "SSIM valid", "SSIM of luma 601, windows within the picture alone"}, false, 25,
+                      ssimValid);
+}
 Metric ssimRgbMetric() {
     Metric m = ssimMetric({"ssimRgb", "SSIM RGB", "SSIM, mean over channels"}, false, 75, ssimRgb);
     m.byDefault = true;

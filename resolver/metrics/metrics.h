@@ -46,7 +46,10 @@ TileErrors tileErrors(const Rgb& test, const Rgb& reference, const Exec& exec);
 // SSIM of encoded images: 11x11 Gaussian, sigma 1.5, replicated border, variances about the local mean
 // (conventions 13.2). Each returns the mean over all pixels and writes the per-pixel map when `map` is given.
 double ssimLuma(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr);  // BT.601 luma
-double ssimRgb(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr);   // mean over channels
+// Of luma, over the windows that lie within the picture: the border is not extended, 5 px around it are left out. In a
+// picture that holds none, over all pixels.
+double ssimValid(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr);
+double ssimRgb(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr);  // mean over channels
 // As MATLAB treats an M x N x 3 array: a volume, filtered across the channels too (replicated). For comparison only.
 double ssimMatlab3D(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr);
 
@@ -55,6 +58,7 @@ struct Metric;
 Metric squaredErrorMetric();
 Metric relMseMetric();
 Metric ssimLumaMetric();
+Metric ssimValidMetric();
 Metric ssimRgbMetric();
 Metric ssimMatlab3DMetric();
 

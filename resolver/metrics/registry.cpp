@@ -3,8 +3,12 @@
 
 #include "image/error.h"
 #include "metrics/banding.h"
+#include "metrics/cvvdp.h"
+#include "metrics/differences.h"
 #include "metrics/flip.h"
 #include "metrics/fourier.h"
+#include "metrics/hdr_flip.h"
+#include "metrics/luma709.h"
 #include "metrics/metric.h"
 #include "metrics/metrics.h"
 
@@ -12,8 +16,9 @@ namespace aa {
 
 const std::vector<Metric>& metrics() {
     static const std::vector<Metric> all = {
-        squaredErrorMetric(), ssimLumaMetric(), ssimRgbMetric(), ssimMatlab3DMetric(),
-        flipMetric(),         relMseMetric(),   fourierMetric(), bandingMetric(),
+        squaredErrorMetric(), ssimLumaMetric(), ssimRgbMetric(),     ssimMatlab3DMetric(), ssimValidMetric(),
+        luma709Metric(),      flipMetric(),     hdrFlipMetric(),     cvvdpMetric(),        relMseMetric(),
+        linearMseMetric(),    absoluteMetric(), contrastSnrMetric(), fourierMetric(),      bandingMetric(),
     };
     return all;
 }

@@ -29,12 +29,18 @@ std::string signedDecibelNumber(double v) { return printed("%+.2f", v); }
 std::string decibels(double v) { return decibelNumber(v) + " dB"; }
 std::string similarity(double v) { return printed("%.6f", v); }
 
+const char* name(FigureForm form) {
+    constexpr const char* kNames[] = {"significant", "decibels", "similarity", "jod"};
+    return kNames[size_t(form)];
+}
 std::string shown(const Figure& figure, double v) {
     switch (figure.form) {
         case FigureForm::decibels:
             return decibels(v);
         case FigureForm::similarity:
             return similarity(v);
+        case FigureForm::jod:
+            return printed("%.3f", v);
         case FigureForm::significant:
             break;
     }

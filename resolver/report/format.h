@@ -13,6 +13,7 @@ std::string signedDecibelNumber(double v);          // +3.21
 std::string decibels(double v);                     // 38.78 dB
 // By what the figure is: decibels, similarity, or 4 significant digits.
 std::string shown(const Figure& figure, double v);
+const char* name(FigureForm form);
 std::string similarity(double v);  // 6 decimals: three saturate (conventions 13.2)
 
 // What was run, in one line: size, jitter and whether its block is centred, machine.

@@ -11,6 +11,7 @@
 #include "metrics/maps.h"
 #include "report/advice.h"
 #include "report/caption.h"
+#include "report/format.h"
 #include "report/page.h"
 #include "report/sheet.h"
 #include "report/web/web_files.h"

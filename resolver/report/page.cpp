@@ -5,6 +5,7 @@
 
 #include "image/json_text.h"
 #include "metrics/metric.h"
+#include "report/format.h"
 #include "report/web/web_files.h"
 
 namespace aa {
@@ -37,12 +38,8 @@ std::string forScript(const nlohmann::ordered_json& j) {
 }
 
 nlohmann::ordered_json figureJson(const Figure& f) {
-    return {{"name", f.name},
-            {"title", f.title},
-            {"better", f.higherIsBetter ? "high" : "low"},
-            {"form", f.form == FigureForm::similarity ? "similarity"
-                     : f.form == FigureForm::decibels ? "decibels"
-                                                      : "significant"}};
+    return {
+        {"name", f.name}, {"title", f.title}, {"better", f.higherIsBetter ? "high" : "low"}, {"form", name(f.form)}};
 }
 
 std::string forHtml(const std::string& text) {

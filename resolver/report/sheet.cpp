@@ -45,6 +45,7 @@ std::string footOf(const SheetMethods& m, bool figures, bool errors, bool ownCro
     text += ownCrops ? ". " : ", where the methods differ most. ";
     if (!m.best.empty()) text += "\u2605 best of the methods shown. ";
     if (errors) text += "Figures and errors: " + inWords(run.protocol) + ". ";
+    if (figures && run.shownOn) text += "JOD as seen on " + run.shownOn->display + ". ";
     if (figures && m.overTime)
         text += run.isStatic
                     ? "Flicker: spread over time, 8-bit codes. "

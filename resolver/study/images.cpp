@@ -45,14 +45,19 @@ std::string writeImage(const RunningMethod& m, int frame, const RunOptions& o) {
     return written;
 }
 
-void writeMaps(const RunningMethod& m, const Reference& measured, int frame, const RunOptions& o) {
+void writeMaps(const RunningMethod& m, const Reference& measured, int frame, const RunOptions& o,
+               const std::function<PlaneF(const MapKind&)>& sequenceMap) {
     if (o.maps.empty()) return;
     const auto& region = o.protocol.region;
     const Rgb part = region ? cropped(m.outEncoded, *region) : Rgb();
     for (const MapKind* kind : o.maps) {
+        const PlaneF values = kind->drawValues ? sequenceMap(*kind) : PlaneF();
+        if (kind->drawValues && values.empty()) continue;
         const fs::path folder = o.out / "maps" / kind->name / m.spec.folderName();
         makeWritableFolder(folder);
-        writePng(folder / frameName(frame, ".png"), kind->draw(region ? part : m.outEncoded, measured.encoded, o.exec));
+        writePng(folder / frameName(frame, ".png"),
+                 kind->drawValues ? kind->drawValues(values)
+                                  : kind->draw(region ? part : m.outEncoded, measured.encoded, o.exec));
     }
 }
 

@@ -1,5 +1,6 @@
 // The images that a run leaves behind.
 #pragma once
+#include <functional>
 #include <string>
 
 #include "methods/driver.h"
@@ -14,6 +15,8 @@ namespace aa {
 std::string writeImage(const RunningMethod& method, int frame, const RunOptions& options);
 std::string writeTruthImage(const Reference& reference, int frame, const RunOptions& options);
 // What options.maps asks for, of its difference from `measured`: the reference, or its region.
-void writeMaps(const RunningMethod& method, const Reference& measured, int frame, const RunOptions& options);
+// `sequenceMap` gives the values of maps over time; empty ones are not drawn.
+void writeMaps(const RunningMethod& method, const Reference& measured, int frame, const RunOptions& options,
+               const std::function<PlaneF(const MapKind&)>& sequenceMap);
 
 }  // namespace aa

@@ -64,6 +64,7 @@ void Judge::look(const Frame& frame, const std::shared_ptr<const Truth>& truth, 
         lookAtTruth();
     }
     if (reference_) noise_ += measured().noise, withTruth_++;
+    if (reference_) watchReference();
     if (overTime_) scene_.advance(frame, reference_ ? &reference_->encoded : nullptr, options_.exec);
     // A static shot is judged at its last frame, as the published protocol does: there every history is longest.
     if (manifest_.isStatic) errors_.assign(errors_.size(), {});
@@ -98,6 +99,38 @@ void Judge::noLinearFigures(FrameMetrics& to) const {
             for (const Figure& f : m.figures) to.others[std::string(f.name)] = NAN;
 }
 
+void Judge::watchReference() {
+    if (seen_ == 1)
+        for (const Metric* metric : watchingMetrics(options_)) {
+            const auto& maps = options_.maps;
+            const SequenceSetting setting{
+                .width = measured().encoded.width(),
+                .height = measured().encoded.height(),
+                .viewing = options_.measure.viewing,
+                .exposure = options_.protocol.display.exposure,
+                .still = options_.frames.size() == 1,
+                .withMaps = std::any_of(maps.begin(), maps.end(), [](auto* kind) { return kind->drawValues; })};
+            watches_.push_back({metric, metric->watch(setting), {}});
+            watches_.back().tests.resize(options_.methods.size());
+        }
+    for (Watch& w : watches_) w.reference->add({measured().encoded, &measured().linear}, options_.exec);
+}
+
+void Judge::watch(size_t k, const Rgb& encoded, const Rgb* linear, FrameMetrics& metrics) {
+    for (Watch& w : watches_) {
+        if (options_.measure.viewing.display->isHdr && !linear) continue;
+        if (!w.tests[k]) w.tests[k] = w.reference->test();
+        const std::vector<double> values = w.tests[k]->add({encoded, linear}, options_.exec);
+        for (size_t i = 0; i < values.size(); i++) metrics.others.emplace(w.metric->figures[i].name, values[i]);
+    }
+}
+
+PlaneF Judge::sequenceMap(size_t k, const MapKind& kind) const {
+    for (const Watch& w : watches_)
+        if (w.metric->figures[0].name == kind.sequenceFigure && w.tests[k]) return w.tests[k]->latestMap(options_.exec);
+    return {};
+}
+
 FrameResult Judge::judge(size_t k, const RunningMethod& method, const ResolveSeconds& seconds,
                          const FrameResult* known) {
     FrameResult result;
@@ -116,9 +149,12 @@ FrameResult Judge::judge(size_t k, const RunningMethod& method, const ResolveSec
                            errors_[k], !manifest_.isStatic || last);
         };
         const auto& region = options_.protocol.region;
-        result.metrics =
-            region ? take(cropped(encoded, *region), cropped(method.out, *region)) : take(encoded, method.out);
+        const Rgb encodedPart = region ? cropped(encoded, *region) : Rgb(),
+                  part = region ? cropped(method.out, *region) : Rgb();
+        const Rgb &seen = region ? encodedPart : encoded, &out = region ? part : method.out;
+        result.metrics = take(seen, out);
         if (linear && broken) noLinearFigures(*result.metrics);
+        watch(k, seen, linear ? &out : nullptr, *result.metrics);
     }
     if (overTime_) {
         overTimeOf_[k].add(scene_, encoded, options_.exec);
@@ -156,6 +192,13 @@ void Judge::finish(RunResults& results, bool fromReset) const {
     // Of a truth with one half only (an imported render) nobody knows the noise.
     if (withTruth_ > 0 && (standIn_ || manifest_.truthHalves.value_or(2) != 1))
         results.truthNoise = noise_ / double(withTruth_);
+    for (const Watch& w : watches_)
+        for (size_t k = 0; k < w.tests.size(); k++) {
+            if (!w.tests[k]) continue;
+            const std::vector<double> values = w.tests[k]->overall();
+            for (size_t i = 0; i < values.size(); i++)
+                results.methods[k].sequence[std::string(w.metric->figures[i].name)] = values[i];
+        }
     for (size_t k = 0; overTime_ && k < overTimeOf_.size(); k++) {
         if (results.isReference(results.methods[k])) continue;
         results.methods[k].temporal = overTimeOf_[k].result();

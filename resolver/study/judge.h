@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "methods/driver.h"
+#include "metrics/maps.h"
 #include "metrics/temporal.h"
 #include "study/results.h"
 #include "study/run.h"
@@ -30,6 +31,8 @@ class Judge {
     // Fills what holds for the whole run; `fromReset`: the first frame had no history.
     void finish(RunResults& results, bool fromReset) const;
     const std::vector<TileErrors>& errors() const { return errors_; }
+    // Where method `k` differs in the latest frame, as a metric of a sequence sees it; empty where it was not measured.
+    PlaneF sequenceMap(size_t k, const MapKind& kind) const;
 
   private:
     FrameMetrics again(const FrameMetrics& known, const Rgb& encoded, const Reference& reference,
@@ -40,6 +43,15 @@ class Judge {
     // where neither does, or there is no reference.
     const Rgb* farthest(const RunningMethod& method, uint64_t& nonFinite);
     void noLinearFigures(FrameMetrics& to) const;
+    // A metric of a sequence, and what it keeps of the reference and of every method; null where it cannot be measured.
+    struct Watch {
+        const Metric* metric;
+        std::unique_ptr<SequenceReference> reference;
+        std::vector<std::unique_ptr<SequenceTest>> tests;
+    };
+    void watchReference();
+    void watch(size_t k, const Rgb& encoded, const Rgb* linear, FrameMetrics& metrics);
+    std::vector<Watch> watches_;
     const Manifest& manifest_;
     const RunOptions& options_;
     bool overTime_;

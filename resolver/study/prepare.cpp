@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
 #include <fstream>
 #include <sstream>
 
@@ -119,6 +120,21 @@ void judgeAgainst(RunOptions& o, const std::string& method) {
         throw UsageError("--reference " + method + ": no other method is there to be judged against it; add one by -m");
 }
 
+void requireSequence(const RunOptions& o, const Manifest& manifest) {
+    const std::vector<const Metric*> watching = watchingMetrics(o);
+    if (watching.empty()) return;
+    const std::string metric = "--metrics " + std::string(watching.front()->figures[0].name);
+    if (o.measure.viewing.display->isHdr && o.protocol.display.transfer == Transfer::identity)
+        throw UsageError(metric + " --metric-display " + std::string(o.measure.viewing.display->name) +
+                         ": it is fed linear light, which --display identity has none of");
+    if (!o.protocol.reference.empty()) return;
+    for (const size_t i : o.frames)
+        if (manifest.frames[i].truth.empty())
+            throw UsageError(metric + ": it watches the whole sequence, and frame " +
+                             std::to_string(manifest.frames[i].frame) +
+                             " has no truth; choose frames that have one by --frames, or judge by --reference METHOD");
+}
+
 InputPlan planInput(const ShotReader& shot, const RunOptions& o) {
     InputPlan plan;
     plan.split = shot.hasCentreFrames();
@@ -156,6 +172,13 @@ std::string asked(const RunOptions& o) {
         metrics += (metrics.empty() ? "metrics=" : ",") + std::string(m->figures[0].name);
     std::string maps;
     for (const MapKind* kind : o.maps) maps += (maps.empty() ? " maps=" : ",") + std::string(kind->name);
+    if (!watchingMetrics(o).empty()) {
+        char fps[32];
+        std::snprintf(fps, sizeof fps, "%g", o.measure.viewing.framesPerSecond);
+        maps += " seen=" + std::string(o.measure.viewing.display->name) + "," + fps;
+    }
+    if (o.measure.flipPixelsPerDegree != kFlipPixelsPerDegree)
+        maps += " flipPpd=" + std::to_string(o.measure.flipPixelsPerDegree);
     return metrics + maps + (metrics.empty() && maps.empty() ? "" : " ") + "write=" +
            (o.writeExr && o.writePng ? "exr,png"
             : o.writeExr             ? "exr"
@@ -203,6 +226,12 @@ RunResults describeRun(const Manifest& m, const RunOptions& o) {
     r.threads =
         o.exec.parallel ? int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)) : 1;
     r.protocol = o.protocol;
+    if (!watchingMetrics(o).empty()) {
+        const Viewing& v = o.measure.viewing;
+        r.shownOn = {std::string(v.display->name), inWords(*v.display), v.display->pixelsPerDegree(),
+                     v.framesPerSecond};
+    }
+    if (o.measure.flipPixelsPerDegree != kFlipPixelsPerDegree) r.flipPixelsPerDegree = o.measure.flipPixelsPerDegree;
     for (const MapKind* kind : o.maps) r.maps.emplace(kind->name, kind->scale);
     std::map<std::string, int> counted;
     for (const auto& f : m.frames)

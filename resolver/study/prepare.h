@@ -27,6 +27,10 @@ std::vector<std::string> applyHistory(RunOptions& options, const Manifest& manif
 // UsageError.
 void judgeAgainst(RunOptions& options, const std::string& method);
 
+// A metric of a sequence needs a reference for every frame, and linear light for a display that is fed it. Throws
+// UsageError.
+void requireSequence(const RunOptions& options, const Manifest& manifest);
+
 // Which passes are read of which frames: methods that accumulate read the jittered ones, all others the centre-sampled
 // ones where the shot has them.
 struct InputPlan {

@@ -67,7 +67,8 @@ struct MethodResult {
     std::optional<PooledMetrics> pooled;
     std::vector<double> tileSquares;  // sums of squared error of tiles of kResultTilePx squared
     std::vector<ErrorParts> parts;    // from which methods are compared, within a run and between runs of one shot
-    std::optional<TemporalMetrics> temporal;  // of a sequence
+    std::optional<TemporalMetrics> temporal;              // of a sequence
+    std::map<std::string, double, std::less<>> sequence;  // figures of metrics that watch it, over all its frames
     // Over the frames that have FrameResult::rejected; absent when no history was rejected.
     std::optional<double> rejectedMse, rejectedShare;
 };
@@ -113,6 +114,13 @@ struct RunDevice {
     bool isSoftware() const { return kind == "cpu"; }
 };
 
+// The display and the frame rate of metrics that watch a sequence.
+struct ShownOn {
+    std::string display;  // a name of metrics/display_model.h
+    std::string words;    // what it is
+    double pixelsPerDegree = 0, framesPerSecond = 0;
+};
+
 struct RunResults {
     // The shot
     std::string shot;      // its name
@@ -145,6 +153,8 @@ struct RunResults {
     // Figures that a run has by default and this one has not, since they would have taken about so many seconds.
     std::map<std::string, double> leftOut;
     Protocol protocol;
+    std::optional<ShownOn> shownOn;               // where metrics of a sequence ask for a display
+    std::optional<double> flipPixelsPerDegree;    // where FLIP was not looked at from the usual distance
     size_t warmUpFrames = 0;                      // that ran before the first judged one, for a full history
     std::map<std::string, std::string> maps;      // kinds of maps that were written, and their scales
     std::map<std::string, uint64_t> sanitised;    // replaced input values by kind; empty when none

@@ -312,6 +312,7 @@ void members(V v, S& m) {
         });
     v.list("frames", m.frames);
     v.maybeObject("temporal", m.temporal);
+    v.sparse("sequence", m.sequence, !m.sequence.empty());
     v.sparse("tileSquares", m.tileSquares, !m.tileSquares.empty());
     v.sparseList("errorParts", m.parts);
     v.groupIf(m.rejectedMse.has_value(), "rejected", [&](auto rejected) {
@@ -342,6 +343,13 @@ void members(V v, S& l) {
     v.value("processors", l.processors);
     v.maybe("waitedShare", l.waited);
     v.derived("busy", l.busy());
+}
+template <class V, Is<ShownOn> S>
+void members(V v, S& s) {
+    v.value("display", s.display);
+    v.value("words", s.words);
+    v.value("pixelsPerDegree", s.pixelsPerDegree);
+    v.value("framesPerSecond", s.framesPerSecond);
 }
 template <class V, Is<RunDevice> S>
 void members(V v, S& d) {
@@ -422,6 +430,8 @@ void members(V all, S& run) {
         }
         v.maybe("region", run.protocol.region);
         v.sparse("reference", run.protocol.reference, !run.protocol.reference.empty());
+        v.maybeObject("shownOn", run.shownOn);
+        v.maybe("flipPixelsPerDegree", run.flipPixelsPerDegree);
         v.sparse("maps", run.maps, !run.maps.empty());
         v.value("sanitised", run.sanitised);
     });

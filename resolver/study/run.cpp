@@ -22,6 +22,16 @@ namespace aa {
 
 size_t stepsOf(const RunOptions& o, const Manifest& m) { return o.frames.size() * (1 + warmUpPasses(o, m)); }
 
+std::vector<const Metric*> watchingMetrics(const RunOptions& o) {
+    std::vector<const Metric*> all = o.measure.metrics;
+    for (const MapKind* kind : o.maps)
+        if (kind->drawValues) all.push_back(findFigure(kind->sequenceFigure).metric);
+    std::erase_if(all, [](const Metric* m) { return !m->watch; });
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
+}
+
 namespace {
 // The methods' indices: the one that the others are held against first.
 std::vector<size_t> orderOfWork(const std::vector<RunningMethod>& methods, const std::string& reference) {
@@ -213,7 +223,9 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, const Progres
             }
             if (isWritten() && (!known || !isThere(o.out, known->image))) {
                 result.image = writeImage(methods[k], frame->number, o);
-                if (judge.reference() && !isReference) writeMaps(methods[k], judge.measured(), frame->number, o);
+                if (judge.reference() && !isReference)
+                    writeMaps(methods[k], judge.measured(), frame->number, o,
+                              [&](const MapKind& kind) { return judge.sequenceMap(k, kind); });
             } else if (known) {
                 result.image = known->image;
             }

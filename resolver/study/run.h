@@ -42,6 +42,8 @@ struct RunOptions {
     std::function<void(const RunResults&)> checkpoint;
 };
 
+// Metrics that watch the sequence: those asked for, and those that a map is drawn from.
+std::vector<const Metric*> watchingMetrics(const RunOptions& options);
 // Steps that a run shows as progress: its frames, before them those of a full history.
 size_t stepsOf(const RunOptions& options, const Manifest& manifest);
 

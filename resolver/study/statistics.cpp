@@ -71,6 +71,7 @@ FrameMetrics meanMetrics(const std::vector<const FrameMetrics*>& frames) {
     for (const auto& other : frames[0]->others)
         if (const auto v = meanOf(frames, [&](const FrameMetrics& m) { return m.figure(other.first); }))
             mean.others.emplace(other.first, *v);
+    deriveFromMeans(mean);
     return mean;
 }
 std::optional<PooledMetrics> pool(const MethodResult& method, double noise) {
@@ -81,6 +82,10 @@ std::optional<PooledMetrics> pool(const MethodResult& method, double noise) {
     PooledMetrics p;
     p.frames = int(frames.size());
     p.mean = meanMetrics(frames);
+    // Of metrics that watch the sequence a mean over frames is no figure: nothing before all were seen.
+    std::erase_if(p.mean.others,
+                  [](const auto& f) { return figureByName(f.first) && findFigure(f.first).metric->watch; });
+    for (const auto& [name, value] : method.sequence) p.mean.others.insert_or_assign(name, value);
     p.mseInterval = mseInterval(p.mean.mse, noise);
     double finite = 0;
     for (const FrameMetrics* m : frames) {

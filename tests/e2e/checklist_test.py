@@ -98,11 +98,29 @@ def stale_docs(root: Path, markdown: str, listed: dict) -> list[str]:
     return found
 
 
+def stale_metrics(root: Path, table: str, displays: str) -> list[str]:
+    """The page of metrics holds the program's table, and every display that the help lists."""
+    page = (root / "docs/metrics.md").read_text()
+    found = []
+    if table not in page:
+        found.append("docs/metrics.md: its table is not the program's; run `make docs`")
+    for name, title in re.findall(r"^ +((?:standard|sdr)_\w+)  +(\S.*)$", displays, re.MULTILINE):
+        if f"| `{name}` | {title} |" not in page:
+            found.append(f"docs/metrics.md: lacks the display '{name}' as {title}")
+    return found
+
+
 class Checklist(ProgramTest):
     def listed(self) -> tuple[str, dict]:
         return (
             self.aaresolve("list", "--markdown").stdout,
             json.loads(self.aaresolve("list", "--json").stdout),
+        )
+
+    def metrics(self) -> tuple[str, str]:
+        return (
+            self.aaresolve("list", "--metrics", "--markdown").stdout,
+            self.aaresolve("compare", "--help").stdout,
         )
 
     def none(self, found: list[str]) -> None:
@@ -123,6 +141,7 @@ class Checklist(ProgramTest):
 
     def test_generated_pages_are_fresh(self) -> None:
         self.none(stale_docs(ROOT, *self.listed()))
+        self.none(stale_metrics(ROOT, *self.metrics()))
 
     def test_the_program_does_not_show_the_examples(self) -> None:
         self.assertNotIn("keleton", self.aaresolve("list").stdout)
@@ -161,6 +180,8 @@ class Checklist(ProgramTest):
                 "docs/methods.md",
                 "`make docs`",
             ),
+            (stale_metrics(root, "| `newest` |", ""), "docs/metrics.md", "`make docs`"),
+            (stale_metrics(root, "", "  sdr_newest  a screen"), "docs/metrics.md", "sdr_newest"),
         ):
             with self.subTest(file=file):
                 self.assertTrue(found, "nothing found")

@@ -271,6 +271,8 @@
     ["Protocol", protocol + (run.run.warmUpFrames ? `; ${run.run.warmUpFrames} frames ran before the first judged one` : "")],
     ["Display", `exposure ${run.run.display.exposureEv} EV, tone map ${run.run.display.toneMap}, ` +
       (run.run.display.transfer === "identity" ? "clamped values shown as they are" : "sRGB")],
+    run.run.shownOn && ["JOD as seen on", `${run.run.shownOn.words}; ${short(run.run.shownOn.framesPerSecond)} frames per second`],
+    run.run.flipPixelsPerDegree && ["FLIP as seen at", `${short(run.run.flipPixelsPerDegree)} pixels per degree`],
     run.truth.clipped && ["Truth clipped", `${run.truth.clipped.pixels} of ${run.truth.clipped.of} pixels exceed the display`],
     ["Machine", `${run.run.machine}, ${run.run.instructionSet}, ${run.run.threads} thread${run.run.threads > 1 ? "s" : ""}, precision ${run.run.precision}`],
     run.run.load && ["Machine's load", `${run.run.load.before.toFixed(2)} of ${run.run.load.processors} processors before the run` +

@@ -10,7 +10,7 @@ const minus = (text) => (/^-0\.?0*$/.test(text) ? text.slice(1) : text.replace("
 const signed = (v) => (value(v) > 0 ? "+" : "") + fixed(v, 2).replace("-", "−");
 const short = (v) => (v == null ? "–" : Number.isFinite(value(v)) ? Number(value(v).toPrecision(4)).toString() : fixed(v, 0));
 // As a figure of the program's table is written: {form}.
-const inForm = (figure, v) => (v == null ? "–" : figure.form === "similarity" ? fixed(v, 6) : figure.form === "decibels" ? fixed(v, 2) : short(v));
+const inForm = (figure, v) => (v == null ? "–" : figure.form === "similarity" ? fixed(v, 6) : figure.form === "decibels" ? fixed(v, 2) : figure.form === "jod" ? fixed(v, 3) : short(v));
 
 // ---- doubt: a comparison is {gain, low, high, resolved, why} ----
 const reasons = { truthNoise: "not resolved: the truth’s noise", varies: "not resolved: varies over the picture", tooSmall: "not resolved: too small to judge", equal: "equal" };
