@@ -3,8 +3,10 @@
 
 #include <cmath>
 
+#include "metrics/cvvdp.h"
 #include "metrics/flip.h"
 #include "metrics/fourier.h"
+#include "metrics/hdr_flip.h"
 #include "metrics/metrics.h"
 
 namespace aa {
@@ -41,6 +43,14 @@ BENCHMARK_CAPTURE(measure, ssimLuma, [](auto& t, auto& r, auto& e) { return ssim
 BENCHMARK_CAPTURE(measure, ssimRgb, [](auto& t, auto& r, auto& e) { return ssimRgb(t, r, e); });
 BENCHMARK_CAPTURE(measure, ssimMatlab3D, [](auto& t, auto& r, auto& e) { return ssimMatlab3D(t, r, e); });
 BENCHMARK_CAPTURE(measure, flip, [](auto& t, auto& r, auto& e) { return flip(t, r, e); });
+BENCHMARK_CAPTURE(measure, hdrFlip, [](auto& t, auto& r, auto& e) { return hdrFlip(t, r, e); });
+// A frame of a sequence at 30 per second: the reference's part, which all methods share, and a method's.
+BENCHMARK_CAPTURE(measure, cvvdp, [](auto& t, auto& r, auto& e) {
+    static const auto reference = cvvdp({.width = kWidth, .height = kHeight});
+    static const auto test = reference->test();
+    reference->add({r}, e);
+    return test->add({t}, e)[0];
+});
 BENCHMARK_CAPTURE(measure, fourier, [](auto& t, auto& r, auto& e) { return fourierError(t, r, e).fmse; });
 }  // namespace
 }  // namespace aa
