@@ -90,7 +90,9 @@ std::string_view unitOf(const Figure& f) {
     return f.form == FigureForm::decibels ? "dB" : f.form == FigureForm::jod ? "JOD" : "";
 }
 std::string_view spaceOf(const Metric& m) { return m.space == ColourSpace::linear ? "linear" : "encoded"; }
-std::string_view usedBy(const Metric& m) { return m.always ? "every run" : m.byDefault ? "by default" : "when asked for"; }
+std::string_view usedBy(const Metric& m) {
+    return m.always ? "every run" : m.byDefault ? "by default" : "when asked for";
+}
 // The table of docs/metrics.md.
 void printMetricsMarkdown() {
     std::puts("| figure | column | what it is | unit | better | of | measured | ns/px | source |");

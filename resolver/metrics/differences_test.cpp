@@ -31,7 +31,8 @@ Rgb picture(bool test) {
 FrameMetrics figuresOf(const Rgb& test, const Rgb& reference) {
     MeasureOptions options = measureOptions({"mae", "mseLinear", "snrAc", "psnrLuma709", "ssimValid"});
     TileErrors pool;
-    Reference r{reference, reference};
+    Reference r;
+    r.linear = r.encoded = reference;
     return measure(test, &test, r, options, {}, pool);
 }
 
