@@ -82,7 +82,7 @@ void draw(const Options& o) {
             written = {out};
         } else {
             const auto pages = overFrames ? strips(shown, frames, options) : sheet(shown, frame, options, exec);
-            written = writePages(pages, out, "AA Resolve: " + run.shot);
+            written = writePages(pages, out, "AA Resolve: " + run.shot, options.page == PageSize::free);
         }
     });
     for (const auto& file : written) std::printf("%s\n", file.c_str());

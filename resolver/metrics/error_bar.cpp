@@ -212,7 +212,7 @@ std::vector<ErrorParts> errorParts(const TileErrors& errors) {
     std::vector<ErrorParts> all;
     if (errors.sum.empty()) return all;
     const size_t tilesX = errors.columns ? errors.columns : errors.sum.size(), tilesY = errors.sum.size() / tilesX;
-    for (const size_t parts : {16, 9})
+    for (const size_t parts : {size_t(16), size_t(9)})
         if (const auto grid = gridOf(parts, tilesX, tilesY))
             all.push_back(partsOf(errors, tilesX, grid->first, grid->second));
     // Without an interval the means are still to be told.
@@ -252,6 +252,20 @@ Comparison compareMethods(std::span<const ErrorParts> first, std::span<const Err
 }
 Comparison compareMethods(const TileErrors& first, const TileErrors& second) {
     return compareMethods(errorParts(first), errorParts(second));
+}
+
+// An error's estimate is linear in the sum of the halves' noise as the difference of the halves is in their difference,
+// so half of the latter shows how large the former is.
+std::optional<GainInterval> gainOnThisPicture(const ErrorParts& first, const ErrorParts& second) {
+    double noise = 0;
+    for (size_t i = 0; i < first.halves.size(); i++) {
+        const double halves = (second.halves[i] - first.halves[i]) / 2;
+        noise += halves * halves;
+    }
+    const double before = total(first.squares), after = total(second.squares);
+    const double half = student975(first.halves.size()) * std::sqrt(noise);
+    if (!(before > 0 && after - half > 0)) return {};
+    return GainInterval{decibels((after - half) / before), decibels((after + half) / before)};
 }
 
 std::optional<double> errorOverTime(std::span<const FrameSum> frames) {

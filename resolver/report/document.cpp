@@ -121,7 +121,8 @@ DocumentKind documentKindOf(const fs::path& file, const std::string& option) {
                      (file.has_extension() ? ", found '" + file.extension().string() + "'" : ", found none"));
 }
 
-std::vector<fs::path> writePages(const std::vector<Canvas>& pages, const fs::path& file, const std::string& title) {
+std::vector<fs::path> writePages(const std::vector<Canvas>& pages, const fs::path& file, const std::string& title,
+                                 bool firstKeepsName) {
     const DocumentKind kind = documentKindOf(file, "-o");
     if (kind == DocumentKind::pdf) {
         writePdf(pages, file, title);
@@ -129,7 +130,8 @@ std::vector<fs::path> writePages(const std::vector<Canvas>& pages, const fs::pat
     }
     std::vector<fs::path> written;
     for (const Canvas& page : pages) {
-        written.push_back(pages.size() == 1 ? file : numbered(file, written.size() + 1));
+        const bool keepsName = pages.size() == 1 || (firstKeepsName && written.empty());
+        written.push_back(keepsName ? file : numbered(file, written.size() + 1));
         if (kind == DocumentKind::webp)
             writeWebp({page.codes()}, page.width(), page.height(), 1, written.back());
         else

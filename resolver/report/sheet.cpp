@@ -94,9 +94,9 @@ class Rows {
         if (showsTruth(pictures_)) maps_ = o.maps;
         const PageFormat format = formatOf(o.page);
         const int room = format.width > 0 ? format.width - 2 * kSheetMargin - kLabelWidth - kSheetGap : 0;
-        layout_ =
-            rowLayout({shown.run.width, shown.run.height, o.frameColumn, windowsOf(crops_), int(maps_.size()), o.zoom},
-                      room, format.name);
+        layout_ = rowLayout({shown.run.width, shown.run.height, o.frameColumn, windowsOf(crops_), int(maps_.size()),
+                             o.zoom, int(shown.order.size()) + 1},
+                            room, format.name);
         int x = kSheetMargin + kLabelWidth + kSheetGap;
         frameX_ = x;
         if (o.frameColumn) x += layout_.frame.width + kSheetGap;
@@ -289,7 +289,7 @@ int tallest(const std::vector<SheetLabel>& labels, size_t first, size_t last) {
 SheetItem cropNote(const Crop& crop, size_t index, const CellSize& cell, const Theme& theme, int x) {
     const std::string text = nameOf(crop, cell.magnification) + "  (" + std::to_string(crop.window.width) + " x " +
                              std::to_string(crop.window.height) + " px)";
-    return {26, [=, &theme](Canvas& canvas, int y) {
+    return {26, [=](Canvas& canvas, int y) {
                 canvas.fill({x, y + 8, 12, 12}, theme.ofCrop(index));
                 canvas.text(x + 20, y + 19, text, kHeadPx, theme.quiet);
             }};
@@ -317,7 +317,7 @@ Grid gridOf(const std::vector<Cut>& cuts, const SheetMethods& methods, bool trut
         };
         SheetSection block;
         const int heads = tallest(labels, first, last);
-        block.lead.push_back({heads, [=, &theme](Canvas& canvas, int y) {
+        block.lead.push_back({heads, [=](Canvas& canvas, int y) {
                                   for (size_t c = first; c < last; c++)
                                       labels[c].draw(canvas, xOf(c) - 14, y + heads - labels[c].height() + 4);
                               }});
@@ -407,7 +407,7 @@ std::vector<Canvas> strips(const Shown& shown, const std::vector<int>& frames, c
             const auto xOf = [=](size_t f) { return kCells + int(f - first) * (layout.cellWidth + kCellGap); };
             SheetSection section;
             section.lead.push_back(cropNote(cuts.crops[k], k, cell, theme, kSheetMargin));
-            section.lead.push_back({26, [=, &theme](Canvas& canvas, int y) {
+            section.lead.push_back({26, [=](Canvas& canvas, int y) {
                                         for (size_t f = first; f < last; f++)
                                             canvas.text(xOf(f), y + 17, frameWord(frames[f]), kHeadPx, theme.quiet);
                                     }});

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "image/error.h"
+#include "image/io.h"
 #include "report/sheet_pages.h"
 
 namespace aa {
@@ -46,7 +47,14 @@ std::string sizes(const std::vector<Window>& crops) {
 }  // namespace
 
 RowLayout rowLayout(const RowContent& c, int room, const std::string& page) {
-    if (room == 0) return rowOf(c, kTallest, 0);
+    if (room == 0) {
+        constexpr int kHeadAndFoot = 600, kBetween = 130;  // px, the second per row
+        const int most = (kLargestSide - kHeadAndFoot) / c.rows - kBetween;
+        RowLayout l = rowOf(c, kTallest, 0);
+        for (int height = kTallest; l.height > most && height >= kLeastHeight; height -= 8)
+            l = rowOf(c, height, height);
+        return l;
+    }
     for (int height = kTallest; height >= kLeastHeight; height -= 2)
         if (const RowLayout l = rowOf(c, height, height); l.width <= room) return l;
     throw UsageError("--page " + page + ": " + std::to_string((c.frame ? 1 : 0) + c.maps) +

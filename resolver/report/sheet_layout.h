@@ -18,7 +18,8 @@ struct RowContent {
     bool frame;                   // the column of the whole frame
     std::vector<Window> crops;
     int maps;
-    int zoom;  // of the crops; 0: what fits
+    int zoom;      // of the crops; 0: what fits
+    int rows = 1;  // of methods and truth: many are lower than few, since a picture has 16384 px a side at most
 };
 struct RowLayout {
     CellSize frame;  // of maps too

@@ -111,7 +111,8 @@ std::vector<Canvas> sheetPages(const std::vector<SheetSection>& sections, int wi
     const auto foot = pen.wrapped(text.foot, inner - pen.textWidth(mark, kFootPx) - kPageNumber, kFootPx);
     const int head = 10 + int(title.size()) * 36 + (beside ? 0 : int(after.size()) * 24) + int(lines.size()) * 20 + 22;
     const int below = 20 + int(foot.size()) * 19 + 12;
-    const auto pages = flow(sections, head, format.height > 0 ? format.height - below : 0, format.name);
+    // A free sheet ends where a picture does.
+    const auto pages = flow(sections, head, (format.height > 0 ? format.height : kLargestSide) - below, format.name);
 
     std::vector<Canvas> out;
     for (size_t p = 0; p < pages.size(); p++) {

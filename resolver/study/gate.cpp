@@ -85,9 +85,8 @@ std::optional<Interval> overParts(const MethodResult& before, const MethodResult
     if (before.parts.empty() || before.parts.size() != now.parts.size() ||
         before.parts[0].squares.size() != now.parts[0].squares.size())
         return {};
-    const Comparison c = compareMethods(before.parts, now.parts);
-    if (c.why == Unresolved::tooSmall) return {};
-    return Interval{c.gainLow, c.gainHigh, "dB"};  // of PSNR(before) - PSNR(now)
+    const auto gain = gainOnThisPicture(before.parts[0], now.parts[0]);
+    return gain ? std::optional(Interval{gain->low, gain->high, "dB"}) : std::nullopt;
 }
 std::optional<Interval> decibelsOverFrames(const std::vector<FrameSum>& before, const std::vector<FrameSum>& now) {
     if (before.size() != now.size()) return {};

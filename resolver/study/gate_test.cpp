@@ -145,12 +145,15 @@ TEST(Gate, BetterIsNoFailure) {
 }
 TEST(Gate, ATolerableLossPasses) {
     GateOptions o;
-    for (const char* t : {"psnr=60", "ssim=2", "flip=9999%", "tPsnr=60", "flickerStatic=9999%", "relMse=9999%"})
+    for (const char* t : {"psnr=60", "ssim=2", "flip=9999%", "tPsnr=60", "flickerStatic=9999%", "relMse=9999%",
+                          "flipMedian=9999%", "flipFirstQuartile=9999%", "flipThirdQuartile=9999%", "ssimRgb=2"})
         addTolerance(o, t);
     EXPECT_TRUE(gate(base("half_planes"), regressed("half_planes", "alpha=1"), o).passed());
 }
 // Two runs of one method with figures made up.
-RunResults made(std::vector<double> mse, std::vector<double> flip = {}, std::vector<double> tiles = {}) {
+// `apart`: by how much the error of every tile against one half of the truth exceeds that against the other.
+RunResults made(std::vector<double> mse, std::vector<double> flip = {}, std::vector<double> tiles = {},
+                double apart = 0) {
     RunResults run;
     run.shot = "made", run.width = 256, run.height = 128;
     MethodResult m;
@@ -166,14 +169,21 @@ RunResults made(std::vector<double> mse, std::vector<double> flip = {}, std::vec
     std::vector<TileErrors> errors(1);
     errors[0].sum = tiles.empty() ? std::vector<double>(32, mse[0] * 3072 * double(mse.size())) : tiles;
     errors[0].values.assign(32, 3072.0 * double(mse.size()));
+    errors[0].againstA = errors[0].againstB = errors[0].sum;
+    for (size_t i = 0; i < 32; i++) {
+        errors[0].againstA[i] += i / 2 % 2 ? apart / 2 : -apart / 2;
+        errors[0].againstB[i] -= i / 2 % 2 ? apart / 2 : -apart / 2;
+    }
     finish(run, errors);
     run.framesAsked = mse.size();
     return run;
 }
 TEST(Gate, AnIntervalThatHoldsZeroIsNamedAndPasses) {
-    std::vector<double> quiet(32, 3072 * 0.01), noisy = quiet;
-    for (size_t i = 0; i < 32; i++) noisy[i] *= i % 4 < 2 ? 2.5 : 0.02;  // 1 dB worse, but only by its tiles' luck
-    const RunResults a = made({0.01}, {}, quiet), b = made({0.0126}, {}, noisy);
+    std::vector<double> quiet(32, 3072 * 0.01), lost = quiet;
+    for (double& v : lost) v *= 1.26;  // 1 dB
+    const RunResults a = made({0.01}, {}, quiet);
+    // Against one half of the truth that much worse, against the other better: its noise may have done it.
+    const RunResults b = made({0.0126}, {}, lost, 3072 * 0.02);
     const GateReport report = gate(a, b, {});
     EXPECT_TRUE(report.passed());
     EXPECT_EQ(report.count(Verdict::unresolved), 1u);

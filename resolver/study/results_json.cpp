@@ -453,8 +453,8 @@ std::string toJsonText(const RunResults& run) {
 }
 
 void writeResults(const RunResults& run, const fs::path& folder) {
-    writeText(folder / "results.json", toJsonText(run));
     writeText(folder / "results.csv", toCsvText(run));
+    writeText(folder / "results.json", toJsonText(run));  // last: whole results have a whole table beside them
 }
 
 RunResults readResults(const fs::path& path) {

@@ -1,5 +1,7 @@
 #include "study/resume.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <set>
 
@@ -105,7 +107,14 @@ void merge(const Resumption& r, RunResults& results, std::vector<TileErrors>& er
                                    [&](const auto& m) { return m.frames.size() == results.framesAsked; });
 }
 
-Earlier clearEarlier(const RunOptions& o) {
+namespace {
+uint64_t inodeOf(const fs::path& file) {
+    struct stat about = {};
+    return ::stat(file.c_str(), &about) == 0 ? uint64_t(about.st_ino) : 0;
+}
+}  // namespace
+
+Earlier earlierIn(const RunOptions& o) {
     Earlier found;
     std::error_code ignored;
     if (!fs::exists(o.out / "results.json", ignored)) return found;
@@ -122,21 +131,26 @@ Earlier clearEarlier(const RunOptions& o) {
         if (!runs.contains(m.folder)) found.methods.push_back(m.text);
         if (fs::path(m.folder).filename() == m.folder && m.folder != "..") folders.insert(m.folder);
     }
-    const auto clear = [&](const fs::path& folder, bool stays) {
+    const auto find = [&](const fs::path& folder, bool stays) {
         for (fs::directory_iterator it(folder, ignored), end; !ignored && it != end; it.increment(ignored))
             if (it->is_regular_file(ignored) && isPictureName(it->path().filename().string()))
-                fs::remove(it->path(), ignored);
+                found.pictures.emplace_back(it->path(), inodeOf(it->path()));
         ignored.clear();
-        if (!stays) fs::remove(folder, ignored);  // where nothing else lies in it
-        ignored.clear();
+        if (!stays) found.folders.push_back(folder);
     };
     for (const auto& folder : folders) {
-        clear(o.out / folder, runs.contains(folder));
-        for (const auto& kind : before.maps) clear(o.out / "maps" / kind.first / folder, false);
+        find(o.out / folder, runs.contains(folder));
+        for (const auto& kind : before.maps) find(o.out / "maps" / kind.first / folder, false);
     }
     for (const char* file : {"sheet.png", "report.html"})
         if (fs::exists(o.out / file, ignored)) found.files.emplace_back(file);
     return found;
+}
+void clear(const Earlier& earlier) {
+    std::error_code ignored;  // a folder in which something else lies stays
+    for (const auto& [picture, inode] : earlier.pictures)
+        if (inodeOf(picture) == inode) fs::remove(picture, ignored);
+    for (const auto& folder : earlier.folders) fs::remove(folder, ignored);
 }
 
 }  // namespace aa

@@ -20,12 +20,15 @@ Resumption goOnWith(RunResults earlier, const ShotReader& shot, RunOptions& opti
 // The results of what ran now and the kept ones in one, with their tile errors, in the order of Resumption::all.
 void merge(const Resumption& resumption, RunResults& results, std::vector<TileErrors>& errors);
 
-// Removes the pictures and maps that earlier results in options.out name, and nothing else; folders of methods that run
-// now stay. Returns the methods that it had and that do not run now, and names of files made from those results (a
-// sheet, a report), which stay.
+// What earlier results in options.out left: the methods that do not run now, files made from those results (a sheet, a
+// report), which stay, and the pictures and maps that they name.
 struct Earlier {
     std::vector<std::string> methods, files;
+    std::vector<std::pair<std::filesystem::path, uint64_t>> pictures;  // and the inode of each
+    std::vector<std::filesystem::path> folders;                        // of methods and maps that are not made now
 };
-Earlier clearEarlier(const RunOptions& options);
+Earlier earlierIn(const RunOptions& options);
+// Removes those pictures that have not been written anew, and folders that are empty then.
+void clear(const Earlier& earlier);
 
 }  // namespace aa

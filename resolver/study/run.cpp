@@ -82,33 +82,42 @@ void fillWaited(RunResults& run) {
 }  // namespace
 
 namespace {
-// Results as they grow: an earlier run's are replaced before the first frame, and no more than some seconds are lost.
+// Results as they grow: an earlier run's are replaced once the first frame is written, so that a full disk takes
+// nothing, and no more than some seconds are lost.
 class KeepsResults {
   public:
     explicit KeepsResults(const RunOptions& o, bool goesOn = false) : options_(o), started_(goesOn) {}
     void operator()(const RunResults& sofar) {
         constexpr std::chrono::seconds kEvery{5};
         const auto now = std::chrono::steady_clock::now();
-        if (!started_) earlier_ = clearEarlier(options_);
+        if (!started_ && !earlier_) earlier_ = earlierIn(options_);
+        const bool hasPictures = std::any_of(sofar.methods.begin(), sofar.methods.end(), [](const auto& m) {
+            return std::any_of(m.frames.begin(), m.frames.end(), [](const auto& f) { return !f.image.empty(); });
+        });
+        if (!started_ && !hasPictures && !earlier_->pictures.empty()) return;
         if (started_ && now - written_ < kEvery) return;
-        started_ = true, written_ = now;
         RunResults partial = sofar;
         partial.complete = false;
         aa::finish(partial, {});
         writeResults(partial, options_.out);
+        if (!started_) clear(*earlier_);
+        started_ = true, written_ = now;
     }
     void finish(RunResults& results, const std::vector<TileErrors>& errors) const {
         aa::finish(results, errors);
-        results.replacedMethods = earlier_.methods;
-        results.outdatedFiles = earlier_.files;
+        if (earlier_) {
+            results.replacedMethods = earlier_->methods;
+            results.outdatedFiles = earlier_->files;
+        }
         writeResults(results, options_.out);
+        if (earlier_ && !started_) clear(*earlier_);
     }
 
   private:
     const RunOptions& options_;
     bool started_;
     std::chrono::steady_clock::time_point written_{};
-    Earlier earlier_;
+    std::optional<Earlier> earlier_;
 };
 }  // namespace
 

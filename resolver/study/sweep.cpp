@@ -194,14 +194,22 @@ Sweep::Sweep(const ShotReader& shot, const RunOptions& run, const SweepOptions& 
 RunResults Sweep::run(const Progress& progress) {
     RunResults all;
     std::vector<TileErrors> errors;
-    Earlier earlier;
+    std::optional<Earlier> earlier;
     bool started = false;
     run_.checkpoint = [&](const RunResults& sofar) {  // nothing of an earlier run is taken for this one's
-        if (std::exchange(started, true)) return;
-        RunOptions every = run_;
-        for (const auto& part : parts_) every.allMethods.insert(every.allMethods.end(), part.begin(), part.end());
-        earlier = clearEarlier(every);
+        if (started) return;
+        if (!earlier) {
+            RunOptions every = run_;
+            for (const auto& part : parts_) every.allMethods.insert(every.allMethods.end(), part.begin(), part.end());
+            earlier = earlierIn(every);
+        }
+        const bool hasPictures = std::any_of(sofar.methods.begin(), sofar.methods.end(), [](const auto& m) {
+            return std::any_of(m.frames.begin(), m.frames.end(), [](const auto& f) { return !f.image.empty(); });
+        });
+        if (!hasPictures && !earlier->pictures.empty()) return;  // a full disk takes nothing
         writeResults(sofar, run_.out);
+        clear(*earlier);
+        started = true;
     };
     for (size_t i = 0; i < parts_.size() && !progress.interrupted(); i++) {
         run_.methods = parts_[i];
@@ -219,9 +227,12 @@ RunResults Sweep::run(const Progress& progress) {
     }
     all.complete = all.complete && !progress.interrupted();
     run_.checkpoint = nullptr;
-    all.replacedMethods = earlier.methods, all.outdatedFiles = earlier.files;
+    if (earlier) {
+        all.replacedMethods = earlier->methods, all.outdatedFiles = earlier->files;
+    }
     finish(all, errors);
     writeResults(all, run_.out);
+    if (earlier && !started) clear(*earlier);
     return all;
 }
 

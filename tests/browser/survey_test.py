@@ -14,7 +14,7 @@ sys.path.insert(0, str(Path(sys.argv[2]).resolve() / "tests/e2e"))
 BROWSER = sys.argv[3]
 del sys.argv[3]  # unittest reads the rest
 
-from program import ProgramTest, main  # noqa: E402
+from program import ROOT, ProgramTest, main  # noqa: E402
 
 PARTICIPANTS = 7
 METHODS = ("noaa", "fxaa311", "taaSimplest", "uncharted", "smaa1x")
@@ -223,6 +223,9 @@ class Survey(ProgramTest):
     def visit(self, page: Path, source: str, key: dict) -> dict:
         # No participant reads a method's name, in no part of the file.
         readable = re.sub(r'"data:image/png;base64,[^"]*"', "", source)
+        common = (ROOT / "resolver/report/web/common.js").read_text()  # in every page alike
+        self.assertIn(common, readable)
+        readable = readable.replace(common, "")
         for method in METHODS + ("ground truth",):
             self.assertNotIn(method, readable)
         by_code = []

@@ -206,7 +206,7 @@ class BadInput(ProgramTest):
         self.refused(3, "filter", "noaa", tiff, png, says=("in.tif",))
 
     def test_usage(self) -> None:
-        self.refused(2, "run", self.shot, says=("--method",))
+        self.refused(2, "run", self.shot, says=("--out",))
         self.refused(2, "nonsense", says=("nonsense",))
         self.refused(
             2, "filter", "uncharted", "a.png", "b.png", says=("needs more than one image",)

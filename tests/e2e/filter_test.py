@@ -84,7 +84,18 @@ class Filter(ProgramTest):
         ]
         self.assertLess(65025 * difference, 1.0, "a code at most")
         self.aaresolve(
-            "run", shot, "-m", "noaa", "-o", out, "-q", "--write", "png", "--dither", "-j", 1
+            "run",
+            shot,
+            "-m",
+            "noaa",
+            "-o",
+            out,
+            "-q",
+            "--write",
+            "png",
+            "--write-frames",
+            "all",
+            "--dither",
         )
         self.same(out / "noaa" / RUN_FRAME.replace(".exr", ".png"), one)
         self.refused(

@@ -22,7 +22,16 @@ class Sweep(ProgramTest):
         out, again = self.folder / "sweep", self.folder / "run"
         vary = ("--vary", "kmin=0.5,0.9", "--vary", "sharpen=none,norm")
         done = self.aaresolve(
-            "sweep", self.shot, "-m", "uncharted:kmax=0.95", *vary, "-o", out, "-q"
+            "sweep",
+            self.shot,
+            "-m",
+            "uncharted:kmax=0.95",
+            *vary,
+            "-o",
+            out,
+            "-q",
+            "--metrics",
+            "flip,ssimRgb",
         )
         texts = [m["text"] for m in self.results(out)["methods"]]
         expected = [
@@ -144,6 +153,8 @@ class Sweep(ProgramTest):
             "uncharted",
             "--vary",
             "kmin=0..1",
+            "--vary",
+            "kmax=1",
             "-o",
             whole,
             "-q",
@@ -151,7 +162,7 @@ class Sweep(ProgramTest):
         )
         self.assertEqual(
             [m["text"] for m in self.results(whole)["methods"][1:]],
-            ["uncharted:kmin=0", "uncharted:kmin=1"],
+            ["uncharted:kmin=0,kmax=1", "uncharted:kmin=1,kmax=1"],
         )
 
     def test_usage(self) -> None:

@@ -113,7 +113,8 @@ void readBlenderFrame(Bytes input) {
     importFrame(file, plan, entry, {}, counts);
     BlenderExr whole(file);
     whole.choose(plan.layer, plan.view);
-    cryptomatteNames(whole);
+    std::vector<std::string> notes;
+    cryptomatteNames(whole, notes);
     headerPitfalls(whole);
 }
 void readPicture(Bytes input) { readImage(folder().write("picture.png", input)); }
@@ -213,6 +214,7 @@ const std::vector<Target>& targets() {
         {"question", readQuestion, true},
         {"parts", readParts},
         {"frame", readFrame},
+        {"truth", readTruth},
         {"blender", readBlenderFrame},
         {"png", readPicture, false, mendPng},
     };

@@ -47,8 +47,8 @@ double meanOf(const Rgb& image) {
 }
 
 TEST_P(Torture, ConstantsStayConstant) {  // T1 to T3
-    // PQ ends at 10000.
-    for (const float v : {0.0f, 0.5f, GetParam() == "donut" ? 1e4f : 1e6f}) {
+    // PQ ends at 10000, and half floats at 65504.
+    for (const float v : {0.0f, 0.5f, GetParam() == "donut" ? 1e4f : GetParam() == "fsr2n" ? 6e4f : 1e6f}) {
         RunningMethod m = method();
         for (int n = 0; n < 12; n++) m.resolve(frame(n, [&](int, int, int) { return v; }, {0.3, -0.4}), {}, {});
         Rgb expected;

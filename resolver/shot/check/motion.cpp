@@ -13,8 +13,8 @@ constexpr double kOtherSurfaceRatio = 0.85;  // the same without ids: a surface 
 constexpr double kStaticTolerancePx = 1e-3;  // Cycles' Vector pass: 2e-4 px
 constexpr double kLeastHitRate = 0.93;       // shadows of ids: hair and wires thinner than a pixel miss now and then
 // Colours decide only where many pixels show them: a shadow that crosses one plain surface moves otherwise than it.
-constexpr double kTellingColour = 0.02;     // by which the errors of two variants differ
-constexpr double kLeastTellingShare = 0.1;  // of the pixels; textures give more than a third, a shadow's edge few
+constexpr double kTellingColour = 0.02;      // by which the errors of two variants differ
+constexpr double kLeastTellingShare = 0.03;  // of the pixels; textures give more than a third, a shadow's edge few
 
 // Variant bits: 1 = turn x, 2 = turn y, 4 = exchange the axes first.
 dvec2 varied(dvec2 mv, size_t variant) {
