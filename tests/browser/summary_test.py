@@ -3,18 +3,11 @@ and from 390 to 1400 px wide: tables, their sorting, the choice of a figure, cha
 
 from __future__ import annotations
 
-import html
 import json
 import re
-import subprocess
-import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(sys.argv[2]).resolve() / "tests/e2e"))
-BROWSER = sys.argv[3]
-del sys.argv[3]  # unittest reads the rest
-
-from program import ProgramTest, main  # noqa: E402
+from visited_page import PageTest, main
 
 METHODS = ("noaa", "fxaa311", "smaa1x", "taaSimplest")
 # Reads the page as it is, then sorts by the mean and asks for another figure.
@@ -44,32 +37,7 @@ VISITOR = """
 """
 
 
-class SummaryPage(ProgramTest):
-    def open(self, page: Path, width: int, dark: bool) -> dict:
-        done = subprocess.run(
-            [
-                BROWSER,
-                "--headless=new",
-                "--no-sandbox",
-                "--disable-gpu",
-                f"--user-data-dir={self.folder}/profile",
-                "--host-resolver-rules=MAP * ~NOTFOUND",
-                "--enable-logging=stderr",
-                f"--window-size={width},900",
-                *(["--blink-settings=preferredColorScheme=0"] if dark else []),
-                "--dump-dom",
-                page.as_uri(),
-            ],
-            capture_output=True,
-            text=True,
-            timeout=100,
-        )
-        said = [line for line in done.stderr.splitlines() if "CONSOLE" in line]
-        self.assertFalse([s for s in said if re.search("error|uncaught|failed|refused", s, re.I)])
-        collected = re.search(r'<pre id="collected">(.+?)</pre>', done.stdout, re.S)
-        self.assertTrue(collected, done.stderr[-2000:])
-        return json.loads(html.unescape(collected[1]))
-
+class SummaryPage(PageTest):
     def test_methods_over_scenes(self) -> None:
         methods = [word for m in METHODS for word in ("-m", m)]
         for scene, frames in (("moving", 4), ("half_planes", 4)):
@@ -92,7 +60,8 @@ class SummaryPage(ProgramTest):
         visited.write_text(page.read_text() + VISITOR)
         grounds = set()
         for width, dark in ((1400, False), (390, True)):
-            told = self.open(visited, width, dark)
+            look = ["--blink-settings=preferredColorScheme=0"] if dark else []
+            told = self.collected(self.open(visited, f"--window-size={width},900", *look))
             grounds.add(told["ground"])
             self.assertLessEqual(told["overflow"], 0, told["width"])
         self.assertEqual(len(grounds), 2)

@@ -3,20 +3,14 @@ by a script as seven participants, left and taken up again; the saved answers ar
 
 from __future__ import annotations
 
-import html
 import json
 import re
-import subprocess
-import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(sys.argv[2]).resolve() / "tests/e2e"))
-BROWSER = sys.argv[3]
-del sys.argv[3]  # unittest reads the rest
-
-from program import ROOT, ProgramTest, main  # noqa: E402
+from visited_page import ROOT, PageTest, main
 
 PARTICIPANTS = 7
+ALL_TIMERS = "--virtual-time-budget=10000000"
 METHODS = ("noaa", "fxaa311", "taaSimplest", "uncharted", "smaa1x")
 QUESTIONS = """# Stills, then one that is played.
 rank noaa fxaa311 taaSimplest uncharted zoom=2 region=20,30,200,120 text=Look at the edges.
@@ -146,31 +140,7 @@ def pcg32(seed: int):
         yield (shifted >> turn | shifted << ((32 - turn) & 31)) & 0xFFFFFFFF
 
 
-class Survey(ProgramTest):
-    def open(self, page: Path, *options: str) -> str:
-        """The page's document after its scripts ran; nothing may be wrong in its console."""
-        done = subprocess.run(
-            [
-                BROWSER,
-                "--headless=new",
-                "--no-sandbox",
-                "--disable-gpu",
-                f"--user-data-dir={self.folder}/profile",
-                "--host-resolver-rules=MAP * ~NOTFOUND",
-                "--enable-logging=stderr",
-                "--virtual-time-budget=10000000",
-                *options,
-                "--dump-dom",
-                page.as_uri(),
-            ],
-            capture_output=True,
-            text=True,
-            timeout=170,
-        )
-        said = [line for line in done.stderr.splitlines() if "CONSOLE" in line]
-        self.assertFalse([s for s in said if re.search("error|uncaught|failed|refused", s, re.I)])
-        return done.stdout
-
+class Survey(PageTest):
     def make(self) -> tuple[Path, dict]:
         self.synth("moving", self.folder / "shot", (240, 160), 4)
         methods = [word for m in METHODS for word in ("-m", m)]
@@ -242,10 +212,8 @@ class Survey(ProgramTest):
             by_code.append(mine)
         visited = self.folder / "visited.html"
         visited.write_text(source + VISITOR.replace("WISHES", json.dumps(by_code)))
-        drawn = self.open(visited)
-        collected = re.search(r'<pre id="collected">(.+?)</pre>', drawn, re.S)
-        self.assertTrue(collected, "the visitor did not come to the end")
-        return json.loads(html.unescape(collected[1]))
+        drawn = self.open(visited, ALL_TIMERS, timeout=170)
+        return self.collected(drawn)
 
     def blinding_can_be_undone(self, key: dict, answers: list[dict]) -> None:
         for a in answers:
@@ -311,7 +279,7 @@ class Survey(ProgramTest):
             self.assertAlmostEqual(found[method], value, msg=method)
 
     def scores_are_drawn(self, page: Path) -> None:
-        drawn = self.open(page)
+        drawn = self.open(page, ALL_TIMERS, timeout=170)
         self.assertEqual(len(re.findall(r'<canvas [^>]*style="[^"]*(?:width|height)', drawn)), 8)
         pictures = re.findall(r'<img src="data:image/png;base64,[^"]+" alt="([^"]+)"', drawn)
         self.assertEqual(len(pictures), 12)

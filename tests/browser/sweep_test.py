@@ -2,18 +2,11 @@
 
 from __future__ import annotations
 
-import html
-import json
 import re
-import subprocess
-import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(sys.argv[2]) / "tests/e2e"))
+from visited_page import PageTest, main
 
-from program import ProgramTest, main  # noqa: E402
-
-BROWSER = sys.argv[3]
 # Chooses every figure, each parameter along, and reads what is drawn.
 VISITOR = """
 <pre id="collected"></pre>
@@ -50,30 +43,7 @@ VISITOR = """
 """
 
 
-class Sweep(ProgramTest):
-    def open(self, page: Path, *options: str) -> str:
-        done = subprocess.run(
-            [
-                BROWSER,
-                "--headless=new",
-                "--no-sandbox",
-                "--disable-gpu",
-                f"--user-data-dir={self.folder}/profile",
-                "--host-resolver-rules=MAP * ~NOTFOUND",
-                "--enable-logging=stderr",
-                "--virtual-time-budget=20000",
-                *options,
-                "--dump-dom",
-                page.as_uri(),
-            ],
-            capture_output=True,
-            text=True,
-            timeout=120,
-        )
-        said = [line for line in done.stderr.splitlines() if "CONSOLE" in line]
-        self.assertFalse([s for s in said if re.search("error|uncaught|failed|refused", s, re.I)])
-        return done.stdout
-
+class Sweep(PageTest):
     def test_curves_and_heat_map(self) -> None:
         shot, out = self.folder / "shot", self.folder / "out"
         self.synth("moving", shot, (96, 64), 5, "-q")
@@ -90,10 +60,10 @@ class Sweep(ProgramTest):
         visited.write_text((out / "sweep.html").read_text() + VISITOR)
         for window in ("1400,900", "800,900", "390,844"):
             for dark in ((), ("--force-dark-mode", "--blink-settings=preferredColorScheme=0")):
-                drawn = self.open(visited, f"--window-size={window}", *dark)
-                collected = re.search(r'<pre id="collected">(.+?)</pre>', drawn, re.S)
-                self.assertTrue(collected)
-                self.told(json.loads(html.unescape(collected[1])), drawn)
+                drawn = self.open(
+                    visited, "--virtual-time-budget=20000", f"--window-size={window}", *dark
+                )
+                self.told(self.collected(drawn), drawn)
 
     def told(self, told: dict, drawn: str) -> None:
         self.assertTrue(told["drawn"])
