@@ -60,7 +60,7 @@ void printTable(const RunResults& r) {
     });
     size_t width = 6;
     for (const auto* m : rows) width = std::max(width, m->text.size());
-    const auto noaa = std::find_if(r.methods.begin(), r.methods.end(), [](const auto& m) { return m.id == "noaa"; });
+    const auto noaa = noaaOf(r);
     const bool withFlip = std::any_of(rows.begin(), rows.end(),
                                       [](const auto* m) { return m->pooled && m->pooled->mean.figure("flip"); });
     std::printf("%-*s %9s %8s %16s %9s %8s%s %8s %13s %8s %8s%s\n", int(width), "method", "PSNR dB", "gain dB",
@@ -68,9 +68,8 @@ void printTable(const RunResults& r) {
                 "state MB", r.device ? "  device ms" : "");
     for (const auto* m : rows) {
         std::printf("%-*s", int(width), m->text.c_str());
-        const auto versus = noaa == r.methods.end() || m == &*noaa
-                                ? std::nullopt
-                                : compared(r, size_t(m - r.methods.data()), size_t(noaa - r.methods.begin()));
+        const auto index = size_t(m - r.methods.data());
+        const auto versus = !noaa || index == *noaa ? std::nullopt : compared(r, index, *noaa);
         if (r.isReference(*m)) {
             std::printf(" %9s %8s", "reference", "-");
         } else if (m->pooled) {
@@ -122,11 +121,10 @@ void printTable(const RunResults& r) {
     if (r.truthClipped)
         std::printf("truth: %zu of %zu pixels (%.3g %%) exceed the display and are clipped\n", r.truthClipped->pixels,
                     r.truthClipped->of, 100 * double(r.truthClipped->pixels) / double(r.truthClipped->of));
-    if (r.pairs.size() && noaa != r.methods.end())
+    if (!r.pairs.empty() && noaa)
         std::puts(
             "gain: over noaa; resolved: whether the interval excludes 0, else why not: noise = the truth's, varies = "
-            "the "
-            "difference varies over the picture, too small = too little picture to judge");
+            "the difference varies over the picture, too small = too little picture to judge");
     std::puts("ns/px: processor time of all threads, median and quartiles over the frames");
     for (const std::string& s : {leftOutInWords(r), busyInWords(r)})
         if (!s.empty()) std::puts(s.c_str());

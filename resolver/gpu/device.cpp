@@ -13,6 +13,7 @@
 #include <vulkan/vulkan_raii.hpp>
 
 #include "gpu/shader_library.h"
+#include "image/lower_case.h"
 
 namespace aa::gpu {
 namespace {
@@ -141,11 +142,6 @@ std::vector<Found> devicesOf(const vk::raii::Instance& instance) {
     for (size_t i = 0; i < all.size(); i++) all[i].info.index = i;
     return all;
 }
-std::string lower(std::string_view text) {
-    std::string low(text);
-    std::transform(low.begin(), low.end(), low.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return low;
-}
 // The device that `text` asks for.
 size_t choose(const std::vector<Found>& devices, std::string_view text) {
     if (text != "vulkan" && !text.starts_with("vulkan:"))
@@ -165,7 +161,7 @@ size_t choose(const std::vector<Found>& devices, std::string_view text) {
     for (const Found& d : devices) {
         const bool fits = isNumber         ? d.info.index == number
                           : wanted.empty() ? d.info.lacks.empty()
-                                           : lower(d.info.name).find(lower(wanted)) != std::string::npos;
+                                           : lowerCase(d.info.name).find(lowerCase(wanted)) != std::string::npos;
         if (!fits) continue;
         if (!d.info.lacks.empty()) throw DeviceError("--device: " + d.info.name + " lacks " + d.info.lacks);
         return d.info.index;

@@ -4,20 +4,16 @@
 #include <map>
 
 #include "image/error.h"
+#include "image/lower_case.h"
 
 namespace aa {
 namespace {
-std::string lower(std::string_view text) {
-    std::string s(text);
-    for (char& c : s) c = char(std::tolower(static_cast<unsigned char>(c)));
-    return s;
-}
 // Views and passes may stand behind other dots: only the last parts the component from its layer.
 std::string prefixOf(const std::string& channel) {
     const size_t dot = channel.rfind('.');
     return dot == std::string::npos ? "" : channel.substr(0, dot);
 }
-std::string letterOf(const std::string& channel) { return lower(channel.substr(channel.rfind('.') + 1)); }
+std::string letterOf(const std::string& channel) { return lowerCase(channel.substr(channel.rfind('.') + 1)); }
 std::string lastWord(const std::string& name) { return name.substr(name.rfind('.') + 1); }
 
 const std::string* withLetter(const ExrLayer& layer, std::initializer_list<const char*> letters) {
@@ -55,7 +51,7 @@ const ExrLayer* named(const std::vector<ExrLayer>& layers, const ExrFile& file, 
     if (const auto* l = only(layers, [&](const auto& x) { return x.name == asked; })) return l;
     if (const auto* l = only(layers, [&](const auto& x) { return lastWord(x.name) == asked; })) return l;
     if (const auto* l = only(layers, [&](const auto& x) { return file.parts()[x.part].name == asked; })) return l;
-    return only(layers, [&](const auto& x) { return lower(x.name) == lower(asked); });
+    return only(layers, [&](const auto& x) { return lowerCase(x.name) == lowerCase(asked); });
 }
 }  // namespace
 

@@ -3,14 +3,9 @@
 #include <algorithm>
 #include <string>
 
+#include "image/lower_case.h"
+
 namespace aa {
-namespace {
-std::string lowered(std::string_view text) {
-    std::string s(text);
-    for (char& c : s) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
-    return s;
-}
-}  // namespace
 
 const std::vector<Family>& families() {
     static const std::vector<Family> all = {
@@ -25,7 +20,7 @@ const std::vector<Family>& families() {
 }
 
 const Family* familyCalled(std::string_view name) {
-    const std::string wanted = lowered(name);
+    const std::string wanted = lowerCase(name);
     for (const Family& f : families())
         if (f.name == wanted || std::count(f.alsoCalled.begin(), f.alsoCalled.end(), wanted)) return &f;
     return nullptr;
@@ -33,9 +28,9 @@ const Family* familyCalled(std::string_view name) {
 
 bool isSearchedBy(std::string_view word, std::string_view id, std::string_view title, std::string_view family) {
     if (word.size() < 2) return false;  // a letter is in every other name
-    const std::string wanted = lowered(word);
+    const std::string wanted = lowerCase(word);
     const Family* const called = familyCalled(word);
-    return lowered(id).find(wanted) != std::string::npos || lowered(title).find(wanted) != std::string::npos ||
+    return lowerCase(id).find(wanted) != std::string::npos || lowerCase(title).find(wanted) != std::string::npos ||
            (called && called->name == family);
 }
 

@@ -23,9 +23,8 @@ constexpr const char* kNeeds[] = {"From colour alone", "With depth, motion and t
 }  // namespace
 
 std::vector<AdviceGroup> adviceOf(const RunResults& run) {
-    const auto noaa = std::find_if(run.methods.begin(), run.methods.end(),
-                                   [](const MethodResult& m) { return m.id == "noaa" && m.pooled; });
-    if (noaa == run.methods.end()) return {};
+    const auto noaa = noaaOf(run);
+    if (!noaa) return {};
     std::vector<size_t> cheapestFirst;
     for (size_t i = 0; i < run.methods.size(); i++)
         if (const MethodResult& m = run.methods[i];
@@ -40,7 +39,7 @@ std::vector<AdviceGroup> adviceOf(const RunResults& run) {
     std::vector<AdviceGroup> groups;
     for (int need = 0; need < 3; need++) {
         AdviceGroup g{kNeeds[need], {}};
-        size_t best = size_t(noaa - run.methods.begin());
+        size_t best = *noaa;
         std::vector<size_t> seen;
         for (const size_t i : cheapestFirst) {
             if (needOf(run.methods[i]) > need) continue;
@@ -61,23 +60,19 @@ std::vector<AdviceGroup> adviceOf(const RunResults& run) {
 }
 
 std::vector<std::string> adviceInWords(const RunResults& run) {
-    const auto noaa = size_t(
-        std::find_if(run.methods.begin(), run.methods.end(), [](const MethodResult& m) { return m.id == "noaa"; }) -
-        run.methods.begin());
+    const auto noaa = noaaOf(run);  // there where any advice is
     std::vector<std::string> all;
     for (const AdviceGroup& g : adviceOf(run)) {
         std::string s = g.needs + ": ";
         for (size_t i = 0; i < g.steps.size(); i++) {
             const AdviceStep& step = g.steps[i];
             const MethodResult& m = run.methods[step.method];
-            const auto gain = compared(run, step.method, noaa);
+            const auto gain = compared(run, step.method, *noaa);
             s += (i ? "; " : "") + std::string("from ") + shortNumber(step.nsPerPixel) + " ns/px " + m.text;
             if (gain) s += " (" + signedDecibelNumber(gain->gainDb) + " dB, " + intervalInWords(*gain) + ")";
-            if (!step.alike.empty()) {
-                s += ", not told apart from ";
-                for (size_t k = 0; k < step.alike.size(); k++)
-                    s += (k == 0 ? "" : k + 1 == step.alike.size() ? " and " : ", ") + run.methods[step.alike[k]].text;
-            }
+            std::vector<std::string> alike;
+            for (const size_t k : step.alike) alike.push_back(run.methods[k].text);
+            if (!alike.empty()) s += ", not told apart from " + enumerated(alike);
         }
         all.push_back(s + ".");
     }

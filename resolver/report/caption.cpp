@@ -9,19 +9,9 @@
 namespace aa {
 namespace {
 
-const MethodResult* findNoaa(const RunResults& run) {
-    for (const auto& m : run.methods)
-        if (m.id == "noaa" && m.pooled) return &m;
-    return nullptr;
-}
 bool resolved(const RunResults& run, size_t a, size_t b) {
-    const Comparison* c = comparisonOf(run, a, b);
+    const auto c = compared(run, a, b);
     return !c || c->resolved;
-}
-std::string joined(const std::vector<std::string>& parts) {
-    std::string all;
-    for (size_t i = 0; i < parts.size(); i++) all += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
-    return all;
 }
 // What the errors are errors of.
 std::string truth(const RunResults& run) {
@@ -30,8 +20,9 @@ std::string truth(const RunResults& run) {
 // Over no anti-aliasing, with its interval.
 std::string gain(const RunResults& run, const MethodResult& m) {
     std::string s = signedDecibelNumber(*m.pooled->gainDb) + " dB";
-    if (const MethodResult* noaa = findNoaa(run); noaa && noaa != &m)
-        if (const auto c = compared(run, size_t(&m - run.methods.data()), size_t(noaa - run.methods.data()));
+    const auto method = size_t(&m - run.methods.data());
+    if (const auto noaa = noaaOf(run); noaa && *noaa != method)
+        if (const auto c = compared(run, method, *noaa);
             c && c->why != Unresolved::tooSmall && c->why != Unresolved::equal)
             s += " (95 %: " + intervalInWords(*c) + ")";
     return s;
@@ -57,7 +48,7 @@ std::string bestSentence(const RunResults& run, const std::vector<size_t>& order
                     (run.protocol.reference.empty() ? "the ground truth" : run.protocol.reference) + ": PSNR " +
                     decibels(best.pooled->mean.psnr);
     if (best.pooled->gainDb && best.id != "noaa") s += ", " + gain(run, best) + " over no anti-aliasing";
-    if (!peers.empty()) s += "; " + joined(peers) + " cannot be told apart from it";
+    if (!peers.empty()) s += "; " + enumerated(peers) + " cannot be told apart from it";
     return s + ".";
 }
 
@@ -81,7 +72,7 @@ std::string harmSentence(const RunResults& run, const std::vector<size_t>& order
         if (i != noaa && *run.methods[i].pooled->gainDb < 0 && resolved(run, i, noaa))
             worse.push_back(run.methods[i].text + " (" + gain(run, run.methods[i]) + ")");
     if (worse.empty()) return {};
-    return joined(worse) + (worse.size() == 1 ? " is" : " are") + " farther from " + truth(run) +
+    return enumerated(worse) + (worse.size() == 1 ? " is" : " are") + " farther from " + truth(run) +
            " than no anti-aliasing at all.";
 }
 
@@ -228,10 +219,9 @@ std::vector<std::string> captions(const RunResults& run) {
     const auto add = [&](std::string sentence) {
         if (!sentence.empty()) all.push_back(std::move(sentence));
     };
-    if (const MethodResult* noaa = findNoaa(run)) {
-        const auto index = size_t(noaa - run.methods.data());
-        add(cheapestSentence(run, order, index));
-        add(harmSentence(run, order, index));
+    if (const auto noaa = noaaOf(run)) {
+        add(cheapestSentence(run, order, *noaa));
+        add(harmSentence(run, order, *noaa));
     }
     for (auto& s : sharpenSentences(run, order)) add(s);
     add(ghostSentence(run));

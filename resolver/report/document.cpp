@@ -10,6 +10,7 @@
 #include "image/apng.h"
 #include "image/error.h"
 #include "image/io.h"
+#include "image/lower_case.h"
 #include "image/own_module.h"
 #include "image/palette.h"
 
@@ -33,8 +34,7 @@ constexpr Ending kEndings[] = {{".png", DocumentKind::png, ""},
                                {".apng", DocumentKind::apng, ""}};
 
 const Ending* endingOf(const fs::path& file) {
-    std::string ending = file.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    const std::string ending = lowerCase(file.extension().string());
     const auto found =
         std::find_if(std::begin(kEndings), std::end(kEndings), [&](const Ending& e) { return ending == e.text; });
     return found == std::end(kEndings) ? nullptr : found;

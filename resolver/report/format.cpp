@@ -92,10 +92,10 @@ std::string leftOutInWords(const RunResults& run) {
            " s: " + names + ". Ask for them by --metrics " + names + ".";
 }
 
-const Comparison* comparisonOf(const RunResults& run, size_t a, size_t b) {
-    for (const auto& p : run.pairs)
-        if ((p.first == a && p.second == b) || (p.first == b && p.second == a)) return &p.comparison;
-    return nullptr;
+std::string enumerated(const std::vector<std::string>& parts) {
+    std::string all;
+    for (size_t i = 0; i < parts.size(); i++) all += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
+    return all;
 }
 
 }  // namespace aa

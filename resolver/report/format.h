@@ -1,6 +1,7 @@
 // Figures as text, the same in sheet, report and terminal.
 #pragma once
 #include <string>
+#include <vector>
 
 #include "study/results.h"
 
@@ -18,9 +19,8 @@ std::string similarity(double v);  // 6 decimals: three saturate (conventions 13
 
 // What was run, in one line: size, jitter and whether its block is centred, machine.
 std::string runLine(const RunResults& run);
-// The comparison of two methods in either order (its signs are those of the stored pair); null without truth.
-const Comparison* comparisonOf(const RunResults& run, size_t a, size_t b);
-std::string intervalInWords(const Comparison& c);  // +0.12 to +0.34; "none" where there is none
+std::string enumerated(const std::vector<std::string>& parts);  // "a, b and c"
+std::string intervalInWords(const Comparison& c);               // +0.12 to +0.34; "none" where there is none
 // What was measured of the machine while methods were timed, where it was too busy for their times to be trusted.
 std::string busyInWords(const RunResults& run);
 // What is not measured since it would have taken too long, and how to ask for it.

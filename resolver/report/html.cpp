@@ -56,12 +56,7 @@ std::string reportHtml(const RunResults& run, const ViewerData& viewer, const st
     data["region"] = run.protocol.region ? json(inWords(*run.protocol.region)) : json(nullptr);
     for (auto& m : data["run"]["methods"]) m.erase("tileSquares");  // the page has no use for them
     data["errorScale"] = kErrorScale;
-    constexpr int kColours = 256;
-    for (int i = 0; i < kColours; i++) {
-        const Colour c = errorColour(double(i) / (kColours - 1));
-        data["errorColours"].push_back(
-            {int(std::lround(255 * c[0])), int(std::lround(255 * c[1])), int(std::lround(255 * c[2]))});
-    }
+    data["errorColours"] = errorColoursJson();
     data["figures"] = json::array();
     for (const Figure* f : figuresIn(run))
         if (!f->ofSquares && f->spreadOf.empty())  // those of squares have columns of their own

@@ -1,8 +1,10 @@
 #include "report/page.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "image/colour_map.h"
 #include "image/json_text.h"
 #include "metrics/metric.h"
 #include "report/format.h"
@@ -37,6 +39,15 @@ std::string forScript(const nlohmann::ordered_json& j) {
     return safe;
 }
 
+nlohmann::ordered_json errorColoursJson() {
+    constexpr int kColours = 256;
+    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+    for (int i = 0; i < kColours; i++) {
+        const Colour c = errorColour(double(i) / (kColours - 1));
+        all.push_back({int(std::lround(255 * c[0])), int(std::lround(255 * c[1])), int(std::lround(255 * c[2]))});
+    }
+    return all;
+}
 nlohmann::ordered_json figureJson(const Figure& f) {
     return {
         {"name", f.name}, {"title", f.title}, {"better", f.higherIsBetter ? "high" : "low"}, {"form", name(f.form)}};

@@ -13,6 +13,8 @@ struct Figure;
 std::string filled(std::string_view page, std::initializer_list<std::pair<std::string_view, std::string_view>> places);
 // Inside <script>, "</" would end it; "<\/" is the same JSON string.
 std::string forScript(const nlohmann::ordered_json& j);
+// The 256 colours of errors, [red, green, blue] in codes, of 0 first.
+nlohmann::ordered_json errorColoursJson();
 // A figure of the program's table as the pages read it.
 nlohmann::ordered_json figureJson(const Figure& figure);
 std::string forHtml(const std::string& text);

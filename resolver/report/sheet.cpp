@@ -487,6 +487,9 @@ std::vector<Canvas> loopOfFrames(const Shown& shown, const std::vector<int>& fra
                                 {shown.run.shot, titleOf(shown.run), runLine(shown.run),
                                  footOf(methods, false, cuts.truth, !o.crops.empty())},
                                 shown.run.programVersion);
+        if (pages.size() > 1)
+            throw UsageError(
+                "the loop would be higher than a picture can be; choose fewer methods or crops, or a smaller --zoom");
         all.push_back(std::move(pages[0]));
     }
     return all;

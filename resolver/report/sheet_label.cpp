@@ -51,15 +51,10 @@ bool competes(const MethodResult& m, const std::string& key) {
 }
 // "95 %: +3.02 to +3.40"; empty without noaa.
 std::string gainInterval(const RunResults& run, size_t method) {
-    for (const auto& p : run.pairs) {
-        const bool first = p.first == method && run.methods[p.second].id == "noaa";
-        const bool second = p.second == method && run.methods[p.first].id == "noaa";
-        if (!first && !second) continue;
-        const double low = first ? p.comparison.gainLow : -p.comparison.gainHigh,
-                     high = first ? p.comparison.gainHigh : -p.comparison.gainLow;
-        return "95 %: " + signedDecibelNumber(low) + " to " + signedDecibelNumber(high);
-    }
-    return {};
+    const auto noaa = noaaOf(run);
+    const auto c = noaa ? compared(run, method, *noaa) : std::nullopt;
+    if (!c) return {};
+    return "95 %: " + signedDecibelNumber(c->gainLow) + " to " + signedDecibelNumber(c->gainHigh);
 }
 }  // namespace
 
@@ -133,8 +128,7 @@ SheetLabel SheetLabel::full(const SheetMethods& methods, size_t place, int width
         }
     }
     if (place > 0)
-        if (const Comparison* c = comparisonOf(methods.run, methods.order[place - 1], methods.order[place]);
-            c && !c->resolved)
+        if (const auto c = compared(methods.run, methods.order[place - 1], methods.order[place]); c && !c->resolved)
             label.text("not resolved from the row above", 13, theme.note);
     return label;
 }

@@ -152,7 +152,7 @@ std::string summaryHtml(const std::vector<NamedRun>& runs) {
     }
     for (const SummaryRow& row : summary.rows) data["rows"].push_back(rowJson(runs, row, figures));
     for (const RunAgainstRun& r : against) data["against"].push_back(againstJson(r));
-    return filled(web::summaryHtml, {{"css", web::css},
+    return filled(web::summaryHtml, {{"head", pageHead("AA Resolve: several runs", {web::css})},
                                      {"data", forScript(data)},
                                      {"chart", web::chart},
                                      {"common", web::common},

@@ -15,31 +15,12 @@ namespace aa {
 namespace {
 using json = nlohmann::ordered_json;
 
-std::string joined(const std::vector<std::string>& parts) {
-    std::string all;
-    for (size_t i = 0; i < parts.size(); i++) all += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
-    return all;
-}
 bool isNumber(const std::string& text) {
     char* end = nullptr;
     std::strtod(text.c_str(), &end);
     return !text.empty() && *end == 0;
 }
 bool isNumeric(const SweepAxis& axis) { return std::all_of(axis.values.begin(), axis.values.end(), isNumber); }
-
-// PSNR of one method less that of another, with its interval.
-struct Gain {
-    double value, low, high;
-    bool resolved;
-};
-std::optional<Gain> gainOf(const RunResults& run, size_t a, size_t b) {
-    for (const auto& p : run.pairs) {
-        const Comparison& c = p.comparison;
-        if (p.first == a && p.second == b) return Gain{c.gainDb, c.gainLow, c.gainHigh, c.resolved};
-        if (p.first == b && p.second == a) return Gain{-c.gainDb, -c.gainHigh, -c.gainLow, c.resolved};
-    }
-    return {};
-}
 
 // A swept method's variants that have figures, best first.
 struct Base {
@@ -59,7 +40,7 @@ std::vector<Base> basesOf(const RunResults& run, const SweepOptions& o) {
         std::stable_sort(b.ranked.begin(), b.ranked.end(),
                          [&](const auto& x, const auto& y) { return mseOf(run, x) < mseOf(run, y); });
         for (size_t i = 1; i < b.ranked.size(); i++)
-            if (const Comparison* c = comparisonOf(run, b.ranked[0].method, b.ranked[i].method); c && !c->resolved)
+            if (const auto c = compared(run, b.ranked[0].method, b.ranked[i].method); c && !c->resolved)
                 b.alike.push_back(b.ranked[i]);
     }
     return bases;
@@ -84,14 +65,8 @@ std::string alikeInWords(const std::vector<SweepAxis>& axes, std::vector<SweepVa
         parts.push_back(axes.size() > 1 ? "(" + valuesAt(axes, alike[i]) + ")"
                                         : (i == 0 ? axes[0].name + "=" : "") + axes[0].values[alike[i].at[0]]);
     if (alike.size() > kListed) parts.push_back(std::to_string(alike.size() - kListed) + " more");
-    return joined(parts);
+    return enumerated(parts);
 }
-size_t noaaOf(const RunResults& run) {
-    const auto found =
-        std::find_if(run.methods.begin(), run.methods.end(), [](const auto& m) { return m.id == "noaa"; });
-    return size_t(found - run.methods.begin());
-}
-
 // Whether the parameter takes no value beyond this one.
 bool isLimit(const std::string& method, const std::string& name, double value) {
     const MethodSpec spec = parseMethod(method);
@@ -104,10 +79,11 @@ void tell(const RunResults& run, const std::vector<SweepAxis>& axes, const Base&
     const SweepVariant& best = b.ranked.front();
     const auto& pooled = *run.methods[best.method].pooled;
     std::string s = b.text + ": " + valuesAt(axes, best) + " is best, PSNR " + decibels(pooled.mean.psnr);
-    if (const auto gain = gainOf(run, best.method, noaaOf(run)))
-        s += ", " + signedDecibelNumber(gain->value) +
-             " dB over no anti-aliasing (95 %: " + signedDecibelNumber(gain->low) + " to " +
-             signedDecibelNumber(gain->high) + ")";
+    const auto noaa = noaaOf(run);
+    if (const auto gain = noaa ? compared(run, best.method, *noaa) : std::nullopt)
+        s += ", " + signedDecibelNumber(gain->gainDb) +
+             " dB over no anti-aliasing (95 %: " + signedDecibelNumber(gain->gainLow) + " to " +
+             signedDecibelNumber(gain->gainHigh) + ")";
     if (b.alike.empty())
         s += b.ranked.size() > 1 ? "; every other value is worse by more than the error bar." : ".";
     else if (b.alike.size() + 1 == b.ranked.size())
@@ -116,10 +92,10 @@ void tell(const RunResults& run, const std::vector<SweepAxis>& axes, const Base&
         s += "; " + alikeInWords(axes, b.alike) + " cannot be told apart from it.";
     words.push_back(s);
     if (b.ranked.size() > 1)
-        if (const auto loss = gainOf(run, b.ranked.back().method, best.method))
+        if (const auto loss = compared(run, b.ranked.back().method, best.method))
             words.push_back(b.text + ": the worst is " + valuesAt(axes, b.ranked.back()) + ", " +
-                            signedDecibelNumber(loss->value) + " dB against the best (95 %: " +
-                            signedDecibelNumber(loss->low) + " to " + signedDecibelNumber(loss->high) + ").");
+                            signedDecibelNumber(loss->gainDb) + " dB against the best (95 %: " +
+                            signedDecibelNumber(loss->gainLow) + " to " + signedDecibelNumber(loss->gainHigh) + ").");
     for (size_t a = 0; a < axes.size(); a++) {
         const size_t at = best.at[a], count = axes[a].values.size();
         if (count < 3 || !isNumeric(axes[a]) || (at > 0 && at + 1 < count)) continue;
@@ -132,8 +108,8 @@ json numberOrName(double v) {
     if (const char* word = nonFinite(v)) return word;
     return v;
 }
-json interval(const std::optional<Gain>& g) {
-    return g ? json{{"value", g->value}, {"low", g->low}, {"high", g->high}} : json();
+json interval(const std::optional<Comparison>& c) {
+    return c ? json{{"value", c->gainDb}, {"low", c->gainLow}, {"high", c->gainHigh}} : json();
 }
 
 // Figures that curves and maps can show, besides those with intervals.
@@ -170,10 +146,10 @@ std::vector<std::string> sweepWords(const RunResults& run, const SweepOptions& o
     if (judged.size() < 2) return words;
     std::stable_sort(judged.begin(), judged.end(),
                      [&](const Base* x, const Base* y) { return mseOf(run, x->ranked[0]) < mseOf(run, y->ranked[0]); });
-    const auto gain = gainOf(run, judged[0]->ranked[0].method, judged[1]->ranked[0].method);
+    const auto gain = compared(run, judged[0]->ranked[0].method, judged[1]->ranked[0].method);
     std::string s = "Of the methods at their best, " + judged[0]->text + " is first";
     if (gain)
-        s += ", " + signedDecibelNumber(gain->value) + " dB against " + judged[1]->text +
+        s += ", " + signedDecibelNumber(gain->gainDb) + " dB against " + judged[1]->text +
              (gain->resolved ? "" : ", which cannot be told apart from it");
     words.insert(words.begin(), s + ".");
     return words;
@@ -194,7 +170,7 @@ std::string sweepHtml(const RunResults& run, const SweepOptions& o) {
     data["figures"] = json::array();
     data["variants"] = json::array();
     const auto bases = basesOf(run, o);
-    const size_t noaa = noaaOf(run);
+    const auto noaa = noaaOf(run);
     for (const SweepVariant& v : sweepVariants(run, o)) {
         const auto base = std::find_if(bases.begin(), bases.end(), [&](const Base& b) { return b.text == v.base; });
         const bool best = !base->ranked.empty() && base->ranked[0].method == v.method;
@@ -205,22 +181,20 @@ std::string sweepHtml(const RunResults& run, const SweepOptions& o) {
                     {"at", v.at},
                     {"best", best},
                     {"alike", alike}};
-        one["gain"] = interval(gainOf(run, v.method, noaa));
+        one["gain"] = interval(noaa ? compared(run, v.method, *noaa) : std::nullopt);
         if (best)
-            one["toBest"] = interval(Gain{0, 0, 0, false});
+            one["toBest"] = interval(Comparison{});
         else
-            one["toBest"] =
-                interval(base->ranked.empty() ? std::optional<Gain>() : gainOf(run, v.method, base->ranked[0].method));
+            one["toBest"] = interval(base->ranked.empty() ? std::optional<Comparison>()
+                                                          : compared(run, v.method, base->ranked[0].method));
         one["values"] = figuresOf(run.methods[v.method], run, data["figures"]);
         data["variants"].push_back(std::move(one));
     }
-    for (int i = 0; i < 256; i++) {
-        const Colour c = errorColour(i / 255.0);
-        data["colours"].push_back({int(255 * c[0] + 0.5f), int(255 * c[1] + 0.5f), int(255 * c[2] + 0.5f)});
-    }
+    data["colours"] = errorColoursJson();
     return filled(web::sweepHtml, {{"head", pageHead("AA Resolve: sweep of " + run.shot, {web::css})},
                                    {"chart", web::chart},
                                    {"common", web::common},
+                                   {"tables", web::tables},
                                    {"js", web::sweepJs},
                                    {"data", forScript(data)}});
 }

@@ -7,17 +7,14 @@
 
 #include "image/error.h"
 #include "image/io.h"
+#include "image/lower_case.h"
 #include "shot/import/folder.h"
 
 namespace aa {
 namespace fs = std::filesystem;
 namespace {
 
-std::string lowerExtension(const fs::path& file) {
-    std::string e = file.extension().string();
-    std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return e;
-}
+std::string lowerExtension(const fs::path& file) { return lowerCase(file.extension().string()); }
 
 // One picture for each frame.
 std::map<int, fs::path> picturesIn(const fs::path& folder) {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "image/error.h"
+#include "image/json_text.h"
 #include "study/json_number.h"
 #include "study/non_finite.h"
 
@@ -82,9 +83,7 @@ struct Interval {
     std::string unit;
 };
 std::optional<Interval> overParts(const MethodResult& before, const MethodResult& now) {
-    if (before.parts.empty() || before.parts.size() != now.parts.size() ||
-        before.parts[0].squares.size() != now.parts[0].squares.size())
-        return {};
+    if (!comparable(before, now)) return {};
     const auto gain = gainOnThisPicture(before.parts[0], now.parts[0]);
     return gain ? std::optional(Interval{gain->low, gain->high, "dB"}) : std::nullopt;
 }
@@ -94,17 +93,11 @@ std::optional<Interval> decibelsOverFrames(const std::vector<FrameSum>& before, 
     return c ? std::optional(Interval{c->low, c->high, "dB"}) : std::nullopt;
 }
 std::vector<FrameSum> sumsOf(const MethodResult& m, const Held& h) {
+    if (h.name == "ghostMse") return ghostSums(m);
+    if (h.name != "tPsnr") return flickerSums(m);
     std::vector<FrameSum> sums;
-    for (const FrameResult& f : m.frames) {
-        if (h.name == "tPsnr") {
-            if (f.metrics && f.temporal) sums.push_back({f.metrics->mse, 1});
-        } else if (f.temporal) {
-            const bool ghost = h.name == "ghostMse";
-            const FrameSum s = ghost ? FrameSum{f.temporal->ghostSquares, f.temporal->ghostValues}
-                                     : FrameSum{f.temporal->flickerSquares, f.temporal->flickerPixels};
-            if (s.count > 0) sums.push_back(s);
-        }
-    }
+    for (const FrameResult& f : m.frames)
+        if (f.metrics && f.temporal) sums.push_back({f.metrics->mse, 1});
     return sums;
 }
 std::optional<Interval> overFrames(const MethodResult& before, const MethodResult& now, const Held& h) {
@@ -281,13 +274,10 @@ GateReport gate(const RunResults& base, const RunResults& now, const GateOptions
     held.insert(held.end(), heldOverTime().begin(), heldOverTime().end());
     if (times) held.push_back(heldTime());
 
-    const auto find = [](const RunResults& run, const std::string& text) {
-        const auto it = std::find_if(run.methods.begin(), run.methods.end(), [&](auto& m) { return m.text == text; });
-        return it == run.methods.end() ? nullptr : &*it;
-    };
     const Verdict missing = options.allowMissing ? Verdict::within : Verdict::missing;
     for (const MethodResult& before : base.methods) {
-        const MethodResult* after = find(now, before.text);
+        const auto at = indexOf(now, before.text);
+        const MethodResult* after = at ? &now.methods[*at] : nullptr;
         if (!after) {
             if (options.allowMissing)
                 report.notes.push_back("method " + before.text + " is missing");
@@ -322,7 +312,7 @@ GateReport gate(const RunResults& base, const RunResults& now, const GateOptions
         }
     }
     for (const MethodResult& m : now.methods)
-        if (!find(base, m.text)) report.rows.push_back({.method = m.text, .figure = "", .verdict = Verdict::added});
+        if (!indexOf(base, m.text)) report.rows.push_back({.method = m.text, .figure = "", .verdict = Verdict::added});
     return report;
 }
 
@@ -351,7 +341,7 @@ std::string toJsonText(const GateReport& report) {
         row["words"] = r.inWords();
         if (!r.rerun.empty()) row["rerun"] = r.rerun;
     }
-    return j.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
+    return jsonText(j) + "\n";
 }
 
 namespace {

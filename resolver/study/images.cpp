@@ -54,7 +54,7 @@ void writeMaps(const RunningMethod& m, const Reference& measured, int frame, con
         const PlaneF values = kind->drawValues ? sequenceMap(*kind) : PlaneF();
         if (kind->drawValues && values.empty()) continue;
         const fs::path folder = o.out / "maps" / kind->name / m.spec.folderName();
-        makeWritableFolder(folder);
+        if (!fs::is_directory(folder)) makeWritableFolder(folder);
         writePng(folder / frameName(frame, ".png"),
                  kind->drawValues ? kind->drawValues(values)
                                   : kind->draw(region ? part : m.outEncoded, measured.encoded, o.exec));

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "metrics/error_bar.h"
@@ -172,8 +173,16 @@ struct RunResults {
 std::string rerunLine(const RunResults& run, const MethodResult& method);
 // "interrupted after 8 of 16 frames"; empty for a run that is complete.
 std::string incompleteInWords(const RunResults& run);
+// Indices into RunResults::methods: the method written so; no anti-aliasing, where it was measured.
+std::optional<size_t> indexOf(const RunResults& run, std::string_view text);
+std::optional<size_t> noaaOf(const RunResults& run);
 // The comparison of methods a and b, turned as it is asked for: gains are positive where `a` is nearer to the truth.
 std::optional<Comparison> compared(const RunResults& run, size_t a, size_t b);
+// Whether two methods, of one run or of two runs of one shot, were judged by the same parts of the picture.
+bool comparable(const MethodResult& a, const MethodResult& b);
+// Of the frames that have them: TemporalMetrics::ghostMse and the square of its flicker along the motion.
+std::vector<FrameSum> ghostSums(const MethodResult& method);
+std::vector<FrameSum> flickerSums(const MethodResult& method);
 
 // Fills medians, ns/px, pooled figures, gains and pairs. `errors[m]` are the tile errors of methods[m] summed over the
 // frames with truth; those that are empty leave what a method has (MethodResult::parts of an earlier run).

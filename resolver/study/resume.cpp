@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "image/error.h"
 #include "study/external.h"
@@ -33,8 +34,8 @@ void requireSame(const RunResults& a, const RunResults& b, const RunOptions& o) 
     same("what is measured and written", "'" + a.asked + "'", "'" + b.asked + "'");
 }
 const MethodResult* find(const RunResults& run, const std::string& text) {
-    const auto it = std::find_if(run.methods.begin(), run.methods.end(), [&](const auto& m) { return m.text == text; });
-    return it == run.methods.end() ? nullptr : &*it;
+    const auto i = indexOf(run, text);
+    return i ? &run.methods[*i] : nullptr;
 }
 MethodSpec specOf(const MethodResult& m, const Protocol& protocol) {
     return m.family == kExternalFamily ? externalMethod(m.id, m.source, protocol.display) : parseMethod(m.text);
@@ -114,43 +115,53 @@ uint64_t inodeOf(const fs::path& file) {
 }
 }  // namespace
 
-Earlier earlierIn(const RunOptions& o) {
-    Earlier found;
+Earlier::Earlier(const RunOptions& o) {
     std::error_code ignored;
-    if (!fs::exists(o.out / "results.json", ignored)) return found;
+    if (!fs::exists(o.out / "results.json", ignored)) return;
     RunResults before;
     try {
         before = readResults(o.out);
     } catch (const InputError&) {
-        return found;  // nobody knows what it names
+        return;  // nobody knows what it names
     }
     std::set<std::string> runs, folders = {"truth"};
     for (const MethodSpec& spec : o.every()) runs.insert(spec.folderName());
     if (o.protocol.reference.empty()) runs.insert("truth");
     for (const MethodResult& m : before.methods) {
-        if (!runs.contains(m.folder)) found.methods.push_back(m.text);
+        if (!runs.contains(m.folder)) methods_.push_back(m.text);
         if (fs::path(m.folder).filename() == m.folder && m.folder != "..") folders.insert(m.folder);
     }
     const auto find = [&](const fs::path& folder, bool stays) {
         for (fs::directory_iterator it(folder, ignored), end; !ignored && it != end; it.increment(ignored))
             if (it->is_regular_file(ignored) && isPictureName(it->path().filename().string()))
-                found.pictures.emplace_back(it->path(), inodeOf(it->path()));
+                pictures_.emplace_back(it->path(), inodeOf(it->path()));
         ignored.clear();
-        if (!stays) found.folders.push_back(folder);
+        if (!stays) emptied_.push_back(folder);
     };
     for (const auto& folder : folders) {
         find(o.out / folder, runs.contains(folder));
         for (const auto& kind : before.maps) find(o.out / "maps" / kind.first / folder, false);
     }
     for (const char* file : {"sheet.png", "report.html"})
-        if (fs::exists(o.out / file, ignored)) found.files.emplace_back(file);
-    return found;
+        if (fs::exists(o.out / file, ignored)) files_.emplace_back(file);
 }
-void clear(const Earlier& earlier) {
+bool Earlier::mayBeReplacedBy(const RunResults& sofar) const {
+    const auto hasPicture = [](const FrameResult& f) { return !f.image.empty(); };
+    return isCleared_ || pictures_.empty() ||
+           std::any_of(sofar.methods.begin(), sofar.methods.end(), [&](const MethodResult& m) {
+               return std::any_of(m.frames.begin(), m.frames.end(), hasPicture);
+           });
+}
+void Earlier::clear() {
+    if (std::exchange(isCleared_, true)) return;
     std::error_code ignored;  // a folder in which something else lies stays
-    for (const auto& [picture, inode] : earlier.pictures)
+    for (const auto& [picture, inode] : pictures_)
         if (inodeOf(picture) == inode) fs::remove(picture, ignored);
-    for (const auto& folder : earlier.folders) fs::remove(folder, ignored);
+    for (const auto& folder : emptied_) fs::remove(folder, ignored);
+}
+void Earlier::tell(RunResults& results) const {
+    results.replacedMethods = methods_;
+    results.outdatedFiles = files_;
 }
 
 }  // namespace aa

@@ -20,15 +20,24 @@ Resumption goOnWith(RunResults earlier, const ShotReader& shot, RunOptions& opti
 // The results of what ran now and the kept ones in one, with their tile errors, in the order of Resumption::all.
 void merge(const Resumption& resumption, RunResults& results, std::vector<TileErrors>& errors);
 
-// What earlier results in options.out left: the methods that do not run now, files made from those results (a sheet, a
-// report), which stay, and the pictures and maps that they name.
-struct Earlier {
-    std::vector<std::string> methods, files;
-    std::vector<std::pair<std::filesystem::path, uint64_t>> pictures;  // and the inode of each
-    std::vector<std::filesystem::path> folders;                        // of methods and maps that are not made now
+// Earlier results in options.out, which this run replaces: not before a picture of its own is written, so that a full
+// disk takes nothing.
+class Earlier {
+  public:
+    explicit Earlier(const RunOptions& options);
+    // Whether results so far may be written in their place.
+    bool mayBeReplacedBy(const RunResults& sofar) const;
+    // Once replaced: removes the pictures and maps that they name and that have not been written anew, and folders that
+    // are empty then.
+    void clear();
+    // The methods that do not run now, and files made from those results (a sheet, a report), which stay.
+    void tell(RunResults& results) const;
+
+  private:
+    std::vector<std::string> methods_, files_;
+    std::vector<std::pair<std::filesystem::path, uint64_t>> pictures_;  // and the inode of each
+    std::vector<std::filesystem::path> emptied_;                        // of methods and maps that are not made now
+    bool isCleared_ = false;
 };
-Earlier earlierIn(const RunOptions& options);
-// Removes those pictures that have not been written anew, and folders that are empty then.
-void clear(const Earlier& earlier);
 
 }  // namespace aa

@@ -79,43 +79,36 @@ void fillWaited(RunResults& run) {
         for (const auto& f : m.frames) wall += f.wallSeconds, processor += f.seconds;
     if (wall > 0) run.load->waited = std::max(0.0, 1 - processor / wall);
 }
-}  // namespace
-
-namespace {
-// Results as they grow: an earlier run's are replaced once the first frame is written, so that a full disk takes
-// nothing, and no more than some seconds are lost.
+// Results as they grow: no more than some seconds are lost. An earlier run's are replaced, unless this one goes on with
+// them.
 class KeepsResults {
   public:
-    explicit KeepsResults(const RunOptions& o, bool goesOn = false) : options_(o), started_(goesOn) {}
+    explicit KeepsResults(const RunOptions& o, bool goesOn = false) : options_(o), goesOn_(goesOn) {}
     void operator()(const RunResults& sofar) {
         constexpr std::chrono::seconds kEvery{5};
         const auto now = std::chrono::steady_clock::now();
-        if (!started_ && !earlier_) earlier_ = earlierIn(options_);
-        const bool hasPictures = std::any_of(sofar.methods.begin(), sofar.methods.end(), [](const auto& m) {
-            return std::any_of(m.frames.begin(), m.frames.end(), [](const auto& f) { return !f.image.empty(); });
-        });
-        if (!started_ && !hasPictures && !earlier_->pictures.empty()) return;
-        if (started_ && now - written_ < kEvery) return;
+        if (!goesOn_ && !earlier_) earlier_.emplace(options_);
+        if (earlier_ && !earlier_->mayBeReplacedBy(sofar)) return;
+        if (now - written_ < kEvery) return;
         RunResults partial = sofar;
         partial.complete = false;
         aa::finish(partial, {});
-        writeResults(partial, options_.out);
-        if (!started_) clear(*earlier_);
-        started_ = true, written_ = now;
+        write(partial);
+        written_ = now;
     }
-    void finish(RunResults& results, const std::vector<TileErrors>& errors) const {
+    void finish(RunResults& results, const std::vector<TileErrors>& errors) {
         aa::finish(results, errors);
-        if (earlier_) {
-            results.replacedMethods = earlier_->methods;
-            results.outdatedFiles = earlier_->files;
-        }
-        writeResults(results, options_.out);
-        if (earlier_ && !started_) clear(*earlier_);
+        if (earlier_) earlier_->tell(results);
+        write(results);
     }
 
   private:
+    void write(const RunResults& results) {
+        writeResults(results, options_.out);
+        if (earlier_) earlier_->clear();
+    }
     const RunOptions& options_;
-    bool started_;
+    bool goesOn_;
     std::chrono::steady_clock::time_point written_{};
     std::optional<Earlier> earlier_;
 };

@@ -14,14 +14,18 @@ struct OverTime {
     std::vector<FrameSum> ghost, flicker, rejected;
 };
 OverTime overTime(const MethodResult& m) {
-    OverTime o;
-    for (const auto& f : m.frames) {
+    OverTime o{ghostSums(m), flickerSums(m), {}};
+    for (const auto& f : m.frames)
         if (f.rejected && f.rejected->count > 0) o.rejected.push_back(*f.rejected);
-        if (!f.temporal) continue;
-        if (f.temporal->ghostValues > 0) o.ghost.push_back({f.temporal->ghostSquares, f.temporal->ghostValues});
-        if (f.temporal->flickerPixels > 0) o.flicker.push_back({f.temporal->flickerSquares, f.temporal->flickerPixels});
-    }
     return o;
+}
+template <class Get>
+std::vector<FrameSum> sumsOf(const MethodResult& m, Get get) {
+    std::vector<FrameSum> sums;
+    for (const auto& f : m.frames)
+        if (f.temporal)
+            if (const FrameSum s = get(*f.temporal); s.count > 0) sums.push_back(s);
+    return sums;
 }
 void addErrorsOverTime(RunResults& run) {
     std::vector<OverTime> all;
@@ -167,6 +171,28 @@ std::string incompleteInWords(const RunResults& run) {
 
 bool RunResults::jitterCentred() const { return std::abs(jitterMeanPx[0]) < 1e-4 && std::abs(jitterMeanPx[1]) < 1e-4; }
 
+std::vector<FrameSum> ghostSums(const MethodResult& m) {
+    return sumsOf(m, [](const TemporalFrame& t) { return FrameSum{t.ghostSquares, t.ghostValues}; });
+}
+std::vector<FrameSum> flickerSums(const MethodResult& m) {
+    return sumsOf(m, [](const TemporalFrame& t) { return FrameSum{t.flickerSquares, t.flickerPixels}; });
+}
+
+std::optional<size_t> indexOf(const RunResults& run, std::string_view text) {
+    for (size_t i = 0; i < run.methods.size(); i++)
+        if (run.methods[i].text == text) return i;
+    return {};
+}
+std::optional<size_t> noaaOf(const RunResults& run) {
+    for (size_t i = 0; i < run.methods.size(); i++)
+        if (run.methods[i].id == "noaa" && run.methods[i].pooled) return i;
+    return {};
+}
+bool comparable(const MethodResult& a, const MethodResult& b) {
+    return !a.parts.empty() && a.parts.size() == b.parts.size() &&
+           a.parts[0].squares.size() == b.parts[0].squares.size();
+}
+
 std::optional<Comparison> compared(const RunResults& run, size_t a, size_t b) {
     const auto pair = std::find_if(run.pairs.begin(), run.pairs.end(), [&](const PairResult& p) {
         return (p.first == a && p.second == b) || (p.first == b && p.second == a);
@@ -182,7 +208,6 @@ std::optional<Comparison> compared(const RunResults& run, size_t a, size_t b) {
 
 void finish(RunResults& run, const std::vector<TileErrors>& errors) {
     const double noise = run.truthNoise.value_or(0);
-    const MethodResult* noaa = nullptr;
     for (auto& m : run.methods) {
         std::vector<double> onDevice;
         for (const auto& f : m.frames)
@@ -193,8 +218,9 @@ void finish(RunResults& run, const std::vector<TileErrors>& errors) {
         }
         fillTimes(m, double(run.width) * run.height);
         m.pooled = pool(m, noise);
-        if (m.id == "noaa" && m.pooled) noaa = &m;
     }
+    const auto plain = noaaOf(run);
+    const MethodResult* noaa = plain ? &run.methods[*plain] : nullptr;
     if (noaa)
         for (auto& m : run.methods)
             if (m.pooled)
@@ -209,10 +235,6 @@ void finish(RunResults& run, const std::vector<TileErrors>& errors) {
         run.methods[i].parts = errorParts(errors[i]);
     }
     run.pairs.clear();
-    const auto comparable = [](const MethodResult& a, const MethodResult& b) {
-        return !a.parts.empty() && a.parts.size() == b.parts.size() &&
-               a.parts[0].squares.size() == b.parts[0].squares.size();
-    };
     for (size_t i = 0; i < run.methods.size(); i++)
         for (size_t k = i + 1; k < run.methods.size(); k++)
             if (comparable(run.methods[i], run.methods[k]))

@@ -21,16 +21,6 @@ std::set<int> judgedFrames(const RunResults& r) {
             if (f.judged && f.metrics) frames.insert(f.frame);
     return frames;
 }
-std::optional<size_t> indexOf(const RunResults& r, const std::string& text) {
-    for (size_t i = 0; i < r.methods.size(); i++)
-        if (r.methods[i].text == text) return i;
-    return {};
-}
-std::optional<size_t> noaaOf(const RunResults& r) {
-    for (size_t i = 0; i < r.methods.size(); i++)
-        if (r.methods[i].id == "noaa" && r.methods[i].pooled) return i;
-    return {};
-}
 // Which of two results, told by what differs.
 std::vector<std::string> differencesOf(const RunResults& a, const RunResults& b) {
     std::vector<std::string> all;
@@ -172,9 +162,7 @@ std::vector<RunAgainstRun> againstEachOther(const std::vector<NamedRun>& runs) {
                     continue;
                 }
                 const MethodResult& old = a.methods[*i];
-                if (!m.pooled || !old.pooled || m.parts.empty() || m.parts.size() != old.parts.size() ||
-                    m.parts[0].squares.size() != old.parts[0].squares.size())
-                    continue;
+                if (!m.pooled || !old.pooled || !comparable(m, old)) continue;
                 r.changes.push_back({m.text, old.pooled->mean.psnr, m.pooled->mean.psnr,
                                      compareMethods(m.parts, old.parts), old.nsPerPixel, m.nsPerPixel});
             }

@@ -195,21 +195,18 @@ RunResults Sweep::run(const Progress& progress) {
     RunResults all;
     std::vector<TileErrors> errors;
     std::optional<Earlier> earlier;
-    bool started = false;
+    bool isWritten = false;
     run_.checkpoint = [&](const RunResults& sofar) {  // nothing of an earlier run is taken for this one's
-        if (started) return;
+        if (isWritten) return;
         if (!earlier) {
             RunOptions every = run_;
             for (const auto& part : parts_) every.allMethods.insert(every.allMethods.end(), part.begin(), part.end());
-            earlier = earlierIn(every);
+            earlier.emplace(every);
         }
-        const bool hasPictures = std::any_of(sofar.methods.begin(), sofar.methods.end(), [](const auto& m) {
-            return std::any_of(m.frames.begin(), m.frames.end(), [](const auto& f) { return !f.image.empty(); });
-        });
-        if (!hasPictures && !earlier->pictures.empty()) return;  // a full disk takes nothing
+        if (!earlier->mayBeReplacedBy(sofar)) return;
         writeResults(sofar, run_.out);
-        clear(*earlier);
-        started = true;
+        earlier->clear();
+        isWritten = true;
     };
     for (size_t i = 0; i < parts_.size() && !progress.interrupted(); i++) {
         run_.methods = parts_[i];
@@ -227,12 +224,10 @@ RunResults Sweep::run(const Progress& progress) {
     }
     all.complete = all.complete && !progress.interrupted();
     run_.checkpoint = nullptr;
-    if (earlier) {
-        all.replacedMethods = earlier->methods, all.outdatedFiles = earlier->files;
-    }
     finish(all, errors);
+    if (earlier) earlier->tell(all);
     writeResults(all, run_.out);
-    if (earlier && !started) clear(*earlier);
+    if (earlier) earlier->clear();
     return all;
 }
 

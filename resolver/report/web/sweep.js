@@ -5,13 +5,11 @@
   const $ = (id) => document.getElementById(id);
   const { axes, bases, variants } = data;
   const best = variants.find((v) => v.best) || variants[0];
-  const minus = (text) => text.replace("-", "−");
-  const number = (v) => (v == null ? "–" : typeof v === "string" ? v : minus(String(Number(v.toPrecision(5)))));
-  const signed = (v) => (v > 0 ? "+" : "") + minus(v.toFixed(2));
+  const number = (v) => (v == null ? "–" : typeof v === "string" ? v : String(Number(v.toPrecision(5))).replace("-", "−"));
 
   // Figures with an interval first: gain over no anti-aliasing, and what is lost against the best of the same method.
   const figures = [
-    { name: "gain", title: "Gain over no anti-aliasing, dB", better: "high", of: (v) => v.gain, has: "the 95 % interval over tiles of 32 × 32 px, widened by what the truth’s noise may hide" },
+    { name: "gain", title: "Gain over no anti-aliasing, dB", better: "high", of: (v) => v.gain, has: "its 95 % interval" },
     { name: "toBest", title: "Difference from the best value, dB", better: "high", of: (v) => v.toBest, has: "the 95 % interval of the difference; where it holds 0, the value cannot be told apart from the best" },
     ...data.figures.map((f) => ({ ...f, of: (v) => (v.values[f.name] == null ? null : { value: v.values[f.name] }), has: null })),
   ].filter((f) => variants.some((v) => f.of(v)));

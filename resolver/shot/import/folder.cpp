@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "image/error.h"
+#include "image/lower_case.h"
 #include "shot/import/blender_exr.h"
 
 namespace aa {
@@ -14,11 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 constexpr int kLargestFrame = 1048574;  // Blender's MAXFRAME
 
-std::string lowerExtension(const fs::path& file) {
-    std::string e = file.extension().string();
-    std::transform(e.begin(), e.end(), e.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return e;
-}
+std::string lowerExtension(const fs::path& file) { return lowerCase(file.extension().string()); }
 int toFrame(std::string_view digits) {
     int n = -1;
     const auto [end, failed] = std::from_chars(digits.data(), digits.data() + digits.size(), n);
