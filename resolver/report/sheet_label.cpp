@@ -16,7 +16,16 @@ struct Shown {
     std::string name, key, value, unit;
     bool higherIsBetter;
     double number;
+    std::string spread = {};  // over the picture, where it is known
 };
+// "quartiles 0.0431, 0.0813, 0.145"
+std::string spreadOf(const Figure& figure, const RunResults& run, const MethodResult& m) {
+    std::string all;
+    for (const Figure* f : figuresIn(run))
+        if (const auto v = m.pooled->mean.figure(f->name); v && f->spreadOf == figure.name)
+            all += (all.empty() ? "quartiles " : ", ") + shortNumber(*v);
+    return all;
+}
 std::optional<double> flickerOf(const RunResults& run, const MethodResult& m) {
     if (!m.temporal) return {};
     const auto flicker = run.isStatic ? m.temporal->flickerStatic : m.temporal->flickerMoving;
@@ -29,10 +38,9 @@ std::vector<Shown> figuresOf(const RunResults& run, const MethodResult& m) {
         const double psnr = m.pooled->mean.psnr;
         all.push_back({"PSNR", "psnr", decibelNumber(psnr), "dB", true, psnr});
         for (const Figure* f : figuresIn(run))
-            if (!f->ofSquares)
-                if (const auto v = m.pooled->mean.figure(f->name))
-                    all.push_back(
-                        {std::string(f->title), std::string(f->name), shown(*f, *v), "", f->higherIsBetter, *v});
+            if (const auto v = m.pooled->mean.figure(f->name); v && !f->ofSquares && f->spreadOf.empty())
+                all.push_back({std::string(f->title), std::string(f->name), shown(*f, *v), "", f->higherIsBetter, *v,
+                               spreadOf(*f, run, m)});
     }
     if (m.nsPerPixel > 0) all.push_back({"time", "time", shortNumber(m.nsPerPixel), "ns/px", false, m.nsPerPixel});
     if (m.deviceSecondsMedian)
@@ -94,6 +102,12 @@ void SheetLabel::figure(const std::string& name, const std::string& value, const
     if (!beside) text(name, kNamePx, theme_->quiet);
     lines_.push_back({beside ? name : "", value, unit, colour, size, 23, size > 16, best});
 }
+// Under the figure before it.
+void SheetLabel::small(const std::string& words) {
+    lines_.back().stepPx = 19;
+    text(words, 13, theme_->quiet);
+    lines_.back().stepPx = 21;
+}
 // The parameters or the stages on lines of their own: smaa1x / preset=ULTRA, accumReject / +fill=smaa1x.
 void SheetLabel::names(const MethodResult& m, int sizePx) {
     const size_t cut = m.text.find_first_of(":+");
@@ -118,14 +132,12 @@ SheetLabel SheetLabel::full(const SheetMethods& methods, size_t place, int width
         const bool isBest = best != methods.best.end() && best->second == s.value && competes(m, s.key);
         const Colour colour = s.key == "ghosts" ? (s.number <= 1 ? theme.better : theme.worse) : theme.ink;
         label.figure(s.name, s.value, s.unit, colour, isBest);
+        if (!s.spread.empty()) label.small(s.spread);
         if (s.key != "psnr" || !m.pooled->gainDb || m.id == "noaa") continue;
         label.figure("over noaa", signedDecibelNumber(*m.pooled->gainDb), "dB",
                      *m.pooled->gainDb >= 0 ? theme.better : theme.worse, false);
-        if (const std::string interval = gainInterval(methods.run, methods.order[place]); !interval.empty()) {
-            label.lines_.back().stepPx = 19;
-            label.text(interval, 13, theme.quiet);
-            label.lines_.back().stepPx = 21;
-        }
+        if (const std::string interval = gainInterval(methods.run, methods.order[place]); !interval.empty())
+            label.small(interval);
     }
     if (place > 0)
         if (const auto c = compared(methods.run, methods.order[place - 1], methods.order[place]); c && !c->resolved)

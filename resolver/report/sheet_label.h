@@ -44,6 +44,7 @@ class SheetLabel {
     void text(const std::string& text, int sizePx, Colour colour, bool bold = false);
     void figure(const std::string& name, const std::string& value, const std::string& unit, Colour colour, bool best);
     void names(const MethodResult& method, int sizePx);
+    void small(const std::string& words);
     int width_;
     const Theme* theme_;
     const Canvas* pen_;

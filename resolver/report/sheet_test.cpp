@@ -235,6 +235,19 @@ TEST(Sheet, NamesAreWholeAndTheBestIsMarked) {
         EXPECT_EQ(stars, 2);  // PSNR, time; noaa's time does not count
     }
 }
+TEST(Sheet, QuartilesStandUnderTheirFigure) {
+    Drawn d;
+    MethodResult& m = d.run.methods[2];
+    m.pooled->mean.others = {
+        {"flip", 0.05}, {"flipFirstQuartile", 0.0413}, {"flipMedian", 0.08}, {"flipThirdQuartile", 0.15}};
+    m.frames[0].metrics = m.pooled->mean;
+    const auto shown = texts(sheet(d.shown(), 4, {.crops = {kCrop}}, {})[0]);
+    const auto at = std::find(shown.begin(), shown.end(), "quartiles 0.0413, 0.08, 0.15");
+    ASSERT_NE(at, shown.end());
+    const auto value = std::find(shown.begin(), at, "0.05");
+    EXPECT_NE(value, at) << "above them";
+    for (const auto& t : shown) EXPECT_EQ(t.find("FLIP, "), std::string::npos) << "no rows of their own";
+}
 TEST(Sheet, MethodsAreChosenByTextIdAndFamily) {
     const Drawn d(5);
     const auto names = [&](const std::vector<std::string>& wanted) {
