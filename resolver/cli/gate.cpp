@@ -25,10 +25,14 @@ void print(const GateReport& report, bool all) {
     // What fails stands first, and below it all that only needs to be known.
     for (const Verdict v : {Verdict::worse, Verdict::missing, Verdict::unresolved, Verdict::better, Verdict::added,
                             Verdict::within, Verdict::same})
-        for (const GateRow& r : report.rows) {
-            if (r.verdict != v || !shown(v)) continue;
-            std::printf("%-10s %-*s  %s\n", name(v), int(width), r.method.c_str(), r.inWords().c_str());
-            if (v == Verdict::worse && !r.rerun.empty()) std::printf("%-10s %s\n", "", ("again: " + r.rerun).c_str());
+        for (auto r = report.rows.begin(); r != report.rows.end(); ++r) {
+            if (r->verdict != v || !shown(v)) continue;
+            std::printf("%-10s %-*s  %s\n", name(v), int(width), r->method.c_str(), r->inWords().c_str());
+            const bool more = std::any_of(r + 1, report.rows.end(), [&](const GateRow& other) {
+                return other.verdict == v && other.method == r->method;
+            });
+            if (v == Verdict::worse && !more && !r->rerun.empty())
+                std::printf("%-10s again: %s\n", "", r->rerun.c_str());
         }
     for (const auto& note : report.notes) std::printf("note: %s\n", note.c_str());
     std::printf("%s: %s, %zu rows: %zu worse, %zu missing, %zu unresolved, %zu better, %zu as before\n",

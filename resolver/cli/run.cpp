@@ -21,11 +21,12 @@ struct Options {
     bool debugLayers = false, overFrames = false, withoutBaseline = false;
 };
 constexpr const char* kBaseline = "noaa";
-// Figures that were asked for by --metrics; and where those that need a viewer were seen.
-void printAsked(const RunResults& r, const std::vector<const MethodResult*>& rows, size_t width) {
+constexpr const char* kFlip = "flip";
+// The figures that the table before has no column for; and where those that need a viewer were seen.
+void printOthers(const RunResults& r, const std::vector<const MethodResult*>& rows, size_t width) {
     std::vector<const Figure*> asked;
     for (const Figure* f : figuresIn(r))
-        if (!findFigure(f->name).metric->always) asked.push_back(f);
+        if (!findFigure(f->name).metric->always && f->name != kFlip) asked.push_back(f);
     if (asked.empty()) return;
     std::printf("%-*s", int(width), "method");
     for (const Figure* f : asked) std::printf(" %*s", std::max(10, int(f->name.size())), std::string(f->name).c_str());
@@ -61,8 +62,8 @@ void printTable(const RunResults& r) {
     size_t width = 6;
     for (const auto* m : rows) width = std::max(width, m->text.size());
     const auto noaa = noaaOf(r);
-    const bool withFlip = std::any_of(rows.begin(), rows.end(),
-                                      [](const auto* m) { return m->pooled && m->pooled->mean.figure("flip"); });
+    const bool withFlip =
+        std::any_of(rows.begin(), rows.end(), [](const auto* m) { return m->pooled && m->pooled->mean.figure(kFlip); });
     std::printf("%-*s %9s %8s %16s %9s %8s%s %8s %13s %8s %8s%s\n", int(width), "method", "PSNR dB", "gain dB",
                 "95 % interval", "resolved", "SSIM", withFlip ? "   FLIP" : "", "ns/px", "quartiles", "input MB",
                 "state MB", r.device ? "  device ms" : "");
@@ -88,7 +89,7 @@ void printTable(const RunResults& r) {
         else
             std::printf(" %8s", "-");
         if (withFlip) {
-            const auto flip = m->pooled ? m->pooled->mean.figure("flip") : std::nullopt;
+            const auto flip = m->pooled ? m->pooled->mean.figure(kFlip) : std::nullopt;
             flip ? std::printf(" %6.4f", *flip) : std::printf(" %6s", "-");
         }
         if (m->nsPerPixel > 0) {
@@ -103,7 +104,7 @@ void printTable(const RunResults& r) {
         if (m->deviceSecondsMedian) std::printf(" %10.4f", 1e3 * *m->deviceSecondsMedian);
         std::puts("");
     }
-    printAsked(r, rows, width);
+    printOthers(r, rows, width);
     if (!r.complete)
         std::printf("%s: these figures are not those of the whole shot; the same command with --resume goes on\n",
                     incompleteInWords(r).c_str());
@@ -247,7 +248,9 @@ void execute(const Options& o, Context& context) {
         std::cout << toJsonText(results) << "\n";
     else
         printTable(results), printTemporal(results), printOverFrames(results, o.overFrames), printAdvice(results);
-    if (!o.run.json) std::printf("results: %s\n", (run.out / "results.json").c_str());
+    if (!o.run.json)
+        std::printf("results: %s\nto see them: aaresolve report %s\n", (run.out / "results.json").c_str(),
+                    shellQuoted(run.out.string()).c_str());
 }
 
 }  // namespace

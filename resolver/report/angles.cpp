@@ -10,6 +10,7 @@
 
 #include "image/error.h"
 #include "image/json_text.h"
+#include "image/markup.h"
 #include "report/page.h"
 #include "report/web/web_files.h"
 
@@ -26,11 +27,6 @@ std::string formatted(const char* format, ...) {
     std::vsnprintf(text, sizeof text, format, values);
     va_end(values);
     return text;
-}
-std::string forXml(const std::string& text) {
-    std::string safe;
-    for (const char c : text) safe += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
-    return safe;
 }
 }  // namespace
 
@@ -113,7 +109,7 @@ std::string toSvgText(const AngleStudy& s) {
         }
         const int x = kLeft + int(m) % 3 * 280, y = kHeight + int(m) / 3 * kLine;
         text += formatted("\"/>\n<path %s d=\"M%d %dh26\"/>", look.c_str(), x, y - 4);
-        text += formatted("<text x=\"%d\" y=\"%d\">", x + 32, y) + forXml(s.methods[m].text) + "</text>\n";
+        text += formatted("<text x=\"%d\" y=\"%d\">", x + 32, y) + forMarkup(s.methods[m].text) + "</text>\n";
     }
     return text + "</svg>\n";
 }

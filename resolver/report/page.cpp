@@ -6,6 +6,7 @@
 
 #include "image/colour_map.h"
 #include "image/json_text.h"
+#include "image/markup.h"
 #include "metrics/metric.h"
 #include "report/format.h"
 #include "report/web/web_files.h"
@@ -53,16 +54,10 @@ nlohmann::ordered_json figureJson(const Figure& f) {
         {"name", f.name}, {"title", f.title}, {"better", f.higherIsBetter ? "high" : "low"}, {"form", name(f.form)}};
 }
 
-std::string forHtml(const std::string& text) {
-    std::string safe;
-    for (const char c : text) safe += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
-    return safe;
-}
-
 std::string pageHead(const std::string& title, std::initializer_list<std::string_view> styles) {
     std::string all;
     for (const auto style : styles) all += "<style>" + std::string(style) + "</style>\n";
-    return filled(web::head, {{"title", forHtml(title)}, {"styles", all}});
+    return filled(web::head, {{"title", forMarkup(title)}, {"styles", all}});
 }
 
 }  // namespace aa

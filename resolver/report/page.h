@@ -17,7 +17,6 @@ std::string forScript(const nlohmann::ordered_json& j);
 nlohmann::ordered_json errorColoursJson();
 // A figure of the program's table as the pages read it.
 nlohmann::ordered_json figureJson(const Figure& figure);
-std::string forHtml(const std::string& text);
 
 // Everything before <body>, the same on every page: `title` is text, `styles` are inlined in this order.
 std::string pageHead(const std::string& title, std::initializer_list<std::string_view> styles);

@@ -9,6 +9,7 @@
 
 #include "image/error.h"
 #include "image/json_text.h"
+#include "image/markup.h"
 #include "study/json_number.h"
 #include "study/non_finite.h"
 
@@ -344,25 +345,6 @@ std::string toJsonText(const GateReport& report) {
     return jsonText(j) + "\n";
 }
 
-namespace {
-std::string forXml(const std::string& text) {
-    std::string escaped;
-    for (const char c : text) {
-        if (c == '&')
-            escaped += "&amp;";
-        else if (c == '<')
-            escaped += "&lt;";
-        else if (c == '>')
-            escaped += "&gt;";
-        else if (c == '"')
-            escaped += "&quot;";
-        else
-            escaped += static_cast<unsigned char>(c) < 32 ? ' ' : c;  // XML has no other control characters
-    }
-    return escaped;
-}
-}  // namespace
-
 std::string toJunitText(const GateReport& report) {
     const auto fails = [](const GateRow& r) { return r.verdict == Verdict::worse || r.verdict == Verdict::missing; };
     const auto counts = [&](auto first, auto last) {
@@ -374,15 +356,15 @@ std::string toJunitText(const GateReport& report) {
     for (auto first = report.rows.begin(); first != report.rows.end();) {
         const auto last =
             std::find_if(first, report.rows.end(), [&](const GateRow& r) { return r.method != first->method; });
-        xml += " <testsuite name=\"" + forXml(first->method) + "\" " + counts(first, last) + ">\n";
+        xml += " <testsuite name=\"" + forMarkup(first->method) + "\" " + counts(first, last) + ">\n";
         for (; first != last; ++first) {
-            xml += "  <testcase classname=\"" + forXml(report.shot + "." + first->method) + "\" name=\"" +
-                   forXml(first->figure.empty() ? "method" : first->figure) + "\">";
+            xml += "  <testcase classname=\"" + forMarkup(report.shot + "." + first->method) + "\" name=\"" +
+                   forMarkup(first->figure.empty() ? "method" : first->figure) + "\">";
             if (fails(*first))
                 xml += "<failure type=\"" + std::string(name(first->verdict)) + "\" message=\"" +
-                       forXml(first->inWords()) + "\">" + forXml(first->rerun) + "</failure>";
+                       forMarkup(first->inWords()) + "\">" + forMarkup(first->rerun) + "</failure>";
             else
-                xml += "<system-out>" + forXml(first->inWords()) + "</system-out>";
+                xml += "<system-out>" + forMarkup(first->inWords()) + "</system-out>";
             xml += "</testcase>\n";
         }
         xml += " </testsuite>\n";

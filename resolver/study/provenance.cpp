@@ -85,8 +85,6 @@ Machine thisMachine() {
         if (isaSupported(isa)) m.instructionSets.emplace_back(name(isa));
     utsname system{};
     if (uname(&system) == 0) m.system = std::string(system.sysname) + " " + system.release + " " + system.machine;
-    double load = 0;
-    if (getloadavg(&load, 1) == 1) m.load = load;
     return m;
 }
 

@@ -16,7 +16,6 @@ struct Machine {
     int cores = 0;                             // that this process may use
     std::vector<std::string> instructionSets;  // of those that the kernels are built for, what the processor has
     std::string system;                        // Linux 6.1.0-18-amd64 x86_64
-    double load = 0;                           // processes that ran or waited when the run began, mean over a minute
 };
 Machine thisMachine();
 

@@ -372,7 +372,6 @@ void members(V v, S& p) {
         m.value("cores", p.machine.cores);
         m.value("instructionSets", p.machine.instructionSets);
         m.value("system", p.machine.system);
-        m.value("load", p.machine.load);
     });
 }
 template <class V, Is<RunResults> S>

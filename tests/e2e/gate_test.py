@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import re
 import shutil
 import signal
 import subprocess
+import sys
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
+import OpenImageIO as oiio
 from program import PROGRAM, ROOT, ProgramTest, main
 
 CI = ROOT / "docs/ci"
@@ -24,6 +27,24 @@ def steps_of(file: Path) -> list[str]:
         return [line.strip() for block in blocks for line in block.splitlines()]
     script = re.search(r"  script:\n((?:    - .*\n)+)", text)[1]
     return [line.strip().removeprefix("- ") for line in script.splitlines()]
+
+
+def negated(file: Path, part: str) -> None:
+    """Rewrites one part of a frame with the other sign."""
+    source = oiio.ImageInput.open(str(file))
+    specs, pixels = [], []
+    while source.seek_subimage(len(specs), 0):
+        specs.append(oiio.ImageSpec(source.spec()))
+        own = specs[-1].getattribute("oiio:subimagename") == part
+        pixels.append(source.read_image("float") * (-1 if own else 1))
+    source.close()
+    out = oiio.ImageOutput.create(str(file))
+    out.open(str(file), tuple(specs))
+    for k, plane in enumerate(pixels):
+        if k:
+            out.open(str(file), specs[k], "AppendSubimage")
+        out.write_image(plane)
+    out.close()
 
 
 class Gate(ProgramTest):
@@ -89,6 +110,60 @@ class Gate(ProgramTest):
             "psnr=50,ssim=1,ssimRgb=1,tPsnr=50,flickerStatic=9999%,relMse=9999%,flip=9999%,"
             "flipMedian=9999%,flipFirstQuartile=9999%,flipThirdQuartile=9999%",
         )
+
+    def moving(self, name: str, *methods: str, shot: Path | None = None) -> Path:
+        """A run of the moving shot, or of what became of it, under the plain names of its methods."""
+        if not (self.folder / "shot").exists():
+            self.synth("moving", self.folder / "shot", (128, 72), 8, "--for", "karis,raptor")
+        out = self.folder / name
+        chosen = [word for m in methods or ("karis", "raptor") for word in ("-m", m)]
+        self.aaresolve(
+            "run", shot or self.folder / "shot", *chosen, "-o", out, "-q", "--write", "none"
+        )
+        document = self.results(out)
+        for m in document["methods"]:
+            m["text"] = m["text"].split(":")[0]
+        (out / "results.json").write_text(json.dumps(document))
+        return out
+
+    def test_faults_of_temporal_methods_are_named(self) -> None:
+        """Faults that an engine's TAA is prone to, made for real; and what they do not touch stays."""
+        base = self.moving("base")
+        turned, mirrored = self.folder / "turned", self.folder / "mirrored"
+        for copy in (turned, mirrored):
+            shutil.copytree(self.folder / "shot", copy)
+        shot = json.loads((turned / "shot.json").read_text())
+        for frame in shot["frames"]:
+            frame["jitter"] = [-x for x in frame["jitter"]]
+        (turned / "shot.json").write_text(json.dumps(shot))
+        for frame in (mirrored / "frames").iterdir():
+            negated(frame, "motion")
+        faults = {
+            "no_clamp": (("karis", "raptor:constraint=none"), None, "raptor"),
+            "jitter_sign": ((), turned, "karis"),
+            "motion_sign": ((), mirrored, "karis"),
+        }
+        for fault, (methods, shot, named) in faults.items():
+            with self.subTest(fault):
+                now = self.moving(fault, *methods, shot=shot)
+                said = self.aaresolve("gate", base, now, expect=1).stdout
+                self.assertRegex(said, rf"worse +{named} +psnr [\d.]+ dB, was [\d.]+ dB: ")
+                self.assertEqual(len(re.findall(rf"again: .* -m {named} ", said)), 1)
+                if methods:  # the other method is as it was
+                    other = ({"karis", "raptor"} - {named}).pop()
+                    self.assertNotRegex(said, rf"(worse|missing|unresolved) +{other}")
+
+    def test_an_unchanged_run_passes_every_time(self) -> None:
+        """Times differ from run to run and processors are busy: only what decides may decide."""
+        base = self.made("base")
+        with contextlib.ExitStack() as noise:
+            for _ in range(2 * (os.cpu_count() or 1)):
+                busy = subprocess.Popen([sys.executable, "-c", "while True: pass"])
+                noise.callback(busy.wait)
+                noise.callback(busy.kill)
+            for _ in range(20):
+                said = self.aaresolve("gate", base, self.made("now")).stdout
+                self.assertRegex(said, r"passed: half_planes, \d+ rows: 0 worse, 0 missing")
 
     def test_what_cannot_be_compared(self) -> None:
         base = self.made("base")
