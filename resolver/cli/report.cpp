@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 struct Options {
     std::vector<std::string> runs;
     std::string out, embed = "full";
-    double limitMb = 40;
+    double limitMb = double(EmbedOptions().limitBytes) / 1e6;
     bool hdr = false;
     WorkOptions work;
 };

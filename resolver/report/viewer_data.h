@@ -18,7 +18,7 @@ struct EmbedOptions {
     // Linear light as 32-bit floats instead of the 8-bit codes that are displayed: exposure shows what lies beyond
     // white.
     bool floats = false;
-    size_t limitBytes = 40'000'000;  // of the page's pictures; 0: no limit
+    size_t limitBytes = 38'000'000;  // of the page's pictures, so that all is below 40 MB; 0: no limit
 };
 
 // One picture. `source` is a method's index, or kTruth.
