@@ -35,10 +35,11 @@ void print(const GateReport& report, bool all) {
                 std::printf("%-10s again: %s\n", "", r->rerun.c_str());
         }
     for (const auto& note : report.notes) std::printf("note: %s\n", note.c_str());
-    std::printf("%s: %s, %zu rows: %zu worse, %zu missing, %zu unresolved, %zu better, %zu as before\n",
+    std::printf("%s: %s, %zu rows: %zu worse, %zu missing, %zu unresolved, %zu better, %zu as before, %zu new\n",
                 report.passed() ? "passed" : "FAILED", report.shot.c_str(), report.rows.size(),
                 report.count(Verdict::worse), report.count(Verdict::missing), report.count(Verdict::unresolved),
-                report.count(Verdict::better), report.count(Verdict::same) + report.count(Verdict::within));
+                report.count(Verdict::better), report.count(Verdict::same) + report.count(Verdict::within),
+                report.count(Verdict::added));
 }
 
 void execute(const Options& o, Context& context) {

@@ -250,6 +250,8 @@ std::vector<const MethodDescriptor*> meantBy(const std::string& word) {
         for (const auto& spec : chooseMethods({word}).methods) found.push_back(spec.method);
     else
         found = methodsLike(word);
+    if (found.empty() && std::filesystem::exists(std::filesystem::path(word) / "shot.json"))
+        throw UsageError("list: '" + word + "' is a shot; what it can run: aaresolve list --shot " + word);
     if (found.empty()) findMethod(word);  // throws, with a suggestion
     return found;
 }

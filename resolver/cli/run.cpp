@@ -21,6 +21,14 @@ struct Options {
     bool debugLayers = false, overFrames = false, withoutBaseline = false;
 };
 constexpr const char* kBaseline = "noaa";
+std::vector<const MethodResult*> bestFirst(const RunResults& r) {
+    std::vector<const MethodResult*> rows;
+    for (const auto& m : r.methods) rows.push_back(&m);
+    std::stable_sort(rows.begin(), rows.end(), [](const auto* a, const auto* b) {
+        return (a->pooled ? a->pooled->mean.mse : INFINITY) < (b->pooled ? b->pooled->mean.mse : INFINITY);
+    });
+    return rows;
+}
 constexpr const char* kFlip = "flip";
 // The figures that the table before has no column for; and where those that need a viewer were seen.
 void printOthers(const RunResults& r, const std::vector<const MethodResult*>& rows, size_t width) {
@@ -47,18 +55,15 @@ void printOthers(const RunResults& r, const std::vector<const MethodResult*>& ro
 }  // namespace
 
 void printReplaced(const RunResults& r, const std::filesystem::path& out) {
-    for (const auto& method : r.replacedMethods)
-        std::fprintf(stderr, "%s: removed the pictures of %s, which this run has not\n", out.c_str(), method.c_str());
+    if (!r.replacedMethods.empty())
+        std::fprintf(stderr, "%s: removed the pictures of %s, which this run has not\n", out.c_str(),
+                     enumerated(r.replacedMethods).c_str());
     for (const auto& file : r.outdatedFiles)
         std::fprintf(stderr, "%s: is of the earlier run; make it again\n", (out / file).c_str());
 }
 
 void printTable(const RunResults& r) {
-    std::vector<const MethodResult*> rows;
-    for (const auto& m : r.methods) rows.push_back(&m);
-    std::stable_sort(rows.begin(), rows.end(), [](const auto* a, const auto* b) {
-        return (a->pooled ? a->pooled->mean.mse : INFINITY) < (b->pooled ? b->pooled->mean.mse : INFINITY);
-    });
+    const auto rows = bestFirst(r);
     size_t width = 6;
     for (const auto* m : rows) width = std::max(width, m->text.size());
     const auto noaa = noaaOf(r);
@@ -149,43 +154,58 @@ void printTable(const RunResults& r) {
 namespace {
 // Figures over time; only what the shot gives.
 void printTemporal(const RunResults& r) {
-    const auto has = [&](auto member) {
-        return std::any_of(r.methods.begin(), r.methods.end(),
-                           [&](const auto& m) { return m.temporal && (*m.temporal).*member; });
+    using Value = std::optional<double>;
+    struct Column {
+        const char* head;
+        int width, decimals;  // below 0: that many significant digits
+        Value (*of)(const TemporalMetrics&);
     };
-    if (!has(&TemporalMetrics::flickerStatic) && !has(&TemporalMetrics::flickerMoving) &&
-        !has(&TemporalMetrics::ghostMse))
-        return;
+    constexpr Column kColumns[] = {
+        {"tPSNR dB", 8, 3, [](const TemporalMetrics& t) { return t.tPsnr; }},
+        {"flicker at rest", 15, 4, [](const TemporalMetrics& t) { return t.flickerStatic; }},
+        {"flicker in motion", 17, 4, [](const TemporalMetrics& t) { return t.flickerMoving; }},
+        {"ghost MSE", 10, -4, [](const TemporalMetrics& t) { return t.ghostMse; }},
+        {"ghosts x noaa", 13, 3, [](const TemporalMetrics& t) { return t.ghostExcess; }},
+        {"half-life", 9, 2, [](const TemporalMetrics& t) { return t.ghostHalfLife; }},
+        {"converged", 9, 0, [](const TemporalMetrics& t) { return t.convergence ? Value(*t.convergence) : Value(); }},
+    };
+    const auto rows = bestFirst(r);
+    const auto there = [&](const Column& c) {
+        return std::any_of(rows.begin(), rows.end(), [&](const auto* m) { return m->temporal && c.of(*m->temporal); });
+    };
+    // tPSNR alone says what PSNR says.
+    if (std::none_of(std::begin(kColumns) + 1, std::end(kColumns), there)) return;
     size_t width = 6;
-    for (const auto& m : r.methods) width = std::max(width, m.text.size());
-    std::printf("%-*s %8s %10s %10s %10s %10s %9s %9s\n", int(width), "method", "tPSNR dB", "flicker", "along mv",
-                "ghost MSE", "vs noaa", "half-life", "converged");
-    const auto cell = [](const std::optional<double>& v, int w, const char* format) {
-        if (v)
-            std::printf(format, w, *v);
-        else
-            std::printf(" %*s", w, "-");
-    };
-    for (const auto& m : r.methods) {
-        if (!m.temporal) continue;
-        const TemporalMetrics& t = *m.temporal;
-        std::printf("%-*s", int(width), m.text.c_str());
-        cell(t.tPsnr, 8, " %*.3f"), cell(t.flickerStatic, 10, " %*.4f"), cell(t.flickerMoving, 10, " %*.4f");
-        cell(t.ghostMse, 10, " %*.4g"), cell(t.ghostExcess, 10, " %*.3f"), cell(t.ghostHalfLife, 9, " %*.2f");
-        cell(t.convergence ? std::optional<double>(*t.convergence) : std::nullopt, 9, " %*.0f");
-        std::printf("\n");
+    for (const auto* m : rows) width = std::max(width, m->text.size());
+    std::printf("%-*s", int(width), "method");
+    for (const Column& c : kColumns)
+        if (there(c)) std::printf(" %*s", c.width, c.head);
+    std::puts("");
+    const TemporalMetrics* any = nullptr;
+    for (const auto* m : rows) {
+        if (!m->temporal) continue;
+        any = &*m->temporal;
+        std::printf("%-*s", int(width), m->text.c_str());
+        for (const Column& c : kColumns)
+            if (const Value v = c.of(*any); !there(c))
+                continue;
+            else if (!v)
+                std::printf(" %*s", c.width, "-");
+            else if (c.decimals < 0)
+                std::printf(" %*.*g", c.width, -c.decimals, *v);
+            else
+                std::printf(" %*.*f", c.width, c.decimals, *v);
+        std::puts("");
     }
-    for (const auto& m : r.methods)
-        if (m.temporal) {
-            std::printf(
-                "over time: after %d warm-up frames; flicker in 8-bit units; half-life and convergence in frames\n",
-                m.temporal->warmup);
-            break;
-        }
+    if (any)
+        std::printf(
+            "over time: after %d warm-up frames; flicker in codes of 255; half-life of ghosts and convergence in "
+            "frames\n",
+            any->warmup);
 }
 
-// Every figure frame by frame in the published form; PSNR alone unless all are asked for.
-void printOverFrames(const RunResults& r, bool all) {
+// Every figure frame by frame in the published form.
+void printOverFrames(const RunResults& r) {
     const auto judged = [](const MethodResult& m) { return m.pooled ? m.pooled->frames : 0; };
     if (std::none_of(r.methods.begin(), r.methods.end(), [&](const auto& m) { return judged(m) > 1; })) return;
     size_t width = 6;
@@ -193,7 +213,6 @@ void printOverFrames(const RunResults& r, bool all) {
     std::printf("over frames: best / worst / average (frame of the best, of the worst)\n");
     bool infinite = false;
     for (const Figure* f : figuresIn(r)) {
-        if (!all && f->name != "psnr") continue;
         for (const auto& m : r.methods) {
             const auto range = judged(m) > 1 ? rangeOverFrames(m, *f) : std::nullopt;
             if (!range) continue;
@@ -246,8 +265,11 @@ void execute(const Options& o, Context& context) {
     printReplaced(results, run.out);
     if (o.run.json)
         std::cout << toJsonText(results) << "\n";
-    else
-        printTable(results), printTemporal(results), printOverFrames(results, o.overFrames), printAdvice(results);
+    else {
+        printTable(results), printTemporal(results);
+        if (o.overFrames) printOverFrames(results);
+        printAdvice(results);
+    }
     if (!o.run.json)
         std::printf("results: %s\nto see them: aaresolve report %s\n", (run.out / "results.json").c_str(),
                     shellQuoted(run.out.string()).c_str());
@@ -267,8 +289,7 @@ void addRun(CommandLine& line, Context& context) {
     addRunArguments(c, o->run);
     c.flag("--resume", o->resume, "go on with an interrupted run in OUT; the same command, and this");
     c.flag("--add", o->add, "add these methods to the run in OUT, whose options must be the same; its methods stay");
-    c.flag("--over-frames", o->overFrames,
-           "print best, worst and average over the frames of every figure, not of PSNR alone");
+    c.flag("--over-frames", o->overFrames, "print best, worst and average over the frames of every figure as well");
     c.flag("--debug-layers", o->debugLayers, "also write each method's intermediate images");
     c.run([o, &context] { execute(*o, context); });
 }

@@ -57,10 +57,12 @@ std::array<double, n> sumRows(const Exec& exec, const Window& area,
 }
 
 // Frames in which `fraction`, by age, falls to half of its first value; between two ages it is taken as exponential.
+// Where nothing stale is to be seen, nothing halves.
 std::optional<double> halfLife(const std::vector<double>& fraction) {
     if (fraction.empty()) return {};
     const double half = fraction[0] / 2;
-    if (fraction[0] <= 0.01) return 0.0;  // nothing stale to begin with
+    if (*std::max_element(fraction.begin(), fraction.begin() + std::min<ptrdiff_t>(3, std::ssize(fraction))) <= 0.05)
+        return {};
     for (size_t a = 1; a < fraction.size(); a++) {
         const double before = fraction[a - 1], after = fraction[a];
         if (after > half) continue;

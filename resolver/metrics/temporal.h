@@ -11,7 +11,8 @@
 //                    O = the picture at q in the frame before the surface came into view (its truth, or its sampled
 //                    colours where that frame has none), carried along the motion
 //  ghostHalfLife     frames in which ghostFraction falls to half of its value at age 1: -1 / log2(k) for k^age;
-//                    0 when at age 1 no more than a hundredth is left, absent when the half is not reached
+//                    absent where no more than a twentieth is stale at each of the ages 1 to 3, and when
+//                    the half is not reached
 //  tPsnr             PSNR of the MSE pooled over the frames after the warm-up
 //  convergence       frames after the start from which the PSNR stays within 0.5 dB of its last value (static shots)
 // A pixel is valid, and its surface was visible before, when q is inside the image and the previous 3x3 around q has a

@@ -79,7 +79,7 @@ TEST(TemporalMetrics, TheTruthItselfNeitherFlickersNorGhosts) {
     const TemporalMetrics m = judge.result();
     EXPECT_EQ(*m.flickerMoving, 0);
     EXPECT_EQ(*m.ghostMse, 0);
-    EXPECT_EQ(*m.ghostHalfLife, 0);
+    EXPECT_FALSE(m.ghostHalfLife);
     EXPECT_TRUE(std::isinf(*m.tPsnr));
     for (const double g : m.ghostFraction) EXPECT_EQ(g, 0);
 }

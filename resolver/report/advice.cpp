@@ -46,7 +46,8 @@ std::vector<AdviceGroup> adviceOf(const RunResults& run) {
             if (better(i, best)) {
                 AdviceStep step{i, run.methods[i].nsPerPixel, {}};
                 for (const size_t other : seen)
-                    if (const auto c = compared(run, i, other); c && !c->resolved) step.alike.push_back(other);
+                    if (const auto c = compared(run, i, other); c && !c->resolved && c->why != Unresolved::tooSmall)
+                        step.alike.push_back(other);
                 g.steps.push_back(step);
                 best = i;
             }
@@ -69,7 +70,7 @@ std::vector<std::string> adviceInWords(const RunResults& run) {
             const MethodResult& m = run.methods[step.method];
             const auto gain = compared(run, step.method, *noaa);
             s += (i ? "; " : "") + std::string("from ") + shortNumber(step.nsPerPixel) + " ns/px " + m.text;
-            if (gain) s += " (" + signedDecibelNumber(gain->gainDb) + " dB, " + intervalInWords(*gain) + ")";
+            if (gain) s += ", " + signedDecibelNumber(gain->gainDb) + " dB " + intervalInBrackets(*gain);
             std::vector<std::string> alike;
             for (const size_t k : step.alike) alike.push_back(run.methods[k].text);
             if (!alike.empty()) s += ", not told apart from " + enumerated(alike);

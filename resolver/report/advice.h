@@ -7,7 +7,7 @@
 
 namespace aa {
 
-// A method that is resolved better than every cheaper one of its group.
+// A method that is resolved better than the steps before it.
 struct AdviceStep {
     size_t method = 0;
     double nsPerPixel = 0;

@@ -22,9 +22,8 @@ std::string gain(const RunResults& run, const MethodResult& m) {
     std::string s = signedDecibelNumber(*m.pooled->gainDb) + " dB";
     const auto method = size_t(&m - run.methods.data());
     if (const auto noaa = noaaOf(run); noaa && *noaa != method)
-        if (const auto c = compared(run, method, *noaa);
-            c && c->why != Unresolved::tooSmall && c->why != Unresolved::equal)
-            s += " (95 %: " + intervalInWords(*c) + ")";
+        if (const auto c = compared(run, method, *noaa); c && c->why != Unresolved::equal)
+            s += " " + intervalInBrackets(*c);
     return s;
 }
 
@@ -42,13 +41,22 @@ std::vector<size_t> ranking(const RunResults& run) {
 std::string bestSentence(const RunResults& run, const std::vector<size_t>& order) {
     const MethodResult& best = run.methods[order[0]];
     std::vector<std::string> peers;
+    size_t unjudged = 0;
     for (size_t i = 1; i < order.size(); i++)
-        if (!resolved(run, order[0], order[i])) peers.push_back(run.methods[order[i]].text);
+        if (const auto c = compared(run, order[0], order[i]); c && !c->resolved) {
+            if (c->why == Unresolved::tooSmall)
+                unjudged++;
+            else
+                peers.push_back(run.methods[order[i]].text);
+        }
     std::string s = best.text + " is nearest to " +
                     (run.protocol.reference.empty() ? "the ground truth" : run.protocol.reference) + ": PSNR " +
                     decibels(best.pooled->mean.psnr);
     if (best.pooled->gainDb && best.id != "noaa") s += ", " + gain(run, best) + " over no anti-aliasing";
     if (!peers.empty()) s += "; " + enumerated(peers) + " cannot be told apart from it";
+    if (unjudged)
+        s += "; to hold it against " + (unjudged + 1 == order.size() ? "the" : std::to_string(unjudged)) +
+             (unjudged == 1 ? " other" : " others") + " this picture is too small";
     return s + ".";
 }
 
@@ -101,7 +109,7 @@ std::vector<std::string> sharpenSentences(const RunResults& run, const std::vect
                                     sharp.text + " and " + plain.text + ".");
             else if (cost > 0)
                 sentences.push_back("The sharpen filter of " + sharp.text + " costs " + decibels(cost) + ": " +
-                                    plain.text + ", the same method with other sharpening, reaches " +
+                                    plain.text + ", the same method without it, reaches " +
                                     decibels(plain.pooled->mean.psnr) + ".");
             else
                 sentences.push_back("The sharpen filter of " + sharp.text + " gains " + decibels(-cost) + " over " +

@@ -68,8 +68,15 @@ std::string runLine(const RunResults& run) {
 }
 
 std::string intervalInWords(const Comparison& c) {
-    if (c.why == Unresolved::tooSmall) return "none";
-    return signedDecibelNumber(c.gainLow) + " to " + signedDecibelNumber(c.gainHigh);
+    const bool low = std::isfinite(c.gainLow), high = std::isfinite(c.gainHigh);
+    if (low && high) return signedDecibelNumber(c.gainLow) + " to " + signedDecibelNumber(c.gainHigh);
+    if (low) return "above " + signedDecibelNumber(c.gainLow);
+    if (high) return "below " + signedDecibelNumber(c.gainHigh);
+    return "no interval";
+}
+std::string intervalInBrackets(const Comparison& c) {
+    const bool known = std::isfinite(c.gainLow) || std::isfinite(c.gainHigh);
+    return (known ? "(95 %: " : "(") + intervalInWords(c) + ")";
 }
 
 std::string busyInWords(const RunResults& run) {

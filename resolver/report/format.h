@@ -20,7 +20,9 @@ std::string similarity(double v);  // 6 decimals: three saturate (conventions 13
 // What was run, in one line: size, jitter and whether its block is centred, machine.
 std::string runLine(const RunResults& run);
 std::string enumerated(const std::vector<std::string>& parts);  // "a, b and c"
-std::string intervalInWords(const Comparison& c);               // +0.12 to +0.34; "none" where there is none
+// The 95 % interval of a gain: "+0.12 to +0.34", "above +0.12" or "below +0.34" where it has one end, "no interval".
+std::string intervalInWords(const Comparison& c);
+std::string intervalInBrackets(const Comparison& c);  // "(95 %: +0.12 to +0.34)", "(no interval)"
 // What was measured of the machine while methods were timed, where it was too busy for their times to be trusted.
 std::string busyInWords(const RunResults& run);
 // What is not measured since it would have taken too long, and how to ask for it.

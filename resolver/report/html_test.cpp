@@ -110,7 +110,8 @@ TEST(Advice, NamesTheBestOfEveryBudgetAndInput) {
     ASSERT_EQ(advice[1].steps.size(), 3u);
     EXPECT_EQ(advice[1].steps[2].method, 4u);
     const auto words = adviceInWords(run);
-    EXPECT_NE(words[0].find("From colour alone: from 3 ns/px fxaa311 (+3.01 dB, "), std::string::npos) << words[0];
+    EXPECT_NE(words[0].find("From colour alone: from 3 ns/px fxaa311, +3.01 dB (95 %: "), std::string::npos)
+        << words[0];
     EXPECT_NE(words[1].find("With depth, motion and the like: "), std::string::npos) << words[1];
     EXPECT_TRUE(adviceOf(runOf({method("fxaa311", 5e-4, 3e-5)}, 0)).empty()) << "no noaa";
     // A cheaper method from which the chosen one is not told apart is named beside it.

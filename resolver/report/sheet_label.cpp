@@ -57,12 +57,13 @@ std::vector<Shown> figuresOf(const RunResults& run, const MethodResult& m) {
 bool competes(const MethodResult& m, const std::string& key) {
     return m.id != "noaa" || (key != "time" && key != "device");
 }
-// "95 %: +3.02 to +3.40"; empty without noaa.
+// "95 %: +3.02 to +3.40", "no interval"; empty without noaa.
 std::string gainInterval(const RunResults& run, size_t method) {
     const auto noaa = noaaOf(run);
     const auto c = noaa ? compared(run, method, *noaa) : std::nullopt;
     if (!c) return {};
-    return "95 %: " + signedDecibelNumber(c->gainLow) + " to " + signedDecibelNumber(c->gainHigh);
+    const std::string words = intervalInBrackets(*c);
+    return words.substr(1, words.size() - 2);
 }
 }  // namespace
 

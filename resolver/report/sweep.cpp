@@ -27,11 +27,12 @@ struct Base {
     std::string text;
     std::vector<SweepVariant> ranked;
     std::vector<SweepVariant> alike;  // that cannot be told apart from the best
+    size_t unjudged = 0;              // that this picture is too small to hold against the best
 };
 double mseOf(const RunResults& run, const SweepVariant& v) { return run.methods[v.method].pooled->mean.mse; }
 std::vector<Base> basesOf(const RunResults& run, const SweepOptions& o) {
     std::vector<Base> bases;
-    for (const auto& text : o.methods) bases.push_back({text, {}, {}});
+    for (const auto& text : o.methods) bases.emplace_back().text = text;
     for (const SweepVariant& v : sweepVariants(run, o))
         for (Base& b : bases)
             if (b.text == v.base && run.methods[v.method].pooled && !run.isReference(run.methods[v.method]))
@@ -40,8 +41,12 @@ std::vector<Base> basesOf(const RunResults& run, const SweepOptions& o) {
         std::stable_sort(b.ranked.begin(), b.ranked.end(),
                          [&](const auto& x, const auto& y) { return mseOf(run, x) < mseOf(run, y); });
         for (size_t i = 1; i < b.ranked.size(); i++)
-            if (const auto c = compared(run, b.ranked[0].method, b.ranked[i].method); c && !c->resolved)
-                b.alike.push_back(b.ranked[i]);
+            if (const auto c = compared(run, b.ranked[0].method, b.ranked[i].method); c && !c->resolved) {
+                if (c->why == Unresolved::tooSmall)
+                    b.unjudged++;
+                else
+                    b.alike.push_back(b.ranked[i]);
+            }
     }
     return bases;
 }
@@ -81,11 +86,15 @@ void tell(const RunResults& run, const std::vector<SweepAxis>& axes, const Base&
     std::string s = b.text + ": " + valuesAt(axes, best) + " is best, PSNR " + decibels(pooled.mean.psnr);
     const auto noaa = noaaOf(run);
     if (const auto gain = noaa ? compared(run, best.method, *noaa) : std::nullopt)
-        s += ", " + signedDecibelNumber(gain->gainDb) +
-             " dB over no anti-aliasing (95 %: " + signedDecibelNumber(gain->gainLow) + " to " +
-             signedDecibelNumber(gain->gainHigh) + ")";
+        s += ", " + signedDecibelNumber(gain->gainDb) + " dB over no anti-aliasing " + intervalInBrackets(*gain);
+    if (b.unjudged)
+        s += "; to hold it against " + std::to_string(b.unjudged) +
+             (b.unjudged == 1 ? " other value" : " other values") + " this picture is too small";
     if (b.alike.empty())
-        s += b.ranked.size() > 1 ? "; every other value is worse by more than the error bar." : ".";
+        s += b.ranked.size() > 1 + b.unjudged
+                 ? (b.unjudged ? "; every value that can be judged" : "; every other value") +
+                       std::string(" is worse by more than the error bar.")
+                 : ".";
     else if (b.alike.size() + 1 == b.ranked.size())
         s += "; no other value can be told apart from it.";
     else
@@ -94,8 +103,8 @@ void tell(const RunResults& run, const std::vector<SweepAxis>& axes, const Base&
     if (b.ranked.size() > 1)
         if (const auto loss = compared(run, b.ranked.back().method, best.method))
             words.push_back(b.text + ": the worst is " + valuesAt(axes, b.ranked.back()) + ", " +
-                            signedDecibelNumber(loss->gainDb) + " dB against the best (95 %: " +
-                            signedDecibelNumber(loss->gainLow) + " to " + signedDecibelNumber(loss->gainHigh) + ").");
+                            signedDecibelNumber(loss->gainDb) + " dB against the best " + intervalInBrackets(*loss) +
+                            ".");
     for (size_t a = 0; a < axes.size(); a++) {
         const size_t at = best.at[a], count = axes[a].values.size();
         if (count < 3 || !isNumeric(axes[a]) || (at > 0 && at + 1 < count)) continue;
@@ -150,7 +159,9 @@ std::vector<std::string> sweepWords(const RunResults& run, const SweepOptions& o
     std::string s = "Of the methods at their best, " + judged[0]->text + " is first";
     if (gain)
         s += ", " + signedDecibelNumber(gain->gainDb) + " dB against " + judged[1]->text +
-             (gain->resolved ? "" : ", which cannot be told apart from it");
+             (gain->resolved                      ? ""
+              : gain->why == Unresolved::tooSmall ? ", for which this picture is too small to judge"
+                                                  : ", which cannot be told apart from it");
     words.insert(words.begin(), s + ".");
     return words;
 }

@@ -23,20 +23,26 @@ struct Held {
     bool higherIsBetter = false;
     std::optional<double> (*overTime)(const TemporalMetrics&) = nullptr;  // null: a figure of the frames
     bool isTime = false;
+    bool isRoot = false;  // of a sum of squares, whose decibels count twice
 };
 // Over the sequence: metrics/temporal.h.
 const std::vector<Held>& heldOverTime() {
     static const std::vector<Held> all = {
         {"tPsnr", FigureForm::decibels, true, [](const TemporalMetrics& t) { return t.tPsnr; }},
-        {"flickerStatic", FigureForm::significant, false, [](const TemporalMetrics& t) { return t.flickerStatic; }},
-        {"flickerMoving", FigureForm::significant, false, [](const TemporalMetrics& t) { return t.flickerMoving; }},
+        {"flickerStatic", FigureForm::significant, false, [](const TemporalMetrics& t) { return t.flickerStatic; },
+         false, true},
+        {"flickerMoving", FigureForm::significant, false, [](const TemporalMetrics& t) { return t.flickerMoving; },
+         false, true},
         {"ghostMse", FigureForm::significant, false, [](const TemporalMetrics& t) { return t.ghostMse; }},
     };
     return all;
 }
 // MSE and SNR say what PSNR says: they are held where they are named.
 bool repeatsPsnr(const Figure& f) { return f.ofSquares && f.name != "psnr"; }
-Held heldOf(const Figure& f) { return {std::string(f.name), f.form, f.higherIsBetter}; }
+Held heldOf(const Figure& f) {
+    return {
+        .name = std::string(f.name), .form = f.form, .higherIsBetter = f.higherIsBetter, .isRoot = f.name == "rmse"};
+}
 Held heldTime() { return {"time", FigureForm::significant, false, nullptr, true}; }
 
 // 0.05 dB is a hundredth of what methods differ by; 2 % of a small figure is its last shown digits.
@@ -125,6 +131,19 @@ std::optional<Interval> intervalOf(const MethodResult& before, const MethodResul
     return overFrames(before, now, h);
 }
 
+// An interval in the terms in which its row tells the change.
+Interval inTermsOf(const GateRow& row, const Held& h, const Interval& i) {
+    if (i.unit == "dB" && h.form == FigureForm::decibels && !row.tolerance.isShare) return i;
+    const double before = std::abs(*row.before);
+    const auto changed = [&](double v) {
+        if (i.unit != "dB") return v;
+        if (h.form == FigureForm::decibels) return v;
+        return before * (std::pow(10, v / (h.isRoot ? 20 : 10)) - 1);
+    };
+    const double unit = row.tolerance.isShare ? 100 / before : 1;
+    return {unit * changed(i.low), unit * changed(i.high), row.tolerance.isShare ? "%" : ""};
+}
+
 Verdict judged(GateRow& row, const MethodResult& before, const MethodResult& now, const Held& h,
                const std::function<std::optional<Interval>()>& interval) {
     const double a = *row.before, b = *row.now;
@@ -141,7 +160,8 @@ Verdict judged(GateRow& row, const MethodResult& before, const MethodResult& now
     if (h.isTime && !(now.secondsMin > before.secondsMin * (1 + row.tolerance.value))) return Verdict::unresolved;
     if (std::isinf(row.worsening)) return Verdict::worse;
     if (const auto i = interval()) {
-        row.low = i->low, row.high = i->high, row.intervalUnit = i->unit;
+        const Interval told = inTermsOf(row, h, *i);
+        row.low = told.low, row.high = told.high, row.intervalUnit = told.unit;
         if (!(i->low > 0)) return Verdict::unresolved;
     }
     return Verdict::worse;
@@ -155,7 +175,7 @@ void requireComparable(const RunResults& a, const RunResults& b) {
                              "; finish it with `run --resume`");
     const auto same = [](const std::string& what, const std::string& before, const std::string& now) {
         if (before != now)
-            throw InputError("gate: cannot be compared: " + what + " was " + before + " and is " + now +
+            throw InputError("gate: cannot be compared: " + what + ": before " + before + ", now " + now +
                              "; run both alike");
     };
     const auto size = [](const RunResults& r) { return std::to_string(r.width) + "x" + std::to_string(r.height); };
@@ -172,7 +192,7 @@ void requireComparable(const RunResults& a, const RunResults& b) {
 }
 void noteDifferences(const RunResults& a, const RunResults& b, bool times, std::vector<std::string>& notes) {
     const auto note = [&](const std::string& what, const std::string& before, const std::string& now) {
-        if (before != now) notes.push_back(what + " was " + before + " and is " + now);
+        if (before != now) notes.push_back(what + ": before " + before + ", now " + now);
     };
     if (!a.shotHash.empty() && !b.shotHash.empty() && a.shotHash != b.shotHash)
         notes.push_back("the shot '" + b.shot + "' is not the same: its content was " + a.shotHash + " and is " +
@@ -258,6 +278,19 @@ size_t GateReport::count(Verdict v) const {
     return size_t(std::count_if(rows.begin(), rows.end(), [&](const GateRow& r) { return r.verdict == v; }));
 }
 
+namespace {
+// The method under the same text, or else with the same parameters however they were written.
+const MethodResult* sameIn(const RunResults& run, const MethodResult& m) {
+    if (const auto at = indexOf(run, m.text)) return &run.methods[*at];
+    const auto stages = [](const std::string& text) { return text.substr(std::min(text.size(), text.find('+'))); };
+    const auto found = std::find_if(run.methods.begin(), run.methods.end(), [&](const MethodResult& other) {
+        return other.id == m.id && !m.id.empty() && other.parameters == m.parameters &&
+               stages(other.text) == stages(m.text);
+    });
+    return found == run.methods.end() ? nullptr : &*found;
+}
+}  // namespace
+
 GateReport gate(const RunResults& base, const RunResults& now, const GateOptions& options) {
     requireComparable(base, now);
     GateReport report;
@@ -277,8 +310,7 @@ GateReport gate(const RunResults& base, const RunResults& now, const GateOptions
 
     const Verdict missing = options.allowMissing ? Verdict::within : Verdict::missing;
     for (const MethodResult& before : base.methods) {
-        const auto at = indexOf(now, before.text);
-        const MethodResult* after = at ? &now.methods[*at] : nullptr;
+        const MethodResult* after = sameIn(now, before);
         if (!after) {
             if (options.allowMissing)
                 report.notes.push_back("method " + before.text + " is missing");
@@ -313,7 +345,7 @@ GateReport gate(const RunResults& base, const RunResults& now, const GateOptions
         }
     }
     for (const MethodResult& m : now.methods)
-        if (!indexOf(base, m.text)) report.rows.push_back({.method = m.text, .figure = "", .verdict = Verdict::added});
+        if (!sameIn(base, m)) report.rows.push_back({.method = m.text, .figure = "", .verdict = Verdict::added});
     return report;
 }
 

@@ -226,7 +226,7 @@ TEST(Gate, WhatIsMissingFailsAndIsNamed) {
     EXPECT_EQ(report.count(Verdict::missing), 1u);
     EXPECT_TRUE(gate(b, a, {}).passed()) << "a figure more is no fault";
     RunResults other = b;
-    other.methods[0].text = "another";
+    other.methods[0].text = other.methods[0].id = "another";
     report = gate(b, other, {});
     EXPECT_EQ(report.count(Verdict::missing), 1u);
     EXPECT_EQ(report.count(Verdict::added), 1u);
@@ -243,12 +243,12 @@ TEST(Gate, WhatCannotBeComparedIsRefused) {
         return refusal(a, b);
     };
     EXPECT_EQ(with([](RunResults&) {}), "");
-    EXPECT_NE(with([](RunResults& r) { r.width = 255; }).find("the resolution was 256x128 and is 255x128"),
+    EXPECT_NE(with([](RunResults& r) { r.width = 255; }).find("the resolution: before 256x128, now 255x128"),
               std::string::npos);
     EXPECT_NE(with([](RunResults& r) { r.protocol.eightBit = true; }).find("quantise=8"), std::string::npos);
-    EXPECT_NE(with([](RunResults& r) { r.methods[0].frames.pop_back(); }).find("the frames was 1,2 and is 1"),
+    EXPECT_NE(with([](RunResults& r) { r.methods[0].frames.pop_back(); }).find("the frames: before 1,2, now 1"),
               std::string::npos);
-    EXPECT_NE(with([](RunResults& r) { r.shot = "other"; }).find("the shot was 'made' and is 'other'"),
+    EXPECT_NE(with([](RunResults& r) { r.shot = "other"; }).find("the shot: before 'made', now 'other'"),
               std::string::npos);
     EXPECT_NE(with([](RunResults& r) {
                   r.complete = false, r.framesAsked = 9;

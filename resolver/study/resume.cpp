@@ -18,8 +18,8 @@ namespace {
 void requireSame(const RunResults& a, const RunResults& b, const RunOptions& o) {
     const auto same = [&](const std::string& what, const std::string& before, const std::string& now) {
         if (before != now)
-            throw InputError((o.out / "results.json").string() + ": cannot go on: " + what + " was " + before +
-                             " and is " + now + "; run as before, or without --resume and --add");
+            throw InputError((o.out / "results.json").string() + ": cannot go on: " + what + ": before " + before +
+                             ", now " + now + "; run as before, or without --resume and --add");
     };
     const auto program = [](const RunResults& r) { return r.programVersion + " " + r.provenance.commit; };
     same("the program", program(a), program(b));

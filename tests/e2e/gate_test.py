@@ -10,11 +10,16 @@ import shutil
 import signal
 import subprocess
 import sys
+import unittest
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
-import OpenImageIO as oiio
 from program import PROGRAM, ROOT, ProgramTest, main
+
+try:
+    import OpenImageIO as oiio
+except ImportError:  # the package python3-openimageio
+    oiio = None
 
 CI = ROOT / "docs/ci"
 
@@ -126,6 +131,7 @@ class Gate(ProgramTest):
         (out / "results.json").write_text(json.dumps(document))
         return out
 
+    @unittest.skipIf(oiio is None, "python3-openimageio is not installed")
     def test_faults_of_temporal_methods_are_named(self) -> None:
         """Faults that an engine's TAA is prone to, made for real; and what they do not touch stays."""
         base = self.moving("base")
@@ -157,7 +163,7 @@ class Gate(ProgramTest):
         """Times differ from run to run and processors are busy: only what decides may decide."""
         base = self.made("base")
         with contextlib.ExitStack() as noise:
-            for _ in range(2 * (os.cpu_count() or 1)):
+            for _ in range(os.cpu_count() or 1):
                 busy = subprocess.Popen([sys.executable, "-c", "while True: pass"])
                 noise.callback(busy.wait)
                 noise.callback(busy.kill)
@@ -174,7 +180,7 @@ class Gate(ProgramTest):
         self.refused(3, "gate", base, other, says=("protocol", "quantise=8"))
         self.aaresolve("run", shot, *chosen, "--frames", "1-6")
         self.refused(
-            3, "gate", base, other, says=("the frames was 1,2,3,4,5,6,7,8 and is 1,2,3,4,5,6",)
+            3, "gate", base, other, says=("the frames: before 1,2,3,4,5,6,7,8, now 1,2,3,4,5,6",)
         )
         self.refused(3, "gate", base, self.folder / "nowhere", says=("no such file",))
         self.refused(2, "gate", base, other, "--tol", "pnsr=1", says=("did you mean 'psnr'?",))
@@ -250,7 +256,7 @@ class Gate(ProgramTest):
             3, "run", shot, "--add", "-m", "mlaa", "-o", self.folder / "new", says=("no such file",)
         )
         said = self.aaresolve("run", shot, "-m", "mlaa", "-o", out, "-q", "--write", "none").stderr
-        self.assertIn("removed the pictures of karis, which this run has not", said)
+        self.assertIn("removed the pictures of karis and fxaa311, which this run has not", said)
         self.assertEqual([m["id"] for m in self.results(out)["methods"]], ["noaa", "mlaa"])
 
     def test_frames_made_elsewhere(self) -> None:
