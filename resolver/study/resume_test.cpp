@@ -164,16 +164,16 @@ TEST_F(Resume, WhatWasMadeOtherwiseIsRefused) {
     };
     RunOptions o = options({"noaa", "uncharted"}, "out");
     o.protocol.eightBit = true;
-    refused(o, "the protocol was");
+    refused(o, "the protocol: before ");
     o = options({"noaa", "uncharted"}, "out");
     o.measure = {};
-    refused(o, "what is measured and written was 'metrics=flip maps=error write=exr frames=all'");
+    refused(o, "what is measured and written: before 'metrics=flip maps=error write=exr frames=all'");
     o = options({"noaa", "uncharted"}, "out");
     o.frames.pop_back();
-    refused(o, "the shot's content was");
+    refused(o, "the shot's content: before ");
     // A picture of the shot that changed since.
     std::ofstream(folder / "shot" / readManifest(folder / "shot").frames[1].file, std::ios::app) << "x";
-    refused(options({"noaa", "uncharted"}, "out"), "the shot's content was");
+    refused(options({"noaa", "uncharted"}, "out"), "the shot's content: before ");
     EXPECT_THROW(goOn(options({"noaa"}, "nothing there")), InputError);
 }
 TEST_F(Resume, StalePicturesAreRemovedAndNamed) {
