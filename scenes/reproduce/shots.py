@@ -95,9 +95,12 @@ class Workshop:
         environment["PATH"] = ":".join(
             p for p in places if p == "/usr/bin" or not os.path.exists(os.path.join(p, "python3"))
         )
-        done = subprocess.run(
-            [str(word) for word in command], capture_output=True, text=True, env=environment
-        )
+        words = [str(word) for word in command]
+        try:
+            done = subprocess.run(words, capture_output=True, text=True, env=environment)
+        except OSError as error:
+            way = "; BLENDER says which Blender" if words[0] == self.blender else ""
+            raise SystemExit(f"{what}: cannot run '{words[0]}': {error.strerror}{way}") from None
         log.write_text(done.stdout + done.stderr)
         if done.returncode != 0:
             last = "\n".join((done.stdout + done.stderr).strip().splitlines()[-5:])
@@ -142,20 +145,11 @@ def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
         command += ["--subsamples", shot.pattern] if shot.pattern else []
         shop.run(f"synth.{shot.name}", command)
         return _ready(shop, shot, wish, started, "exact truth", folder)
-    blend = (
-        shop.out
-        / "scenes"
-        / f"{'_'.join([shot.scene, *(v.strip('-') for v in shot.variant), size])}.blend"
-    )
-    headless = ROOT / "blender_addon/aa_resolve/headless.py"
-    shop.run(
-        f"scene.{blend.stem}",
-        [shop.blender, "-b", "--factory-startup", "--python-exit-code", 9, "-P", ROOT / f"scenes/{shot.scene}.py"]
-        + ["--", "--out", blend, *shot.variant, "--resolution", size],
-    )  # fmt: skip
+    stem = "_".join([shot.scene, *(v.strip("-") for v in shot.variant), size])
+    blend = build_scene(shop, stem, shot.scene, shot.variant, size)
     ids = [m.split("+")[0] for m in shot.all_methods() if shop.serves(m)]
-    command = [shop.blender, "-b", blend, "--python-exit-code", 9, "-P", headless, "--"]
-    command += ["--out", folder, "--for", ",".join(dict.fromkeys(ids)), "--name", shot.name]
+    command = [*exporter(shop, blend), "--out", folder]
+    command += ["--for", ",".join(dict.fromkeys(ids)), "--name", shot.name]
     command += ["--resolution", size, "--frames", f"{shot.first}-{shot.first + shot.frames - 1}"]
     command += ["--truth-samples", shot.truth_samples]
     command += ["--jitter", shot.jitter, "--period", shot.period]
@@ -181,6 +175,28 @@ def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
         _lend_truth(make_folder(shop, shots[shot.truth_of]), folder)
     done = [line.split(": ", 1)[-1] for line in said.splitlines() if "pictures in" in line]
     return _ready(shop, shot, wish, started, done[-1] if done else "ready", folder)
+
+
+def build_scene(
+    shop: Workshop, stem: str, scene: str, variant: tuple[str, ...], size: str, threads: int = 0
+) -> Path:
+    """The scene's .blend at this size, by its name; one that is up to date is kept."""
+    blend = shop.out / "scenes" / f"{stem}.blend"
+    command = [*_blender(shop, threads), "--factory-startup", "--python-exit-code", 9]
+    command += ["-P", ROOT / f"scenes/{scene}.py", "--", "--out", blend, *variant]
+    shop.run(f"scene.{stem}", [*command, "--resolution", size])
+    return blend
+
+
+def exporter(shop: Workshop, blend: Path, threads: int = 0) -> list[object]:
+    """The exporter's command line without its options."""
+    headless = ROOT / "blender_addon/aa_resolve/headless.py"
+    return [*_blender(shop, threads), blend, "--python-exit-code", 9, "-P", headless, "--"]
+
+
+def _blender(shop: Workshop, threads: int) -> list[object]:
+    """Blender without a window; 0 threads: one per processor."""
+    return [shop.blender, "-b", *(("-t", threads) if threads else ())]
 
 
 def _ready(shop: Workshop, shot: Shot, wish: str, started: float, what: str, folder: Path) -> Path:
