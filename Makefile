@@ -15,7 +15,7 @@ space := $() $()
 # A compiler cache is used where there is one.
 LAUNCHER := $(if $(shell command -v ccache 2>/dev/null),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache,)
 
-.PHONY: help deps configure build program install demo test test-addon test-blenders blender-facts blenders-clean fuzz sanitize bench asserts addon bundle deb test-bundle docs bits reproduce format clean
+.PHONY: help deps configure build program install demo test test-addon test-blenders blender-facts blenders-clean fuzz sanitize bench asserts addon bundle deb test-bundle docs bits reproduce farm test-farm format clean
 help:
 	@echo "make demo       build, render two scenes in Blender, run the methods, make contact sheets and reports"
 	@echo "make test       build and run every test"
@@ -27,6 +27,9 @@ help:
 	@echo "make bench      speed of every method, ns per pixel, and of the exporter, CPU seconds"
 	@echo "make reproduce  render the study's scenes, run every method on each, hold them against the published"
 	@echo "                tables, write docs/results; QUICK=1: a short form, FULL=1: published sizes, ONLY=oliveros-5.8: one table, ONLY=list"
+	@echo "make farm       a small study of scenes x frames x methods as a Snakemake workflow, two jobs at once, to"
+	@echo "                build/farm; STUDY=study.yaml: yours; PLAN=1: what would be done (docs/farm.md)"
+	@echo "make test-farm  the same study on one machine and on a Slurm of its own, killed and resumed: same bytes"
 	@echo "make test-addon     the add-on's tests in the Blender at BLENDER=/path/to/blender; ONLY=\"light motion\""
 	@echo "make test-blenders  the same, scenes and more in the Blenders of Debian 13 and sid; SUITES=\"trixie sid\", ONLY=..."
 	@echo "make test-bundle    the bundle and the zips in bare systems of Debian 12, 13 and sid"
@@ -130,6 +133,17 @@ bits: program
 # ONLY=list shows the names and what is missing.
 reproduce: program
 	@python3 scenes/reproduce/reproduce.py $(BUILD)/aaresolve build/reproduce docs/results $(if $(QUICK),--quick) $(if $(FULL),--full) $(if $(filter list,$(ONLY)),--list,$(if $(ONLY),--only $(ONLY)))
+
+# Only these need Snakemake and Slurm. What is finished is kept.
+STUDY ?=
+farm: program
+	@CI_PACKAGES=snakemake .ci/bootstrap
+	@AARESOLVE=$(CURDIR)/$(BUILD)/aaresolve snakemake -s scenes/Snakefile --cores $(JOBS) --rerun-incomplete \
+	  $(if $(PLAN),-n) $(if $(STUDY),--configfile $(STUDY))
+
+test-farm: program
+	@CI_PACKAGES="snakemake slurmctld slurmd slurm-client munge" .ci/bootstrap
+	@python3 tests/farm/farm.py $(BUILD)/aaresolve
 
 format:
 	@.ci/format
