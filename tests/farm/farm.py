@@ -119,9 +119,6 @@ def stopped(farm: Farm) -> str:
     claim = wait_for("a picture being made", lambda: _midway(farm, "stopped"), first)
     os.killpg(first.pid, signal.SIGKILL)
     first.wait()
-    for pid in map(owner, farm.claims("stopped")):  # Blenders have sessions of their own
-        if pid:
-            _kill(pid)
     done = farm.marks("stopped")
     subprocess.run(
         ["snakemake", "-s", str(ROOT / "scenes/Snakefile"), "--unlock", "--config", "out=study"],
@@ -137,13 +134,6 @@ def stopped(farm: Farm) -> str:
 def _midway(farm: Farm, name: str) -> str:
     claims = farm.claims(name)
     return claims[0].stem if claims and farm.marks(name) >= _MIDWAY else ""
-
-
-def _kill(pid: int) -> None:
-    try:
-        os.kill(pid, signal.SIGKILL)
-    except ProcessLookupError:
-        pass
 
 
 def elsewhere(farm: Farm) -> str:
