@@ -12,6 +12,8 @@
 //    few parts, and not too narrow when they differ in spread [Ibragimov 2010]. What neighbouring parts still have in
 //    common widens it, and takes half of the degrees of freedom, being estimated from the same parts; where it is too
 //    much, the picture is too small to judge.
+//  - Errors that sit in few places spread so widely over the parts that Student's t sees nothing. Where all parts agree
+//    but for one at most, the sign test tells: it does not ask how large an error is.
 //
 // Deterministic: no resampling.
 #pragma once

@@ -154,7 +154,11 @@ TEST(ErrorBarCoverage, IntervalsHoldTheKnownDifference) {
                 SCOPED_TRACE(traceOf(c));
                 print(c, t);
                 EXPECT_GE(100.0 * t.covered / t.judged, 90);
-                EXPECT_LE(100.0 * t.covered / t.judged, 99);
+                // What higher orders of the noise may hide is a bound and no spread: where it is most of an interval,
+                // of large pictures with a steady difference, the interval holds always.
+                if (sigma < 0.01 || offset == 0) {
+                    EXPECT_LE(100.0 * t.covered / t.judged, 99);
+                }
                 EXPECT_GE(100.0 * t.gainCovered / t.judged, 90);
                 EXPECT_EQ(t.disagree, 0) << "difference and gain tell the same";
                 EXPECT_GE(t.judged, 0.9 * t.all);
@@ -205,6 +209,44 @@ TEST(ErrorBarCoverage, TheReasonIsTheRightOne) {
     t = tally(c, 206, 100);
     EXPECT_GE(t.resolved, 0.9 * t.all);
     EXPECT_EQ(t.wrongSide, 0);
+}
+
+// A window with blinds holds most of a picture's error. What every part shows is told all the same, and by how much;
+// what parts disagree on is not, however the errors are spread.
+TEST(ErrorBarCoverage, ErrorsThatSitInFewPlaces) {
+    Random random{300};
+    for (const double spread : {1.5, 2.5})
+        for (const double ratio : {1.0, 0.1}) {
+            const int kRuns = 400;
+            int resolved = 0, wrongSide = 0, held = 0;
+            for (int run = 0; run < kRuns; run++) {
+                ErrorParts a{.columns = 4, .rows = 4, .squares = {}, .halves = {}, .values = {}}, b = a;
+                for (int i = 0; i < 16; i++) {
+                    const double strength = std::exp(spread * random.normal());
+                    const double own = std::exp(0.5 * random.normal() - 0.125);
+                    a.squares.push_back(strength * own),
+                        b.squares.push_back(strength * ratio * std::exp(0.5 * random.normal() - 0.125));
+                    for (ErrorParts* p : {&a, &b})
+                        p->halves.push_back(0), p->values.push_back(1000), p->measured += p->squares.back();
+                }
+                const Comparison c = compareMethods({&a, 1}, {&b, 1});
+                resolved += c.resolved;
+                wrongSide += c.resolved && ratio != 1 && c.mseDifference < 0;
+                EXPECT_EQ(c.resolved, c.gainLow > 0 || c.gainHigh < 0);
+                EXPECT_TRUE(c.why == Unresolved::tooSmall || (c.gainLow <= c.gainDb && c.gainDb <= c.gainHigh));
+                held += c.gainLow <= 10 * std::log10(ratio) && 10 * std::log10(ratio) <= c.gainHigh;
+            }
+            SCOPED_TRACE("spread " + std::to_string(spread) + ", ratio " + std::to_string(ratio));
+            if (std::getenv("AA_LONG_TESTS"))
+                std::printf("spread %g, ratio %g: resolved %d of %d, gain held %d\n", spread, ratio, resolved, kRuns,
+                            held);
+            if (ratio == 1)
+                EXPECT_LE(resolved, 0.05 * kRuns);
+            else
+                EXPECT_GE(resolved, 0.9 * kRuns);
+            EXPECT_EQ(wrongSide, 0);
+            EXPECT_GE(held, 0.9 * kRuns);
+        }
 }
 
 // Figures over time whose frames share their history: a first-order memory of `memory`.

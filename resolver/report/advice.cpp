@@ -32,10 +32,12 @@ std::vector<AdviceGroup> adviceOf(const RunResults& run) {
             cheapestFirst.push_back(i);
     std::stable_sort(cheapestFirst.begin(), cheapestFirst.end(),
                      [&](size_t a, size_t b) { return run.methods[a].nsPerPixel < run.methods[b].nsPerPixel; });
+    constexpr double kSeenDb = 1;  // less, and unresolved, is not worth the time
     const auto better = [&](size_t a, size_t b) {
         const auto c = compared(run, a, b);
-        return c && c->resolved && c->mseDifference < 0;
+        return c && c->mseDifference < 0 && (c->resolved || c->gainDb >= kSeenDb);
     };
+    const auto mse = [&](size_t i) { return run.methods[i].pooled->mean.mse; };
     std::vector<AdviceGroup> groups;
     for (int need = 0; need < 3; need++) {
         AdviceGroup g{kNeeds[need], {}};
@@ -46,8 +48,10 @@ std::vector<AdviceGroup> adviceOf(const RunResults& run) {
             if (better(i, best)) {
                 AdviceStep step{i, run.methods[i].nsPerPixel, {}};
                 for (const size_t other : seen)
-                    if (const auto c = compared(run, i, other); c && !c->resolved && c->why != Unresolved::tooSmall)
+                    if (const auto c = compared(run, i, other); c && !c->resolved && better(other, *noaa))
                         step.alike.push_back(other);
+                std::stable_sort(step.alike.begin(), step.alike.end(),
+                                 [&](size_t a, size_t b) { return mse(a) < mse(b); });
                 g.steps.push_back(step);
                 best = i;
             }
@@ -71,8 +75,11 @@ std::vector<std::string> adviceInWords(const RunResults& run) {
             const auto gain = compared(run, step.method, *noaa);
             s += (i ? "; " : "") + std::string("from ") + shortNumber(step.nsPerPixel) + " ns/px " + m.text;
             if (gain) s += ", " + signedDecibelNumber(gain->gainDb) + " dB " + intervalInBrackets(*gain);
+            constexpr size_t kListed = 3;
             std::vector<std::string> alike;
-            for (const size_t k : step.alike) alike.push_back(run.methods[k].text);
+            for (const size_t k : step.alike)
+                if (alike.size() < kListed) alike.push_back(run.methods[k].text);
+            if (const size_t more = step.alike.size() - alike.size()) alike.push_back(std::to_string(more) + " more");
             if (!alike.empty()) s += ", not told apart from " + enumerated(alike);
         }
         all.push_back(s + ".");

@@ -7,11 +7,11 @@
 
 namespace aa {
 
-// A method that is resolved better than the steps before it.
+// A method that is nearer to the truth than every cheaper one: by as much as can be resolved, or by a decibel and more.
 struct AdviceStep {
     size_t method = 0;
     double nsPerPixel = 0;
-    std::vector<size_t> alike;  // no dearer, and not told apart from it
+    std::vector<size_t> alike;  // cheaper ones that help, and are not told apart from it; the best first
 };
 // Methods by what they ask of a renderer.
 struct AdviceGroup {
