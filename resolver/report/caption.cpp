@@ -81,10 +81,11 @@ std::string harmSentence(const RunResults& run, const std::vector<size_t>& order
     std::vector<std::string> worse;
     for (const size_t i : order)
         if (i != noaa && *run.methods[i].pooled->gainDb < 0 && resolved(run, i, noaa))
-            worse.push_back(run.methods[i].text + " (" + gain(run, run.methods[i]) + ")");
+            worse.push_back(run.methods[i].text + ", " + gain(run, run.methods[i]));
     if (worse.empty()) return {};
-    return enumerated(worse) + (worse.size() == 1 ? " is" : " are") + " farther from " + truth(run) +
-           " than no anti-aliasing at all.";
+    std::string s = "Farther from " + truth(run) + " than no anti-aliasing at all: ";
+    for (size_t i = 0; i < worse.size(); i++) s += (i ? "; " : "") + worse[i];
+    return s + ".";
 }
 
 // Two forms of one method that differ in sharpening only: X and XNorm or XNoSharpen, or one parameter named sharpen*.
@@ -112,7 +113,8 @@ std::vector<std::string> sharpenSentences(const RunResults& run, const std::vect
                                     sharp.text + " and " + plain.text + ".");
             else if (cost > 0)
                 sentences.push_back("The sharpen filter of " + sharp.text + " costs " + decibels(cost) + ": " +
-                                    plain.text + ", the same method without it, reaches " +
+                                    plain.text + ", the same method " +
+                                    (plain.id.ends_with("NoSharpen") ? "without it" : "with another") + ", reaches " +
                                     decibels(plain.pooled->mean.psnr) + ".");
             else
                 sentences.push_back("The sharpen filter of " + sharp.text + " gains " + decibels(-cost) + " over " +
