@@ -214,6 +214,7 @@ def main(argv: list[str]) -> int:
     if lacks:
         print(f"farm: {', '.join(lacks)}: not here; `make farm` installs them", file=sys.stderr)
         return 3
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that nothing stays behind
     folder = a.keep.absolute() if a.keep else Path(tempfile.mkdtemp(prefix="aa_farm_"))
     folder.mkdir(exist_ok=True)
     farm = Farm(a.program.resolve(), folder, a.config)

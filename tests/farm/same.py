@@ -7,8 +7,10 @@ import json
 import re
 from pathlib import Path
 
-# What two runs of one shot may differ in: docs/format.md, Results.
-_OF_A_RUN = re.compile(r"provenance|seconds.*|deviceSeconds.*|nsPerPixel")
+# Times, how busy the machine was, and the command lines with their folders: what two runs of one study may differ in.
+_OF_A_RUN = re.compile(
+    r"provenance|rerun|load|nsPerPixel|renderSeconds|seconds.*|wallSeconds.*|deviceSeconds.*"
+)
 _OF_AN_EXPORT = re.compile(r"render_seconds")
 
 
