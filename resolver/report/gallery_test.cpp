@@ -134,9 +134,14 @@ struct RunOnDisk {
     }
 };
 
-TEST(Sheet, OrderIsBestFirstAndNoaaLast) {
-    const RunOnDisk r("aaresolve_sheet_order", 40, 30, 4, true);
+TEST(Sheet, OrderIsBestFirst) {
+    RunOnDisk r("aaresolve_sheet_order", 40, 30, 4, true);
     EXPECT_EQ(presentationOrder(r.run), (std::vector<size_t>{3, 2, 1, 0}));
+    // noaa has its place like any other; what has no figures comes last.
+    std::swap(r.run.methods[0].pooled, r.run.methods[2].pooled);
+    EXPECT_EQ(presentationOrder(r.run), (std::vector<size_t>{3, 0, 1, 2}));
+    r.run.methods[3].pooled.reset();
+    EXPECT_EQ(presentationOrder(r.run), (std::vector<size_t>{0, 1, 2, 3}));
 }
 TEST(Sheet, DrawsEverySize) {
     for (const auto& [w, h] : {std::pair{1, 1}, {3, 200}, {200, 3}, {64, 48}, {700, 500}})

@@ -41,7 +41,7 @@ bool showsTruth(const Pictures& p) { return !p.truth.empty(); }
 std::string titleOf(const RunResults& run) { return "anti-aliasing methods against " + referenceInWords(run.protocol); }
 std::string footOf(const SheetMethods& m, bool figures, bool errors, bool ownCrops) {
     const RunResults& run = m.run;
-    std::string text = "Best PSNR first, noaa last. Crops: unfiltered pixels";
+    std::string text = "Best PSNR first. Crops: unfiltered pixels";
     text += ownCrops ? ". " : ", where the methods differ most. ";
     if (!m.best.empty()) text += "\u2605 best of the methods shown. ";
     if (errors) text += "Figures and errors: " + inWords(run.protocol) + ". ";
@@ -501,8 +501,7 @@ std::vector<size_t> presentationOrder(const RunResults& run) {
     for (size_t i = 0; i < order.size(); i++) order[i] = i;
     const auto rank = [&](size_t i) {
         const MethodResult& m = run.methods[i];
-        if (m.id == "noaa") return -std::numeric_limits<double>::infinity();
-        return m.pooled ? m.pooled->mean.psnr : -1e300;
+        return m.pooled ? m.pooled->mean.psnr : -std::numeric_limits<double>::infinity();
     };
     std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return rank(a) > rank(b); });
     return order;

@@ -1,4 +1,4 @@
-// Contact sheets. Rows: a row per method (ground truth first, then from best to worst PSNR, noaa last) with its
+// Contact sheets. Rows: a row per method (ground truth first, then from best to worst PSNR) with its
 // figures, the whole frame, magnified crops, maps of the error on one fixed scale. Grid: methods side by side, a row
 // per crop. Strips: a row per method and a column per frame of a crop. Loops: the crops in place, method after method
 // or frame after frame. Crops are unfiltered pixels, magnified by whole factors.
@@ -9,7 +9,7 @@
 
 namespace aa {
 
-// Methods as indices in the order of every table and sheet: best to worst pooled PSNR, noaa last; methods without
+// Methods as indices in the order of every table and sheet: best to worst pooled PSNR; methods without
 // figures keep their order before it.
 std::vector<size_t> presentationOrder(const RunResults& run);
 // Those that are named by their text, id or family, in that order; of no names all. Throws UsageError: no such method.

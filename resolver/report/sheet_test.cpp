@@ -197,7 +197,7 @@ TEST(Sheet, LoopsKeepThePlace) {
     const Drawn d;
     const auto methods = loopOfMethods(d.shown(), 4, {.crops = {kCrop}, .zoom = 2});
     ASSERT_EQ(methods.size(), 4u);
-    const int order[] = {100, 2, 1, 0};  // truth, then best first, noaa last
+    const int order[] = {100, 2, 1, 0};  // truth, then best first
     std::set<std::pair<int, int>> places;
     for (size_t i = 0; i < 4; i++) {
         const auto found = find(methods[i], cropped(d.picture(order[i], 4), kCrop.window), 2);
