@@ -166,7 +166,9 @@ Metric ssimMetric(Figure figure, bool always, int nsPerPixel,
             }};
 }
 }  // namespace
-Metric ssimLumaMetric() { return ssimMetric({"ssimLuma", "SSIM", "SSIM of luma 601"}, true, 25, ssimLuma); }
+Metric ssimLumaMetric() {
+    return ssimMetric({"ssimLuma", "SSIM", "structural similarity of luma 601"}, true, 25, ssimLuma);
+}
 Metric ssimValidMetric() {
     return ssimMetric({"ssimValid", "SSIM valid", "SSIM of luma 601, windows within the picture alone"}, false, 25,
                       ssimValid);

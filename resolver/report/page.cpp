@@ -50,8 +50,11 @@ nlohmann::ordered_json errorColoursJson() {
     return all;
 }
 nlohmann::ordered_json figureJson(const Figure& f) {
-    return {
-        {"name", f.name}, {"title", f.title}, {"better", f.higherIsBetter ? "high" : "low"}, {"form", name(f.form)}};
+    return {{"name", f.name},
+            {"title", f.title},
+            {"about", f.help},
+            {"better", f.higherIsBetter ? "high" : "low"},
+            {"form", name(f.form)}};
 }
 
 std::string pageHead(const std::string& title, std::initializer_list<std::string_view> styles) {

@@ -109,6 +109,15 @@ class Page:
     def call(self, method: str, **params) -> dict:
         return self._browser.call(method, self._session, **params)
 
+    def resize(self, width: int, height: int) -> None:
+        self.call(
+            "Emulation.setDeviceMetricsOverride",
+            width=width,
+            height=height,
+            deviceScaleFactor=1,
+            mobile=False,
+        )
+
     def close(self) -> None:
         self._browser.call("Target.closeTarget", targetId=self._target)
 

@@ -20,6 +20,8 @@ VISITOR
 "$browser" --headless=new --no-sandbox --disable-gpu --user-data-dir="$folder/profile" --host-resolver-rules="MAP * ~NOTFOUND" \
     --enable-logging=stderr --virtual-time-budget=20000 --dump-dom "file://$folder/report.html" >"$folder/dom.html" 2>"$folder/log"
 
+sed -i 's/<wbr>//g' "$folder/dom.html"  # where a name may be broken
+
 failed=0
 expect() { # WHAT PATTERN COUNT: at least COUNT lines or places of the drawn page match
     found=$(grep -oE "$2" "$folder/dom.html" | wc -l)

@@ -244,7 +244,7 @@ class Viewer(ProgramTest):
                 label = page.value(
                     "document.querySelector('#stage .label:last-child .figure').textContent"
                 )
-                self.assertRegex(label, r"^(RMSE|SSIM|FLIP|flicker) [\d.e-]+$")
+                self.assertRegex(label, r"^(frame \d+: (RMSE|SSIM|FLIP)|flicker) [\d.e-]+$")
         page.key("s")
         for key, ev in (("]", 0.5), ("]", 1), ("[", 0.5), ("\\", 0)):
             page.key(key)
@@ -464,6 +464,193 @@ class Viewer(ProgramTest):
         self.assertEqual(beyond, [])
         self.assertTrue(page.pdf().startswith(b"%PDF"))
         self.assertEqual(page.errors(), [])
+
+    # ---- tables and charts ----
+    def contrast(self, page: Page, colours: list[str]) -> float:
+        """The least of these colours against the panel."""
+        return page.value(
+            f"""(() => {{
+              const pen = document.createElement("canvas").getContext("2d");
+              const light = (colour) => {{
+                pen.fillStyle = colour;
+                pen.fillRect(0, 0, 1, 1);
+                const [r, g, b] = [...pen.getImageData(0, 0, 1, 1).data].map((c) => (c / 255 <= 0.04045 ? c / 255 / 12.92 : ((c / 255 + 0.055) / 1.055) ** 2.4));
+                return 0.2126 * r + 0.7152 * g + 0.0722 * b + 0.05;
+              }};
+              const panel = light(css("--panel"));
+              return Math.min(...{json.dumps(colours)}.map(light).map((l) => Math.max(l, panel) / Math.min(l, panel)));
+            }})()"""
+        )
+
+    def table(self, page: Page, name: str) -> tuple[list[str], list[list[str]]]:
+        return tuple(
+            page.value(
+                f"""[[...document.querySelectorAll("#{name} thead th + th button")].map((b) => [b.textContent, b.title]),
+                  [...document.querySelectorAll("#{name} tbody tr")].map((r) => [...r.children].map((c) => c.firstChild.textContent + [...c.childNodes].slice(1).filter((n) => n.nodeType === 3).map((n) => n.textContent).join("")))]"""
+            )
+        )
+
+    def test_tables(self) -> None:
+        run = self.moving()
+        results = json.loads((run / "results.json").read_text())
+        page = self.page(self.report(run, "tables.html"), 1400)
+        by_psnr = sorted(results["methods"], key=lambda m: -m["pooled"]["psnr"])
+        self.assertNotEqual(by_psnr[-1]["id"], "noaa")  # or its place says nothing
+        for name in ("figures", "time-figures", "price-figures"):
+            heads, rows = self.table(page, name)
+            self.assertEqual([r[0] for r in rows], [m["text"] for m in by_psnr], name)
+            for k, (title, about) in enumerate(heads):
+                self.assertGreater(len(about), 10, title)
+                self.assertTrue(any(r[k + 1] != "–" for r in rows), f"{title} has no value")
+            notes = f"document.getElementById('{name}').closest('.scroll').nextElementSibling"
+            self.assertEqual(
+                page.value(f"[...{notes}.querySelectorAll('dt')].map((d) => d.textContent)"),
+                [title for title, _ in heads],
+            )
+        heads = [title for title, _ in self.table(page, "price-figures")[0]]
+        self.assertNotIn("Passes, s per frame", heads)  # a synthetic shot is not rendered
+        said = page.value("document.getElementById('price-note').textContent")
+        self.assertIn("how long its passes took", said)
+        title = page.value("document.getElementById('time-title').textContent")
+        self.assertEqual(title, "Over time: flicker and ghosts")
+        # The caption speaks of what is there.
+        note = page.value("document.getElementById('figures-note').textContent")
+        self.assertNotIn("“to”", note)
+        # A gain has a colour where it is resolved, and nowhere else.
+        pairs = {p["second"]: p["resolved"] for p in results["pairs"] if p["first"] == "noaa"}
+        toned = page.value(
+            "Object.fromEntries([...document.querySelectorAll('#figures tbody tr')].map((r) => [r.cells[0].innerText.split('\\n')[0], r.cells[2].className]))"
+        )
+        for method, resolved in pairs.items():
+            self.assertEqual(bool(toned[method]), resolved, method)
+        # Every pair that is not told apart can be read, each from both sides.
+        page.value("document.getElementById('unresolved-pairs').open = true")
+        unresolved = [p for p in results["pairs"] if not p["resolved"]]
+        self.assertEqual(
+            page.value("document.getElementById('unresolved-pairs').hidden"), not unresolved
+        )
+        page.wait(
+            f"document.querySelectorAll('#unresolved-pairs tbody tr').length || {int(not unresolved)}"
+        )
+        cells = page.value(
+            "[...document.querySelectorAll('#unresolved-pairs tbody tr')].map((r) => [r.cells[0].textContent, [...r.cells].slice(1).map((c) => c.textContent).join(', ')])"
+        )
+        listed = {(a, b) for a, others in cells for b in others.split(", ") if b != "–"}
+        expected = {(p["first"], p["second"]) for p in unresolved}
+        self.assertEqual(listed, expected | {(b, a) for a, b in expected})
+        label = page.value("document.querySelector('#stage .label:last-child .figure').textContent")
+        self.assertRegex(label, rf"^frame {FRAMES}: \d+\.\d\d dB$")
+        self.assertEqual(page.errors(), [])
+
+    def test_charts(self) -> None:
+        run = self.moving()
+        results = json.loads((run / "results.json").read_text())
+        page = self.page(self.report(run, "charts.html"), 1400)
+        ticks = page.value("Chart.getChart('scatter').scales.x.ticks.map((t) => t.value)")
+        self.assertGreater(len(ticks), 1)
+        for tick in ticks:
+            self.assertIn(round(tick / 10 ** math.floor(math.log10(tick) + 1e-9), 6), (1, 2, 5))
+        front, best = [], -math.inf
+        for m in sorted(results["methods"], key=lambda m: m["nsPerPixel"]):
+            if m["pooled"]["psnr"] > best:
+                best = m["pooled"]["psnr"]
+                front.append(m["text"])
+        named = page.value("Chart.getChart('scatter').names.map((n) => n.text)")
+        self.assertEqual(sorted(named), sorted(front))
+        # All methods at once: no two look alike, and some of them alone look as they do among all.
+        listed = json.loads(self.aaresolve("list", "--json").stdout)
+        ids = [m["id"] for m in listed["methods"]]
+        rows = ids + ["fxaa311"] * 5
+        looks = page.value(f"methodLooks({json.dumps(rows)})")
+        self.assertEqual(len({(k["colour"], k["marker"], k["turn"]) for k in looks}), len(rows))
+        few = page.value(f"methodLooks({json.dumps(ids[:12])})")
+        kept = sum(a["colour"] == b["colour"] for a, b in zip(few, looks))
+        self.assertGreater(kept, len(few) / 2)
+        turned = page.value(f"methodLooks({json.dumps(ids[:12][::-1])})")
+        self.assertEqual(turned[::-1], few)
+        self.assertIn(
+            "No whisker",
+            page.value("document.getElementById('gain').closest('figure').textContent"),
+        )
+        # Lines: what is drawn is named, the others can be asked for.
+        page.value("(window.frames_ = Chart.getChart('frames'), true)")
+        for button, drawn in (("None", 0), ("All", len(METHODS))):
+            page.value(
+                f"[...document.querySelectorAll('#frames')].map((c) => [...c.closest('figure').querySelectorAll('details.lines button')].find((b) => b.textContent === '{button}').click())"
+            )
+            self.assertEqual(page.value("frames_.getVisibleDatasetCount()"), drawn)
+            self.assertEqual(page.value("frames_.legend.legendItems.length"), drawn)
+        # Charts beside each other fill their row.
+        short = page.value(
+            """[...document.querySelectorAll(".charts")].flatMap((box) => {
+              const rows = new Map(), figures = [...box.children].map((f) => f.getBoundingClientRect()).filter((b) => b.width);
+              for (const b of figures) rows.set(b.top, Math.max(rows.get(b.top) ?? 0, b.right));
+              return [...rows.values()].filter((right) => Math.abs(right - box.getBoundingClientRect().right) > 1);
+            })"""
+        )
+        self.assertEqual(short, [])
+        # Names of details break between words, and the pictures above them stand in line.
+        page.value("document.getElementById('details').scrollIntoView()")
+        page.wait(f"document.querySelectorAll('#crops button').length >= {len(METHODS) + 1}")
+        crooked = page.value(
+            """[...document.querySelectorAll("#crops button")].filter((b) => b.querySelector("span").scrollWidth > b.clientWidth ||
+              Math.abs(b.querySelector("canvas").getBoundingClientRect().top - b.getBoundingClientRect().top) > 2).length"""
+        )
+        self.assertEqual(crooked, 0)
+        self.assertEqual(
+            page.value("breakable('unchartedNoSharpen').filter((p) => p.tagName).length"), 2
+        )
+        self.assertEqual(page.errors(), [])
+
+    def test_narrow_and_dark(self) -> None:
+        file = self.report(self.moving(), "narrow.html")
+        page = self.page(file, 1400)
+        page.resize(390, 844)
+        page.wait("innerWidth === 390")
+        page.wait(IDLE)
+        page.wait(
+            "[...document.querySelectorAll('.chart canvas')].every((c) => c.getBoundingClientRect().width <= c.parentElement.clientWidth + 1)"
+        )
+        self.fits(page, 390)
+        for box in ("figure", ".scroll"):
+            beyond = page.value(
+                f"[...document.querySelectorAll('{box}')].filter((f) => f.getBoundingClientRect().right > innerWidth).length"
+            )
+            self.assertEqual(beyond, 0, box)
+        # The stage's pixels are square on the screen, the pictures' too.
+        stage = page.value(
+            "(() => { const c = document.querySelector('#stage canvas'), b = c.getBoundingClientRect(); return [c.width / b.width, c.height / b.height, b.right]; })()"
+        )
+        self.assertAlmostEqual(stage[0], stage[1], delta=0.01)
+        self.assertLessEqual(stage[2], 391)
+        # What is cut says so until its end is seen, and keeps the names and their rules in sight.
+        cut = "[...document.querySelectorAll('.scroll')].filter((s) => s.clientWidth && s.scrollWidth > s.clientWidth + 1)"
+        self.assertGreater(page.value(f"{cut}.length"), 1)
+        page.wait(f"{cut}.every((s) => !s.previousElementSibling.hidden)")
+        page.value(
+            "(window.box = document.getElementById('time-figures').closest('.scroll'), box.scrollLeft = 1e4)"
+        )
+        page.wait("box.previousElementSibling.classList.contains('seen')")
+        left, rule = page.value(
+            """(() => { const th = box.querySelector("tbody th"); return [th.getBoundingClientRect().left - box.getBoundingClientRect().left - box.clientLeft,
+              [th, th.nextElementSibling].map((c) => getComputedStyle(c).borderBottomWidth)]; })()"""
+        )
+        self.assertAlmostEqual(left, 0, delta=1)
+        self.assertEqual(rule, ["1px", "1px"])
+        self.assertEqual(
+            page.value("getComputedStyle(box.querySelector('table')).borderCollapse"), "separate"
+        )
+        self.assertEqual(page.errors(), [])
+        page.close()
+        for dark in (False, True):
+            page = self.page(file, 800, dark=dark)
+            colours = page.value("[...methodColours, methodColour('noaa'), methodColour('truth')]")
+            arrows = page.value(
+                "getComputedStyle(document.querySelector('#figures thead button'), '::after').color"
+            )
+            for name, shown in (("series", colours), ("sort arrows", [arrows])):
+                self.assertGreaterEqual(self.contrast(page, shown), 3, (name, dark))
+            page.close()
 
     def test_embed(self) -> None:
         run = self.moving()

@@ -19,13 +19,15 @@
     element("div", { class: "scroll", tabindex: "0", role: "region", "aria-labelledby": "angles-title" }, table));
   document.getElementById("details").before(section);
 
+  // As in the charts of the run, where the method is one of it.
+  const own = methodLooks(study.methods.map((m) => methodIn(m.text))), looks = study.methods.map((m, i) => window.aaLooks?.get(m.text) ?? own[i]);
   let chart;
   const draw = () => {
     if (chart) chart.destroy();
     chart = new Chart(canvas, {
       type: "line",
-      data: { datasets: study.methods.map((m, i) => ({ label: m.text, data: m.gainDb.map((y, k) => ({ x: study.degrees[k], y })), borderColor: methodColour(methodIn(m.text)), backgroundColor: methodColour(methodIn(m.text)),
-        borderDash: methodDash(study.methods.slice(0, i).filter((o) => methodIn(o.text) === methodIn(m.text)).length), borderWidth: 2, pointRadius: 0, pointHitRadius: 8 })) },
+      data: { datasets: study.methods.map((m, i) => ({ label: m.text, data: m.gainDb.map((y, k) => ({ x: study.degrees[k], y })), borderColor: looks[i].colour, backgroundColor: looks[i].colour,
+        borderDash: looks[i].dash, borderWidth: 2, pointRadius: 0, pointHitRadius: 8 })) },
       options: { animation: false, maintainAspectRatio: false, interaction: { mode: "nearest", axis: "x", intersect: false },
         scales: { x: { type: "linear", min: 0, max: 360, ticks: { stepSize: 45 }, title: { display: true, text: "direction, degrees" } }, y: { title: { display: true, text: "gain, dB" } } },
         plugins: { legend: { position: "bottom" }, tooltip: { callbacks: { title: (t) => `${number(t[0].parsed.x, 1)}°`, label: (t) => `${t.dataset.label}: ${number(t.parsed.y)} dB` } } } },

@@ -7,13 +7,17 @@ const element = (name, attributes = {}, ...children) => {
   return e;
 };
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-// ---- one method, one look in every page: it follows from the method's id alone, never from its rank ----
-// Twelve hues in two lightnesses of OKLCH (0.55 and 0.68), each at least 2.7:1 against the light and the dark ground.
-const methodColours = ["#bb3a6d", "#e86494", "#c13e2e", "#ef6856", "#a55d0c", "#dc7d12", "#8a6e08", "#b99313", "#687c02", "#8ca507", "#05893e", "#2eb45c",
-  "#158374", "#16b09b", "#018090", "#13abbf", "#0479b2", "#04a2ed", "#4c66d3", "#7190fd", "#8254c4", "#a97cf0", "#a644a0", "#d16cc9"];
-const methodMarkers = ["circle", "rect", "triangle", "rectRot", "star", "crossRot", "rectRounded"]; // Chart.js's names
-// FNV-1a with a last mix. The start is the one of 60,000 by which the methods share colours least: all 24 are used, none
-// by more than three methods, and no two methods have both colour and marker in common.
+// A name that may be broken where a word of it ends: unchartedNo|Sharpen, smaa1x:|preset=|HIGH.
+const breakable = (name) => name.split(/(?<=[a-z0-9])(?=[A-Z])|(?<=[:,=+_])/).flatMap((part, k) => (k ? [element("wbr"), part] : [part]));
+
+// ---- one method, one look in every page: it follows from the method's id, never from its rank ----
+// Twelve hues in two lightnesses, each at least 3:1 against the light panel and against the dark one.
+const methodColours = ["#c13f6c", "#eb648f", "#c5432a", "#ee694e", "#a35f05", "#d57d05", "#866d04", "#af8f07", "#5f7904", "#7e9e07", "#008143", "#06a85a",
+  "#037d71", "#08a494", "#077a8d", "#0da0b8", "#0275b3", "#0499e9", "#5465d4", "#7489fc", "#8a55c5", "#ad79ed", "#ad47a0", "#d46cc5"];
+const plainColour = "#7f7f7f";
+// Chart.js's names and a turn in degrees; the last two are of lines alone.
+const methodMarkers = [["circle", 0], ["rect", 0], ["triangle", 0], ["rectRot", 0], ["triangle", 180], ["crossRot", 0], ["star", 0]];
+// FNV-1a with a last mix.
 const hashOf = (id) => {
   let v = 4694;
   for (const c of new TextEncoder().encode(id)) v = Math.imul(v ^ c, 16777619) >>> 0;
@@ -21,9 +25,42 @@ const hashOf = (id) => {
   return (v ^ (v >>> 12)) >>> 0;
 };
 // `id` is a method's id; "truth" is ink and noaa is grey, as nothing else is.
-const methodColour = (id) => (id === "truth" ? css("--ink") : id === "noaa" ? "#7f7f7f" : methodColours[hashOf(id) % methodColours.length]);
-// `nth`: the how-manieth row of this id in the run (other parameters); its colour is the same, marker and dash are not.
-const methodMarker = (id, nth = 0) => methodMarkers[((hashOf(id) >>> 8) + nth) % methodMarkers.length];
+const methodColour = (id) => (id === "truth" ? css("--ink") : id === "noaa" ? plainColour : methodColours[hashOf(id) % methodColours.length]);
+// The looks of a page's rows, by their ids: no two of them have both colour and marker in common. A method has its own
+// colour while that is free, or the one nearest to it; whoever comes first in the alphabet keeps it, so that a method
+// looks alike in reports of other runs. Rows of one method (other parameters) share its colour; marker and dash tell
+// them apart.
+const methodLooks = (ids) => {
+  const colours = methodColours.length, hues = colours / 2, markers = methodMarkers.length;
+  const ring = (a, b) => Math.min((a - b + hues) % hues, (b - a + hues) % hues);
+  const apart = (a, b) => 2 * ring(a >> 1, b >> 1) + ((a ^ b) & 1);
+  const near = (c) => methodColours.map((_, k) => k).sort((a, b) => apart(a, c) - apart(b, c) || a - b);
+  const own = new Map();
+  for (const id of [...new Set(ids)].filter((i) => i !== "noaa").sort()) {
+    const want = hashOf(id) % colours, others = [...own.values()];
+    own.set(id, near(want).find((c) => !others.includes(c)) ?? want);
+  }
+  const nth = ids.map((id, i) => ids.slice(0, i).filter((o) => o === id).length), taken = [], looks = [];
+  const byRow = ids.map((_, i) => i).sort((a, b) => nth[a] - nth[b] || (ids[a] < ids[b] ? -1 : ids[a] > ids[b] ? 1 : 0));
+  for (const i of byRow) {
+    const start = (hashOf(ids[i]) >>> 8) + nth[i], dash = methodDash(nth[i]);
+    const inTurn = methodMarkers.map((_, k) => (start + k) % markers);
+    let colour = plainColour, marker = nth[i] % markers;
+    if (own.has(ids[i])) {
+      const c = own.get(ids[i]), offers = near(c).flatMap((k) => inTurn.map((m) => [k, m]));
+      const free = [1, 0].map((far) => offers.find(([k, m]) => k === c && !taken.some(([l, n]) => ring(l >> 1, k >> 1) <= far && n === m))).find(Boolean)
+        ?? offers.find(([k, m]) => !taken.some(([l, n]) => l === k && n === m)) ?? offers[0];
+      taken.push(free);
+      colour = methodColours[free[0]];
+      marker = free[1];
+    }
+    looks[i] = { colour, marker: methodMarkers[marker][0], turn: methodMarkers[marker][1], dash };
+  }
+  return looks;
+};
+// As Chart.js asks for it; a marker of lines needs thicker ones to be seen.
+const markerOptions = ({ colour, marker, turn }) => ({ backgroundColor: colour, borderColor: colour, pointBackgroundColor: colour, pointBorderColor: colour, pointStyle: marker, pointRotation: turn,
+  pointBorderWidth: ["crossRot", "star"].includes(marker) ? 2.5 : 1 });
 // The id in a method's text: smaa1x:preset=HIGH+sharpen=xu.
 const methodIn = (text) => text.split(/[:+]/)[0];
 const methodDash = (nth = 0) => [[], [6, 3], [2, 2], [8, 3, 2, 3]][nth % 4];
@@ -36,11 +73,25 @@ const dressCharts = () => {
   Chart.defaults.animation = false;
   Chart.defaults.maintainAspectRatio = false;
 };
-const axis = (text, more = {}) => ({ title: { display: true, text }, ...more });
-// Horizontal bars, as tall as their number asks for; whiskers from intervalOf(k), [from, to] or null.
+const axis = (text, more = {}) => ({ title: { display: Boolean(text), text }, ...more, ticks: { maxRotation: 0, autoSkipPadding: 12, ...more.ticks } });
+// A logarithmic axis that holds all `values` with room at both ends, its ticks at 1, 2 and 5 of each decade.
+const logarithmicAxis = (text, values, more = {}) => {
+  const min = Math.min(...values) / 1.3, max = Math.max(...values) * 1.3;
+  return axis(text, { type: "logarithmic", bounds: "data", min, max, ...more,
+    ticks: { autoSkip: false, callback: (v) => Number(v.toPrecision(3)).toString() },
+    afterBuildTicks: (scale) => {
+      const few = [];
+      for (let p = Math.floor(Math.log10(min)); p <= Math.log10(max); p++) for (const m of [1, 2, 5]) few.push(m * 10 ** p);
+      const inside = few.filter((v) => v >= min && v <= max);
+      // Many decades: the powers of ten alone; less than one step: both ends.
+      scale.ticks = (inside.length > 12 ? inside.filter((_, k) => few.indexOf(inside[k]) % 3 === 0) : inside.length > 1 ? inside : [min * 1.3, max / 1.3]).map((v) => ({ value: v }));
+    } });
+};
+// Horizontal bars, as tall as their number asks for; whiskers from intervalOf(k), [from, to] or null; an end
+// without end goes to the chart's border.
 const barChart = (canvas, { labels, values, colours, axisTitle, tip, intervalOf, range = {} }) => {
   canvas.parentElement.style.height = Math.max(160, 60 + 22 * labels.length) + "px";
-  const ends = intervalOf ? labels.flatMap((_, k) => intervalOf(k) ?? []) : [];  // the whiskers stay within the chart
+  const ends = intervalOf ? labels.flatMap((_, k) => intervalOf(k) ?? []).filter(Number.isFinite) : [];  // the whiskers stay within the chart
   const whole = ends.length ? { suggestedMin: Math.min(...ends), suggestedMax: Math.max(...ends), ...range } : range;
   return new Chart(canvas, {
     type: "bar",
@@ -51,17 +102,20 @@ const barChart = (canvas, { labels, values, colours, axisTitle, tip, intervalOf,
       afterDatasetsDraw: (chart) => {
         const pen = chart.ctx;
         pen.save();
-        pen.strokeStyle = css("--ink");
-        pen.lineWidth = 1.5;
         pen.beginPath();
         chart.getDatasetMeta(0).data.forEach((bar, k) => {
           const interval = intervalOf(k);
           if (!interval) return;
-          const [from, to] = interval.map((x) => chart.scales.x.getPixelForValue(x));
+          const border = (x) => (x > 0 ? chart.chartArea.right : chart.chartArea.left);
+          const [from, to] = interval.map((x) => (Number.isFinite(x) ? chart.scales.x.getPixelForValue(x) : border(x)));
           pen.moveTo(from, bar.y); pen.lineTo(to, bar.y);
-          for (const x of [from, to]) { pen.moveTo(x, bar.y - 4); pen.lineTo(x, bar.y + 4); }
+          [from, to].forEach((x, k) => { if (Number.isFinite(interval[k])) { pen.moveTo(x, bar.y - 4); pen.lineTo(x, bar.y + 4); } });
         });
-        pen.stroke();
+        for (const [colour, width] of [["--panel", 4], ["--ink", 1.5]]) { // seen on bars of every colour
+          pen.strokeStyle = css(colour);
+          pen.lineWidth = width;
+          pen.stroke();
+        }
         pen.restore();
       } }] : [],
   });

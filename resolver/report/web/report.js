@@ -16,6 +16,22 @@
   $("subtitle").textContent = "Anti-aliasing methods against " + reference + ", " + run.shot.resolution.join(" × ") + ", " +
     (run.shot.static ? "static" : "moving") + " shot";
   $("words").append(...words.map((w) => element("li", {}, w)));
+  // The sentences name the first pairs that are not told apart; here are all, of each method the others.
+  const whys = [["truthNoise", "The truth’s noise hides it"], ["varies", "Now one is better, now the other"], ["tooSmall", "Too little picture to judge"], ["equal", "Equal"]]
+    .filter(([why]) => run.pairs.some((p) => !p.resolved && p.unresolved === why));
+  const unresolvedPairs = run.pairs.filter((p) => !p.resolved);
+  if (unresolvedPairs.length) {
+    const box = $("unresolved-pairs"), others = (i, why) => order.filter((k) => unresolvedPairs.some((p) => p.unresolved === why && ((p.indices[0] === i && p.indices[1] === k) || (p.indices[0] === k && p.indices[1] === i))));
+    box.hidden = false;
+    box.querySelector("summary").textContent = `All pairs that are not told apart: ${unresolvedPairs.length} of ${run.pairs.length}`;
+    box.addEventListener("toggle", () => { // thousands of names are made only for whoever asks
+      const table = box.querySelector("table");
+      if (table.childElementCount) return;
+      table.append(element("thead", {}, element("tr", {}, ...["Method", ...whys.map(([, words]) => words)].map((w) => element("th", { scope: "col" }, w)))),
+        element("tbody", {}, ...order.filter((i) => unresolvedPairs.some((p) => p.indices.includes(i))).map((i) => element("tr", {}, element("th", { scope: "row" }, ...breakable(methods[i].text)),
+          ...whys.map(([why]) => element("td", {}, others(i, why).map((k) => methods[k].text).join(", ") || "–"))))));
+    });
+  }
   $("advice").append(...advice.map((w) => element("li", {}, w)));
   $("advice-box").hidden = !advice.length;
   $("version").textContent = run.run.program;
@@ -39,27 +55,28 @@
   const onDevice = device && `ms ${device.kind === "cpu" ? "in software" : "on the GPU"} (${device.name})`;
   const deviceMs = (m) => (m.deviceSecondsMedian == null ? null : m.deviceSecondsMedian * 1000);
   const columns = [
-    { title: "PSNR, dB", better: "high", get: pooled("psnr"), show: (m) => (m.pooled ? fixed(m.pooled.psnr, 2) : m.text === standIn ? "reference" : "–"),
+    { title: "PSNR, dB", better: "high", about: "peak signal to noise: how near the pixels are to " + reference + ", pooled over the judged frames", get: pooled("psnr"), show: (m) => (m.pooled ? fixed(m.pooled.psnr, 2) : m.text === standIn ? "reference" : "–"),
       // What the truth's own noise takes off the MSE: the PSNR lies between the two.
       small: (m) => (m.pooled && m.pooled.mseCorrected > 0 && m.pooled.mseCorrected < value(m.pooled.mse)
         ? "to " + fixed(psnr(m.pooled.mseCorrected), 2) : null) },
-    { title: "Over noaa, dB", better: "high", get: pooled("gainDb"), show: (m) => (m.pooled && m.pooled.gainDb != null && m.id !== "noaa" ? signed(m.pooled.gainDb) : "–"),
-      tone: (m) => (!m.pooled || m.pooled.gainDb == null || m.id === "noaa" ? "" : value(m.pooled.gainDb) >= 0 ? "better" : "worse"),
+    { title: "Over noaa, dB", better: "high", about: "PSNR less that of noaa, which has no anti-aliasing; below it the 95 % interval. Coloured where it is resolved", get: pooled("gainDb"), show: (m) => (m.pooled && m.pooled.gainDb != null && m.id !== "noaa" ? signed(m.pooled.gainDb) : "–"),
+      tone: (m, i) => (m.id === "noaa" ? "" : gainTone(m.pooled?.gainDb, compared(i, noaa)?.resolved)),
       small: (m, i) => doubt(compared(i, noaa)) },
-    { title: "To the next better, dB", get: (m, i) => { const g = toNext(i); return g ? g.gain : null; },
+    { title: "To the next better, dB", about: "PSNR less that of the method with the next higher PSNR; below it the 95 % interval of this difference", get: (m, i) => { const g = toNext(i); return g ? g.gain : null; },
       show: (m, i) => { const g = toNext(i); return g ? signed(g.gain) : "–"; },
       small: (m, i) => doubt(toNext(i)?.doubt) },
     // Every other figure of the program's table that this run holds.
     ...figures.map((f) => has(f.name) && { title: f.title, better: f.better, get: pooled(f.name),
+      about: f.about + (f.spread ? "; below it its quartiles over the picture" : "") + (methods.some((m) => m.pooled && m.pooled[f.name] == null) ? "; –: has no value for this method" : ""),
       show: (m) => inForm(f, m.pooled?.[f.name]),
       small: f.spread && ((m) => (m.pooled?.[f.spread[0]] == null ? null : f.spread.map((name) => Number(value(m.pooled[name]).toPrecision(2))).join(" · "))) }),
-    { title: "MSE, 10⁻⁶", better: "low", get: pooled("mse"), show: (m) => (m.pooled ? millionths(m.pooled.mse) : "–"),
+    { title: "MSE, 10⁻⁶", better: "low", about: "mean squared error, of which PSNR is the logarithm" + (run.truth.noiseMse > 0 ? "; ±: by how much the truth’s own noise can change it" : ""), get: pooled("mse"), show: (m) => (m.pooled ? millionths(m.pooled.mse) : "–"),
       small: () => (run.truth.noiseMse > 0 ? "± " + millionths(run.truth.noiseMse) : null) },
-    { title: "SNR, dB", better: "high", get: pooled("snr"), show: (m) => (m.pooled ? fixed(m.pooled.snr, 2) : "–") },
-    methods.some((m) => m.nsPerPixel > 0) && { title: "Time, ns/px", better: "low", get: (m) => m.nsPerPixel || null,
+    { title: "SNR, dB", better: "high", about: "signal to noise: as PSNR, but against the truth’s own mean square in place of full white", get: pooled("snr"), show: (m) => (m.pooled ? fixed(m.pooled.snr, 2) : "–") },
+    methods.some((m) => m.nsPerPixel > 0) && { title: "Time, ns/px", better: "low", about: "processor time of the method alone, all threads together, per pixel; below it the quartiles over the frames", get: (m) => m.nsPerPixel || null,
       show: (m) => (m.nsPerPixel > 0 ? short(m.nsPerPixel) : "–"), small: (m) => (m.timings > 1 ? `${short(perPixel(m, m.secondsLow))} to ${short(perPixel(m, m.secondsHigh))}` : "measured once") },
-    device && { title: onDevice, better: "low", get: deviceMs, show: (m) => (deviceMs(m) == null ? "–" : short(deviceMs(m))) },
-    { title: "State, MB", better: "low", get: (m) => m.stateBytes, show: (m) => (m.stateBytes / 1048576).toFixed(2) },
+    device && { title: onDevice, better: "low", about: "by the device’s own clock, without transfers", get: deviceMs, show: (m) => (deviceMs(m) == null ? "–" : short(deviceMs(m))) },
+    { title: "State, MB", better: "low", about: "memory that the method keeps between frames and works in, at this picture’s size", get: (m) => m.stateBytes, show: (m) => (m.stateBytes / 1048576).toFixed(2) },
   ].filter(Boolean);
   const ranked = methods.map((m, i) => i).filter((i) => methods[i].pooled).sort((a, b) => value(methods[a].pooled.mse) - value(methods[b].pooled.mse));
   function toNext(i) {
@@ -68,12 +85,13 @@
     const p = pair(i, ranked[place - 1]);
     return { gain: value(methods[i].pooled.psnr) - value(methods[ranked[place - 1]].pooled.psnr), doubt: p && compared(i, ranked[place - 1]) };
   }
-  const methodTable = (table, shown, columns) => sortableTable(table, shown, columns, (i) => methods[i], (m) => [m.text, element("small", {}, m.title)]);
-  methodTable($("figures"), order, columns);
+  const methodTable = (table, shown, columns) => sortableTable(table, shown, columns, (i) => methods[i], (m) => [...breakable(m.text), element("small", {}, m.title)]);
+  const told = (table, columns) => table.closest(".scroll").after(columnNotes(columns));
+  told($("figures"), methodTable($("figures"), order, columns));
   const judgedFrames = methods.find((m) => m.pooled)?.pooled.frames ?? 0;
   $("figures-note").textContent = judgedFrames
     ? `Figures of ${space}${region ? `, of the region of ${region} alone` : ""}, pooled over ${judgedFrames} frame${judgedFrames > 1 ? "s" : ""} with ${standIn ? "images of " + reference : "ground truth"}: the mean squared error is averaged, never the decibels. ` +
-      "“to” is the PSNR after the truth’s own noise is taken off. Under a gain stands its 95 % interval, for pictures like this one and an exact truth; where it holds 0 the gain is not resolved, and the table says why: " +
+      (order.some((i) => columns[0].small(methods[i])) ? "Under a PSNR, “to”: what it is once the truth’s own noise is taken off. " : "") + "Under a gain stands its 95 % interval, for pictures like this one and an exact truth; where it holds 0 the gain is not resolved, and the table says why: " +
       "most of the doubt is the truth’s noise (more samples help), or the difference varies over the picture (more pictures help), or the picture is too small to judge." +
       (figures.some((f) => f.spread) ? " Under FLIP: 1st quartile, median and 3rd quartile, weighted by the error." : "") +
       " Time: processor time of all threads; below it the quartiles over frames." + (run.run.load?.busy ? " The machine was busy." : "")
@@ -94,35 +112,38 @@
   const flickerOf = (i) => value(run.shot.static ? time(i).flickerStatic : time(i).flickerMoving);
   const flickerError = (i) => (run.shot.static ? null : time(i).flickerError);
   const judgedHave = (key) => judged.some((i) => time(i)[key] != null);
-  const timeColumn = (title, key, digits, more = {}) => judgedHave(key) && { title, better: "low", get: (m) => (m.temporal ? value(m.temporal[key]) : null),
+  const timeColumn = (title, key, digits, about, more = {}) => judgedHave(key) && { title, better: "low", about, get: (m) => (m.temporal ? value(m.temporal[key]) : null),
     show: (m) => (m.temporal && m.temporal[key] != null ? (digits == null ? short(m.temporal[key]) : fixed(m.temporal[key], digits)) : "–"), ...more };
   const plusMinus = (key) => (m) => (m.temporal && m.temporal[key] > 0 ? "± " + Number(m.temporal[key].toPrecision(2)) : null);
   // Against noaa, over time: "fewer dB" reads better as a factor.
   const versusNoaa = (key) => (m, i) => { const p = i !== noaa && noaa >= 0 && pair(i, noaa); return p && p[key] && !p[key].resolved ? "not resolved from noaa" : null; };
   const ghostAt = (age) => age <= oldest && { title: `Stale at age ${age}`, better: "low",
+    about: `share of the colour seen before that is left ${age === 1 ? "in the first frame" : `${age} frames`} after a surface came into view: 1 all of it, 0 none, below 0 the picture lies beyond the truth, on the side away from the old colour`,
     get: (m) => (m.temporal && m.temporal.ghostFraction ? m.temporal.ghostFraction[age - 1] ?? null : null),
     show: (m) => (m.temporal && m.temporal.ghostFraction && m.temporal.ghostFraction[age - 1] != null ? minus(fixed(m.temporal.ghostFraction[age - 1], 2)) : "–") };
   const lasting = (t) => t.ghostFraction && Math.max(...t.ghostFraction.slice(0, 3)) > 0.05;
   const timeColumns = [
-    timeColumn("Flicker at rest", "flickerStatic", 3),
-    timeColumn("Flicker in motion", "flickerMoving", 3, { small: plusMinus("flickerError") }),
-    timeColumn("Ghost MSE, 10⁻⁶", "ghostMse", null, { show: (m) => (m.temporal && m.temporal.ghostMse != null ? millionths(m.temporal.ghostMse) : "–"),
+    timeColumn("Flicker at rest", "flickerStatic", 3, "mean standard deviation of a pixel’s brightness over time, 8-bit codes"),
+    timeColumn("Flicker in motion", "flickerMoving", 3, "root mean square of what changes along the motion beyond what the truth changes, 8-bit codes; ±: 95 % interval", { small: plusMinus("flickerError") }),
+    timeColumn("Ghost MSE, 10⁻⁶", "ghostMse", null, "mean squared error where a surface came into view at most 16 frames ago; ±: 95 % interval", { show: (m) => (m.temporal && m.temporal.ghostMse != null ? millionths(m.temporal.ghostMse) : "–"),
       small: (m) => (m.temporal && m.temporal.ghostMseError > 0 ? "± " + millionths(m.temporal.ghostMseError) : null) }),
-    timeColumn("Ghosts, × noaa", "ghostExcess", 2, { small: versusNoaa("ghost") }),
+    timeColumn("Ghosts, × noaa", "ghostExcess", 2, "that error as a multiple of the one without anti-aliasing at the same places; above 1 it drags old colour", { small: versusNoaa("ghost") }),
     ghostAt(1), ghostAt(4), ghostAt(16),
-    timeColumn("Half-life, frames", "ghostHalfLifeFrames", 1, { show: (m) => (m.temporal && m.temporal.ghostHalfLifeFrames != null && lasting(m.temporal) ? fixed(m.temporal.ghostHalfLifeFrames, 1) : "–") }),
-    timeColumn("tPSNR, dB", "tPsnr", 2, { better: "high" }),
-    timeColumn("Converged after, frames", "convergenceFrames", 0),
+    timeColumn("Half-life, frames", "ghostHalfLifeFrames", 1, "after how many frames half of a ghost is gone; –: no ghost to speak of", { show: (m) => (m.temporal && m.temporal.ghostHalfLifeFrames != null && lasting(m.temporal) ? fixed(m.temporal.ghostHalfLifeFrames, 1) : "–") }),
+    timeColumn("tPSNR, dB", "tPsnr", 2, "PSNR pooled over these frames alone, without those in which histories fill", { better: "high" }),
+    timeColumn("Converged after, frames", "convergenceFrames", 0, "from which frame on PSNR stays within 0.5 dB of its last value"),
   ].filter(Boolean);
   $("time").hidden = !judged.length;
   if (judged.length) {
-    methodTable($("time-figures"), judged, timeColumns);
+    const there = methodTable($("time-figures"), judged, timeColumns), has = (start) => there.some((c) => c.title.startsWith(start));
+    told($("time-figures"), there);
+    const subjects = [["Flicker", "flicker"], ["Ghost", "ghosts"], ["Converged", "convergence"]].filter(([start]) => has(start)).map(([, words]) => words);
+    $("time-title").textContent = "Over time" + (subjects.length ? ": " + subjects.join(", ").replace(/, ([^,]*)$/, " and $1") : "");
     const t = time(judged[0]);
     $("time-note").textContent = `Over ${t.frames} frames, after ${t.warmupFrames} that each history needs to fill. Flicker is in 8-bit codes: 1 is one step of 255. ` +
       (run.shot.static
         ? "Nothing moves here, so whatever changes from frame to frame is flicker: the mean standard deviation of a pixel's brightness. The truth has 0."
-        : "Flicker in motion follows each surface and counts what changes beyond what the truth changes. Ghosts are the errors where a surface came into view at most 16 frames ago; “× noaa” compares them with the same places without anti-aliasing. ± is a 95 % interval over blocks of frames.") +
-      " tPSNR pools the error over these frames.";
+        : "Flicker in motion follows each surface and counts what changes beyond what the truth changes. Ghosts are the errors where a surface came into view at most 16 frames ago; “× noaa” compares them with the same places without anti-aliasing. ± is a 95 % interval over blocks of frames.");
     $("flicker-title").textContent = run.shot.static ? "Flicker of a scene at rest: shorter is steadier" : "Flicker along the motion: shorter is steadier";
     $("flicker-note").textContent = (run.shot.static ? "Mean standard deviation over time, 8-bit codes." : "Root mean square of the change that the truth does not have, 8-bit codes; whiskers: 95 % interval.") +
       (run.shot.static
@@ -132,7 +153,7 @@
     $("frames-title").textContent = run.shot.static ? "Convergence: PSNR against the frame number" : "PSNR of every frame";
     $("frames-note").textContent = (run.shot.static
       ? "A method with history gets better from frame to frame until its history is full; “converged” is the frame from which it stays within 0.5 dB of its last value."
-      : "A dip means that something came into view or moved fast.") + " The best methods are drawn; click a name to show or hide one.";
+      : "A dip means that something came into view or moved fast.");
   }
 
   // ---- the price in full ----
@@ -154,32 +175,63 @@
   const bytesOf = (m) => (m.inputBytes ?? 0) + (m.targetBytes ?? 0) + m.stateBytes;
   const beyondNoaa = (m) => megabytes1080((bytesOf(m) - bytesOf(methods[noaa])) / (run.shot.resolution[0] * run.shot.resolution[1]));
   const publishedMemory = (m) => published[m.id]?.megabytes ?? null;
-  methodTable($("price-figures"), order, [
-    { title: "Passes, s per frame", better: "low", get: (m, i) => priceOf(i)?.render ?? null, small: (m) => m.passes.join(", ") },
-    methods.some((m) => m.nsPerPixel > 0) && { title: "Method, ms per frame", better: "low", get: (m) => m.secondsMedian * 1000 || null },
-    device && { title: "Method, " + onDevice, better: "low", get: deviceMs },
-    { title: "Kept, MB at 1080p", better: "low", get: (m) => stateOf(m), show: (m) => stateOf(m).toFixed(1) },
-    { title: "Passes, MB at 1080p", better: "low", get: (m) => passMemory(m), show: (m) => passMemory(m).toFixed(1) },
-    noaa >= 0 && { title: "All beyond noaa, MB at 1080p", better: "low", get: beyondNoaa, show: (m) => beyondNoaa(m).toFixed(1) },
-    { title: "Published extra, MB", better: "low", get: publishedMemory, show: (m) => (publishedMemory(m) == null ? "–" : publishedMemory(m).toFixed(1)) },
-  ].filter(Boolean));
-  $("price-note").textContent = "Kept: history and working memory of the method, scaled from this picture's size. Passes: what it reads beside colour, in 32-bit floats" +
-    (S ? ` with ${S} sub-samples per pixel` : "") + ". All beyond noaa: passes with colour, the written picture and what is kept, less those of noaa. Published: extra memory of a GPU implementation" +
-    (Object.keys(published).length ? " (" + [...new Set(Object.values(published).map((p) => p.source))].join(", ") + ")" : "") + ", which packs its buffers more tightly and counts its render targets.";
+  told($("price-figures"), methodTable($("price-figures"), order, [
+    { title: "Passes, s per frame", better: "low", about: "render time of colour and of every pass that the method reads", get: (m, i) => priceOf(i)?.render ?? null },
+    methods.some((m) => m.nsPerPixel > 0) && { title: "Method, ms per frame", better: "low", about: "processor time of the method alone", get: (m) => m.secondsMedian * 1000 || null },
+    device && { title: "Method, " + onDevice, better: "low", about: "the method alone, by the device’s own clock", get: deviceMs },
+    { title: "Kept, MB at 1080p", better: "low", about: "history and working memory of the method, scaled from this picture’s size to 1920 × 1080", get: (m) => stateOf(m), show: (m) => stateOf(m).toFixed(1) },
+    { title: "Passes, MB at 1080p", better: "low", about: "what the method reads beside colour, in 32-bit floats" + (S ? ` with ${S} sub-samples per pixel` : "") + "; below it all that it reads",
+      get: (m) => passMemory(m), show: (m) => passMemory(m).toFixed(1), small: (m) => m.passes.join(", ") },
+    noaa >= 0 && { title: "All beyond noaa, MB at 1080p", better: "low", about: "passes with colour, the written picture and what is kept, less those of noaa", get: beyondNoaa, show: (m) => beyondNoaa(m).toFixed(1) },
+    { title: "Published extra, MB", better: "low", about: "extra memory of a GPU implementation as its authors state it" + (Object.keys(published).length ? " (" + [...new Set(Object.values(published).map((p) => p.source))].join(", ") + ")" : "") +
+      ", which packs its buffers more tightly and counts its render targets; –: none is published", get: publishedMemory, show: (m) => (publishedMemory(m) == null ? "–" : publishedMemory(m).toFixed(1)) },
+  ].filter(Boolean)));
+  $("price-note").textContent = Object.keys(renderSeconds).length ? "" : "This shot does not say how long its passes took to render, so their time is not in the table; shots that the add-on exports say it.";
 
   // ---- charts ----
-  const nth = methods.map((m, i) => methods.slice(0, i).filter((o) => o.id === m.id).length);
-  const colourOf = (i) => methodColour(methods[i].id);
-  const markerOf = (i) => methodMarker(methods[i].id, nth[i]);
-  const dashOf = (i) => methodDash(nth[i]);
+  const looks = methodLooks(methods.map((m) => m.id));
+  const colourOf = (i) => looks[i].colour;
+  window.aaLooks = new Map(methods.map((m, i) => [m.text, looks[i]])); // for what is drawn after this
   let charts = [];
+  const drawn = new Map(); // rows that a chart of lines shows, kept when it is drawn anew
+  // Names beside points, each where it covers least: another name, a point, what lies beyond the axes.
+  const namesOfPoints = (datasets) => ({
+    id: "names",
+    afterDatasetsDraw: (chart) => {
+      const pen = chart.ctx, area = chart.chartArea, high = 14;
+      const boxes = chart.data.datasets.flatMap((d, k) => (d.pointRadius > 0 ? chart.getDatasetMeta(k).data.map((p) => ({ x: p.x - 7, y: p.y - 7, w: 14, h: 14 })) : []));
+      const common = (a, b) => Math.max(0, Math.min(a.x + a.w, b.x + b.w) - Math.max(a.x, b.x)) * Math.max(0, Math.min(a.y + a.h, b.y + b.h) - Math.max(a.y, b.y));
+      const whole = { x: area.left, y: area.top, w: area.right - area.left, h: area.bottom - area.top };
+      pen.save();
+      pen.font = `600 12px ${Chart.defaults.font.family}`;
+      pen.textBaseline = "top";
+      pen.lineJoin = "round";
+      chart.names = [];
+      for (const k of datasets) {
+        const [p] = chart.getDatasetMeta(k).data, text = chart.data.datasets[k].label, w = pen.measureText(text).width;
+        const offers = [[-w / 2, -11 - high], [11, -high / 2], [-11 - w, -high / 2], [-w / 2, 10], [4, -11 - high], [-4 - w, -11 - high], [4, 10], [-4 - w, 10], [-w / 2, -26 - high], [-w / 2, 25]];
+        const cost = (b) => 5 * (b.w * b.h - common(b, whole)) + 3 * chart.names.reduce((s, n) => s + common(b, n), 0) + boxes.reduce((s, o) => s + common(b, o), 0);
+        const best = offers.map(([dx, dy]) => ({ text, x: p.x + dx, y: p.y + dy, w, h: high })).reduce((a, b) => (cost(b) < cost(a) ? b : a));
+        chart.names.push(best);
+        pen.lineWidth = 4;
+        pen.strokeStyle = css("--panel");
+        pen.strokeText(text, best.x, best.y);
+        pen.fillStyle = css("--ink");
+        pen.fillText(text, best.x, best.y);
+      }
+      pen.restore();
+    },
+  });
   const drawCharts = () => {
     charts.forEach((c) => c.destroy());
     charts = [];
     dressCharts();
     const finite = (v) => (Number.isFinite(value(v)) ? value(v) : null);
     const shown = order.filter((i) => methods[i].pooled && finite(methods[i].pooled.psnr) !== null);
-    const show = (id, config) => charts.push(new Chart($(id), config));
+    const show = (id, config) => {
+      charts.push(new Chart($(id), config));
+      return charts.at(-1);
+    };
     if (!shown.length) { $("charts").hidden = true; return; }
     // Cost against accuracy, for each of the costs that the run holds. The line joins the methods that no other one
     // beats in both: whoever is below and right of it costs more than one that is better.
@@ -197,11 +249,12 @@
       show(id, {
         type: "scatter",
         data: { datasets: [...priced.map((i) => ({ label: methods[i].text, data: [point(i)],
-          backgroundColor: colourOf(i), borderColor: colourOf(i), pointStyle: markerOf(i), pointRadius: best.includes(i) ? 8 : 6, pointHoverRadius: 9, borderWidth: 2 })),
+          pointRadius: best.includes(i) ? 8 : 6, pointHoverRadius: 9, ...markerOptions(looks[i]) })),
           { label: "best for its cost", data: steps, showLine: true, borderColor: css("--quiet"), borderWidth: 1.5, borderDash: [4, 3], pointRadius: 0, pointHoverRadius: 0, pointHitRadius: 0, pointStyle: "line" }] },
-        options: { scales: { x: axis(axisTitle + " (logarithmic)", { type: "logarithmic" }), y: axis("PSNR, dB", { grace: "8%" }) },
+        options: { scales: { x: logarithmicAxis(axisTitle + " (logarithmic)", priced.map(costOf)), y: axis("PSNR, dB", { grace: "8%" }) },
           plugins: { legend: { position: "bottom", labels: { usePointStyle: true, boxWidth: 8, boxHeight: 8 } },
             tooltip: { callbacks: { label: (t) => `${t.dataset.label}: ${t.parsed.x.toPrecision(3)} ${unit}, ${t.parsed.y.toFixed(2)} dB` } } } },
+        plugins: [namesOfPoints(best.map((i) => priced.indexOf(i)))],
       });
     };
     scatter("scatter", (i) => methods[i].nsPerPixel, "processor time, ns per pixel", "ns/px");
@@ -219,25 +272,44 @@
         intervalOf: intervalOf ? (k) => intervalOf(indices[k]) : errorOf && ((k) => { const e = errorOf(indices[k]), v = get(indices[k]); return e > 0 ? [Math.max(0, v - e), v + e] : null; }) }));
     };
     bars("gain", order.filter((i) => i !== noaa && methods[i].pooled && methods[i].pooled.gainDb != null && finite(methods[i].pooled.gainDb) !== null),
-      (i) => methods[i].pooled.gainDb, "dB; whiskers: 95 % interval; grey = not resolved",
+      (i) => methods[i].pooled.gainDb, "dB",
       (i) => { const c = compared(i, noaa); return c && !c.resolved ? css("--quiet") : methods[i].pooled.gainDb >= 0 ? css("--better") : css("--worse"); },
       (v, i) => `${signed(v)} dB` + [doubt(compared(i, noaa))].flat().filter(Boolean).map((s) => `, ${s}`).join(""), null,
-      (i) => { const c = compared(i, noaa); return c && Number.isFinite(c.low) && Number.isFinite(c.high) ? [c.low, c.high] : null; });
-    // Lines of many methods: a few are drawn, a click on a name shows or hides it.
+      (i) => { const c = compared(i, noaa); return c && c.why !== "tooSmall" && c.why !== "equal" && c.low != null && !Number.isNaN(c.low) ? [c.low, c.high] : null; });
+    // Lines of many methods: a few are drawn and named; which, is chosen under the chart.
     const kLines = 8;
     const lines = (id, indices, labels, dataOf, xTitle, yAxis, tip, preferred = indices.slice(0, kLines)) => {
-      $(id).closest("figure").hidden = !indices.length;
+      const figure = $(id).closest("figure");
+      figure.hidden = !indices.length;
       if (!indices.length) return;
-      const first = new Set([...preferred, ...indices.filter((i) => i === noaa)]);
-      $(id).parentElement.style.height = 320 + 12 * Math.ceil(indices.length / 3) + "px";
-      show(id, {
+      const few = new Set([...preferred, ...indices.filter((i) => i === noaa)]);
+      if (!drawn.has(id)) drawn.set(id, new Set(few));
+      const now = drawn.get(id);
+      const chart = show(id, {
         type: "line",
-        data: { labels, datasets: indices.map((i) => ({ label: methods[i].text, data: dataOf(i), hidden: !first.has(i), borderColor: colourOf(i), backgroundColor: colourOf(i),
-          pointStyle: markerOf(i), borderDash: dashOf(i), borderWidth: 2, pointRadius: labels.length > 40 ? 0 : 3, spanGaps: true })) },
+        data: { labels, datasets: indices.map((i) => ({ label: methods[i].text, data: dataOf(i), hidden: !now.has(i), borderDash: looks[i].dash, borderWidth: 2, pointRadius: labels.length > 40 ? 0 : 3, spanGaps: true, ...markerOptions(looks[i]) })) },
         options: { interaction: { mode: "index", intersect: false }, scales: { x: axis(xTitle), y: yAxis },
-          plugins: { legend: { position: "bottom", labels: { usePointStyle: true, boxWidth: 8, boxHeight: 8 } },
+          plugins: { legend: { position: "bottom", labels: { usePointStyle: true, boxWidth: 8, boxHeight: 8, filter: (item) => !item.hidden }, onClick: (_, item) => choose((i) => i !== indices[item.datasetIndex] && now.has(i)) },
             tooltip: { itemSort: (a, b) => b.parsed.y - a.parsed.y, callbacks: { label: (t) => `${t.dataset.label}: ${tip(t.parsed.y)}` } } } },
       });
+      figure.querySelector("details.lines")?.remove();
+      if (indices.length < 2) return;
+      const boxes = indices.map((i) => Object.assign(element("input", { type: "checkbox" }), { checked: now.has(i) })), head = element("summary");
+      const choose = (wanted) => {
+        now.clear();
+        indices.forEach((i, k) => {
+          if ((boxes[k].checked = wanted(i, k))) now.add(i);
+        });
+        indices.forEach((i, k) => chart.setDatasetVisibility(k, now.has(i)));
+        chart.update();
+        say();
+      };
+      const say = () => (head.textContent = now.size === indices.length ? `All ${indices.length} methods are drawn; choose some` : `${now.size} of ${indices.length} methods are drawn; choose others`);
+      boxes.forEach((box) => box.addEventListener("change", () => choose((_, k) => boxes[k].checked)));
+      const button = (text, wanted) => Object.assign(element("button", { type: "button" }, text), { onclick: () => choose(wanted) });
+      say();
+      figure.append(element("details", { class: "lines" }, head, element("p", {}, button("These few", (i) => few.has(i)), " ", button("All", () => true), " ", button("None", () => false)),
+        element("div", { class: "choices" }, ...indices.map((i, k) => element("label", {}, boxes[k], element("i", { style: `background: ${colourOf(i)}` }), methods[i].text)))));
     };
     const numbers = [...new Set(methods.flatMap((m) => measured(m).map((f) => f.frame)))].sort((a, b) => a - b);
     lines("frames", numbers.length > 1 ? order.filter((i) => measured(methods[i]).length) : [], numbers, (i) => {
@@ -286,8 +358,9 @@
     element("thead", {}, element("tr", {}, ...["Method", "Parameters", "Passes read", "Source"].map((t) => element("th", { scope: "col" }, t)))),
     element("tbody", {}, ...order.map((i) => {
       const m = methods[i];
-      return element("tr", {}, element("th", { scope: "row" }, m.text),
+      return element("tr", {}, element("th", { scope: "row" }, ...breakable(m.text)),
         element("td", {}, Object.entries(m.parameters).map(([k, v]) => `${k} = ${v}`).join(", ") || "none"),
         element("td", {}, m.passes.join(", ")), element("td", {}, m.source));
     })));
+  document.querySelectorAll(".scroll").forEach(tellOfMoreColumns);
 })();

@@ -14,17 +14,26 @@ const inForm = (figure, v) => (v == null ? "–" : figure.form === "similarity" 
 
 // ---- doubt: a comparison is {gain, low, high, resolved, why} ----
 const reasons = { truthNoise: "not resolved: the truth’s noise", varies: "not resolved: varies over the picture", tooSmall: "not resolved: too small to judge", equal: "equal" };
-const intervalText = (c) => `${signed(c.low)} to ${signed(c.high)}`;
+const intervalText = (c) => {
+  const [low, high] = [c.low, c.high].map((v) => Number.isFinite(value(v)));
+  return low && high ? `${signed(c.low)} to ${signed(c.high)}` : low ? `above ${signed(c.low)}` : high ? `below ${signed(c.high)}` : "no interval";
+};
 // Under a gain: its interval, and why it is not resolved where it is not.
 const doubt = (c) => c && [c.why === "tooSmall" || c.why === "equal" ? null : intervalText(c), c.resolved ? null : reasons[c.why] ?? "not resolved"];
 
+// One rule for the colour of a gain in every table: a method is better or worse only where that is resolved.
+const gainTone = (gain, resolved) => (!resolved || gain == null ? "" : value(gain) >= 0 ? "better" : "worse");
+
 // A table of rows whose columns sort on a click: {title, get, show, small, tone, better}, each called with rowOf(i) and i.
-// `small` gives a line or several under the figure.
-const sortableTable = (table, shown, columns, rowOf, headOf, first = "Method") => {
+// `small` gives a line or several under the figure, `about` says in a phrase what the column is. A column without any
+// value is left out, unless it is to be kept. Returns the columns that are there.
+const sortableTable = (table, shown, allColumns, rowOf, headOf, first = "Method") => {
+  const known = (v) => v != null && !Number.isNaN(v);
+  const columns = allColumns.filter((c) => c && (c.keep || shown.some((i) => known(c.get(rowOf(i), i)))));
   let rows = shown.slice(), sortedBy = null, descending = true;
   const draw = () => {
     const heads = columns.map((c, k) => element("th", { scope: "col", "aria-sort": sortedBy === k ? (descending ? "descending" : "ascending") : "none" },
-      Object.assign(element("button", { type: "button" }, c.title), { onclick: () => sortBy(k) })));
+      Object.assign(element("button", { type: "button", title: c.about }, c.title), { onclick: () => sortBy(k) })));
     table.replaceChildren(
       element("thead", {}, element("tr", {}, element("th", { scope: "col" }, first), ...heads)),
       element("tbody", {}, ...rows.map((i) => {
@@ -39,7 +48,7 @@ const sortableTable = (table, shown, columns, rowOf, headOf, first = "Method") =
   const sortBy = (k) => {
     descending = sortedBy === k ? !descending : columns[k].better !== "low";
     sortedBy = k;
-    const key = (i) => { const v = columns[k].get(rowOf(i), i); return v == null || Number.isNaN(v) ? null : v; };
+    const key = (i) => { const v = columns[k].get(rowOf(i), i); return known(v) ? v : null; };
     rows = shown.slice().sort((a, b) => {
       const x = key(a), y = key(b);
       if (x === null || y === null) return (x === null) - (y === null);
@@ -48,5 +57,21 @@ const sortableTable = (table, shown, columns, rowOf, headOf, first = "Method") =
     draw();
     table.querySelectorAll("thead button")[k].focus();
   };
-  draw();
+  draw();  return columns;
+};
+// What each column of a table says, to unfold under it.
+const columnNotes = (columns) => element("details", { class: "columns" }, element("summary", {}, "What the columns say"),
+  element("dl", {}, ...columns.filter((c) => c.about).flatMap((c) => [element("dt", {}, c.title), element("dd", {}, c.about)])));
+// A table wider than the window says so while there is more to its right.
+const tellOfMoreColumns = (box) => {
+  const hint = element("p", { class: "more-columns quiet", "aria-hidden": "true", hidden: "" }, "More columns: scroll sideways →");
+  box.before(hint);
+  const look = () => {
+    hint.hidden = box.scrollWidth <= box.clientWidth + 1;
+    hint.classList.toggle("seen", box.scrollLeft + box.clientWidth >= box.scrollWidth - 2);
+  };
+  box.addEventListener("scroll", look, { passive: true });
+  const watch = new ResizeObserver(look);
+  watch.observe(box);
+  if (box.firstElementChild) watch.observe(box.firstElementChild);
 };

@@ -18,7 +18,7 @@ const viewerCrops = (strip, details, store, pictures, paint, data, names, jump) 
     if (!canvas) return null;
     canvas.setAttribute("role", "img");
     canvas.setAttribute("aria-label", label);
-    const b = element("button", { type: "button", class: "crop", title: "Show this place in the viewer" }, canvas, caption && element("span", {}, caption));
+    const b = element("button", { type: "button", class: "crop", title: "Show this place in the viewer" }, canvas, caption && element("span", {}, ...breakable(caption)));
     b.addEventListener("click", () => jump(view, frame, place, source));
     return b;
   };

@@ -27,20 +27,25 @@
   const families = [...new Set(methods.map((m) => m.family))];
   const reference = withTruth ? "truth" : noaa >= 0 ? String(noaa) : all[0];
   const decibels = (v) => (v === "Inf" ? "identical" : Number.isFinite(v) ? v.toFixed(2) + " dB" : "");
+  const looks = methodLooks(methods.map((m) => m.id));
+  // The tables pool all frames; what stands on a picture is of this one.
+  const ofFrame = (what) => (judgedFrames > 1 ? `frame ${what.frame}: ` : "");
+  const judgedFrames = Math.max(0, ...methods.map((m) => m.frames.filter((f) => f.metrics).length));
   const figure = (what) => {
     const kind = paint.kinds[what.kind];
     if (kind.slice || !pictures.has(what.view, what.source, what.frame)) return "";
     if (kind.mean) {
       if (!paint.ready(what)) return "";
       const mean = paint.meanOf(what);
-      return mean == null ? "" : `${kind.mean} ${what.kind === "ssim" ? mean.toFixed(4) : Number(mean.toPrecision(3))}`;
+      return mean == null ? "" : (kind.overTime ? "" : ofFrame(what)) + `${kind.mean} ${what.kind === "ssim" ? mean.toFixed(4) : Number(mean.toPrecision(3))}`;
     }
     if (what.source === "truth" || what.kind !== "picture") return "";
-    return decibels(methods[Number(what.source)].frames.find((f) => f.frame === what.frame)?.metrics?.psnr);
+    const psnr = decibels(methods[Number(what.source)].frames.find((f) => f.frame === what.frame)?.metrics?.psnr);
+    return psnr && ofFrame(what) + psnr;
   };
   const names = {
     all, of, figure, noaa: noaa >= 0 ? String(noaa) : null, floats: data.floats, still: run.shot.static, others: all.length > 1,
-    colour: (source) => methodColour(source === "truth" ? "truth" : methods[Number(source)].id),
+    colour: (source) => (source === "truth" ? methodColour("truth") : looks[Number(source)].colour),
     note: (source) => (source === "truth" ? (standIn ? "a method of this run, in the truth's place" : "what the figures are against") : methods[Number(source)].title),
     options: () => all.map((s) => element("option", { value: s }, of(s))),
     window: () => data.views[store.state.view].window,
