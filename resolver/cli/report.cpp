@@ -38,7 +38,7 @@ void writeSummary(const Options& o) {
     }
     const fs::path out =
         o.out.empty() ? fs::weakly_canonical(o.runs[0]).parent_path() / "summary.html" : fs::path(o.out);
-    writeText(out, summaryHtml(namedRuns(std::move(runs))));
+    writeText(out, summaryHtml(namedRuns(std::move(runs)), out));
     std::printf("%s\n", out.c_str());
 }
 

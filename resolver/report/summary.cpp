@@ -73,6 +73,14 @@ json againstJson(const RunAgainstRun& r) {
                                 {"nsPerPixelAfter", c.nsPerPixelAfter}});
     return j;
 }
+// The run's own report as seen from a page; empty where there is none.
+std::string reportOf(const NamedRun& run, const std::filesystem::path& page) {
+    const auto report = std::filesystem::path(run.folder) / "report.html";
+    if (page.empty() || run.folder.empty() || !std::filesystem::is_regular_file(report)) return {};
+    return std::filesystem::weakly_canonical(report)
+        .lexically_relative(std::filesystem::weakly_canonical(page).parent_path())
+        .generic_string();
+}
 std::string interval(const std::pair<double, double>& i) {
     return signedDecibelNumber(i.first) + " to " + signedDecibelNumber(i.second);
 }
@@ -88,8 +96,9 @@ std::vector<std::string> summaryInWords(const std::vector<NamedRun>& runs, const
         words.push_back("No run has both ground truth and noaa, without which gains are unknown.");
     } else {
         const SummaryRow& best = *known[0];
-        std::string s = best.text + " gains most over no anti-aliasing: " + signedDecibelNumber(*best.meanGainDb) +
-                        " dB in the mean of " + std::to_string(best.scenes) + (best.scenes == 1 ? " scene" : " scenes");
+        std::string s =
+            best.text + " gains most over no anti-aliasing: " + signedDecibelNumber(*best.meanGainDb) + " dB";
+        if (best.scenes > 1) s += " in the mean of " + std::to_string(best.scenes) + " scenes";
         if (best.ofThese) s += " (95 %: " + interval(*best.ofThese) + ")";
         words.push_back(s + ".");
         std::string uneven;
@@ -123,7 +132,7 @@ std::vector<std::string> summaryInWords(const std::vector<NamedRun>& runs, const
     return words;
 }
 
-std::string summaryHtml(const std::vector<NamedRun>& runs) {
+std::string summaryHtml(const std::vector<NamedRun>& runs, const std::filesystem::path& page) {
     const Summary summary = summarise(runs);
     const auto against = againstEachOther(runs);
     std::set<std::string_view> present;
@@ -148,7 +157,8 @@ std::string summaryHtml(const std::vector<NamedRun>& runs) {
                                 {"line", runLine(run.results)},
                                 {"protocol", inWords(run.results.protocol)},
                                 {"program", run.results.programVersion},
-                                {"frames", judged}});
+                                {"frames", judged},
+                                {"report", reportOf(run, page)}});
     }
     for (const SummaryRow& row : summary.rows) data["rows"].push_back(rowJson(runs, row, figures));
     for (const RunAgainstRun& r : against) data["against"].push_back(againstJson(r));

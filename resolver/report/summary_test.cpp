@@ -1,8 +1,11 @@
 #include "report/summary.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 
 namespace aa {
@@ -110,6 +113,25 @@ TEST(Summary, ASceneCountsOnceAndItsRunsAreHeldAgainstEachOther) {
     // Other frames are other pictures.
     after.methods[0].frames[0].frame = 2;
     EXPECT_TRUE(againstEachOther(namedRuns({{"a", before}, {"b", after}})).empty());
+}
+TEST(Summary, LinksToTheReportsThatAreThere) {
+    namespace fs = std::filesystem;
+    const fs::path folder = fs::temp_directory_path() / ("aaresolve_summary_" + std::to_string(::getpid()));
+    fs::create_directories(folder / "runs/a");
+    std::ofstream(folder / "runs/a/report.html") << "x";
+    const auto runs = namedRuns({{(folder / "runs/a/").string(), runOf("first", {{"noaa", 1e-3}, {"m", 5e-4}})},
+                                 {(folder / "runs/b").string(), runOf("second", {{"noaa", 1e-3}, {"m", 5e-4}})}});
+    const std::string page = summaryHtml(runs, folder / "pages/summary.html");
+    EXPECT_NE(page.find("\"report\":\"../runs/a/report.html\""), std::string::npos);
+    EXPECT_NE(page.find("\"report\":\"\""), std::string::npos);
+    fs::remove_all(folder);
+}
+TEST(Summary, OneSceneIsNoMean) {
+    const auto runs = namedRuns(
+        {{"a", runOf("pipe", {{"noaa", 1e-3}, {"m", 5e-4}})}, {"b", runOf("pipe", {{"noaa", 1e-3}, {"m", 5e-4}})}});
+    const std::string words = summaryInWords(runs, summarise(runs), {})[0];
+    EXPECT_NE(words.find("m gains most over no anti-aliasing: +3."), std::string::npos) << words;
+    EXPECT_EQ(words.find("scene"), std::string::npos) << words;
 }
 TEST(Summary, ThePageHoldsNoScriptOfAName) {
     const auto runs = namedRuns({{"a", runOf("</script><b>", {{"noaa", 1e-3}, {"m", 5e-4}})},

@@ -69,7 +69,7 @@ std::vector<NamedRun> namedRuns(std::vector<std::pair<std::string, RunResults>> 
         if (path.filename().empty()) path = path.parent_path();
         std::string name = r.shot;
         if (ofShot[name] > 1) name += " (" + path.filename().string() + ")";
-        runs.push_back({std::move(name), std::move(r)});
+        runs.push_back({std::move(name), std::move(r), folder});
     }
     // Folders of one name in different places.
     std::map<std::string, int> seen;

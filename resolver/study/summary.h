@@ -15,6 +15,7 @@ namespace aa {
 struct NamedRun {
     std::string name;  // of the column: the shot, and the folder where shots share a name
     RunResults results;
+    std::string folder = {};
 };
 // Gives each run its name.
 std::vector<NamedRun> namedRuns(std::vector<std::pair<std::string, RunResults>> byFolder);

@@ -22,6 +22,14 @@ VISITOR = """
   told.mean = all("#mean tbody tr");
   told.scenes = all("#scenes thead th");
   told.gains = all("#scenes tbody tr");
+  told.title = document.querySelector("h1").innerText;
+  told.heads = all("#mean thead th");
+  told.tones = (id) => Object.fromEntries([...document.querySelectorAll(`#${id} tbody tr`)].map((r) => [r.cells[0].innerText.split("\\n")[0], r.cells[1].className]));
+  told.meanTones = told.tones("mean");
+  told.sceneTones = told.tones("scenes");
+  told.bars = [...Chart.getChart(document.getElementById("gains")).data.datasets[0].backgroundColor].map((c) => c === css("--quiet"));
+  told.links = [...document.querySelectorAll("#subtitle a")].map((a) => a.getAttribute("href"));
+  told.select = getComputedStyle(document.getElementById("figure")).borderTopLeftRadius;
   told.against = all("#against tbody tr");
   told.chart = Chart.getChart(document.getElementById("gains")).data.labels;
   document.querySelector("#mean thead button").click();
@@ -52,6 +60,7 @@ class SummaryPage(PageTest):
             "-o", self.folder / "runs/again",
         )  # fmt: skip
         runs = [self.folder / f"runs/{name}" for name in ("moving", "half_planes", "again")]
+        self.aaresolve("report", runs[1], "--embed", "none")
         done = self.aaresolve("report", *runs)
         page = self.folder / "runs/summary.html"
         self.assertEqual(Path(done.stdout.strip()), page)
@@ -66,14 +75,41 @@ class SummaryPage(PageTest):
             self.assertLessEqual(told["overflow"], 0, told["width"])
         self.assertEqual(len(grounds), 2)
         self.holds(told, results)
+        self.one_scene([runs[0], runs[2]])
         twice = self.aaresolve("report", runs[0], runs[0], expect=2)
         self.assertIn("given twice", twice.stderr)
+
+    def one_scene(self, runs: list[Path]) -> None:
+        """Runs of one scene say nothing of other scenes, and the page claims nothing about them."""
+        page, visited = self.folder / "one.html", self.folder / "one_visited.html"
+        self.aaresolve("report", *runs, "-o", page)
+        visited.write_text(page.read_text() + VISITOR)
+        told = self.collected(self.open(visited, "--window-size=1400,900"))
+        self.assertEqual(told["title"], "Runs of moving")
+        for words in ("Scenes", "Worst", "Mean"):
+            self.assertNotIn(words, "".join(told["heads"]))
+        self.assertNotIn("scene", told["words"][0])
+        self.assertNotEqual(told["select"], "0px")
+        # Grey in the chart is uncoloured in the table, and one rule holds in both tables.
+        for method, grey in zip(told["chart"], told["bars"]):
+            self.assertEqual(told["meanTones"][method] == "", grey, method)
+            if told["sceneTones"].get(method) is not None and method != "smaa1x:preset=LOW":
+                self.assertEqual(told["meanTones"][method], told["sceneTones"][method], method)
 
     def holds(self, told: dict, results: list[dict]) -> None:
         self.assertEqual(told["scenes"][1:], ["moving (moving)", "half_planes", "moving (again)"])
         self.assertIn("gains most over no anti-aliasing", told["words"][0])
+        self.assertEqual(told["title"], "Methods over scenes")
+        self.assertIn("Scenes", "".join(told["heads"]))
+        self.assertEqual(told["links"], ["half_planes/report.html"])
         self.assertEqual(len(told["mean"]), len(METHODS) + 1)
-        self.assertTrue(told["mean"][-1].startswith("noaa"))
+        # noaa stands where gains turn negative, with the scenes that it was run in.
+        gains = [
+            re.search(r"\n?\t([+−]?[\d.]+)\n", row)[1].replace("−", "-") for row in told["mean"]
+        ]
+        place = next(k for k, row in enumerate(told["mean"]) if row.startswith("noaa"))
+        self.assertTrue(all(float(g) >= 0 for g in gains[:place]), gains)
+        self.assertIn("\t2\t", told["mean"][place])
         self.assertEqual(len(told["chart"]), len(METHODS))
 
         def gain(result: dict, method: str) -> float:
