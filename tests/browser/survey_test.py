@@ -166,7 +166,7 @@ class Survey(PageTest):
     def test_from_end_to_end(self) -> None:
         page, key = self.make()
         source = page.read_text()
-        self.assertIn("<title>Edges &amp; &lt;lines></title>", source)
+        self.assertIn("<title>Edges &amp; &lt;lines&gt;</title>", source)
         told = self.visit(page, source, key)
         self.assertEqual([what for what, ok in told["checks"].items() if not ok], [])
         for what in ("taken up where it was left", "the same place of all", "it plays"):
