@@ -117,13 +117,14 @@ test-bundle: bundle
 	@CI_PACKAGES=mmdebstrap .ci/bootstrap || true
 	@python3 tests/bundle/run.py $(BUILD)
 
-# Generated: the page of methods and the add-on's copy of the registry, the table of precision and memory.
+# Generated: the page of methods and the add-on's copy of the registry, the tables of precision, memory and stability.
 docs: program
 	@python3 blender_addon/write_scenes_page.py
 	@$(BUILD)/aaresolve list --markdown > docs/methods.md
 	@python3 resolver/metrics/write_page.py $(BUILD)/aaresolve docs/metrics.md
 	@$(BUILD)/aaresolve list --json > blender_addon/aa_resolve/methods.json
 	@$(BUILD)/aaresolve bench -m temporal --markdown --size 480x270 --frames 8 --repeats 1 --threads 1 > docs/precision.md
+	@$(BUILD)/aaresolve stability -q --markdown > docs/results/stability.md
 
 # After a change of a method's pixels that was meant: what every build must give from now on.
 bits: program

@@ -5,9 +5,9 @@
 
 #include "image/error.h"
 #include "methods/driver.h"
-#include "shot/patterns.h"
 #include "shot/reader.h"
 #include "shot/synth/synth.h"
+#include "study/synthetic_frames.h"
 
 namespace aa {
 namespace {
@@ -48,36 +48,6 @@ Frames synthFrames(const BenchFrames& o, const std::vector<MethodSpec>& methods,
     }
     return r;
 }
-// The synthetic frames' scene: discs have no edges that a pass could list.
-std::string sceneFor(const BenchFrames& o, const MethodSpec& m) {
-    const PassSet listed = Pass::edges | Pass::segments;
-    const bool wantsEdges = !(m.passes().without(m.passes().without(listed))).empty();
-    const std::string scene = !o.scene.empty() ? o.scene : wantsEdges ? "half_planes" : "moving";
-    SynthOptions synth;
-    synth.scene = scene, synth.width = synth.height = 8;
-    if (wantsEdges && SynthShot(synth).passes().without(listed) == SynthShot(synth).passes())
-        throw UsageError("--scene: " + scene + " has curved objects, and " + m.text +
-                         " reads the edges of polygons; choose half_planes, or give a --shot");
-    return scene;
-}
-// The synthetic frames' sub-sample pattern that serves a method: the first that it accepts.
-std::string patternFor(const MethodSpec& m) {
-    if (!m.passes().has(Pass::subsamples) && !m.passes().has(Pass::subsampleColor)) return "";
-    std::string why;
-    for (const char* pattern : {"d3d8", "d3d4", "d3d2", "d3d16"}) try {
-            m.create({.width = 8,
-                      .height = 8,
-                      .jitterPeriod = 16,
-                      .isStatic = true,
-                      .frameCount = 16,
-                      .subSamplePositionsPx = patternPositionsPx(pattern)});
-            return pattern;
-        } catch (const std::runtime_error& e) {
-            why = e.what();
-        }
-    throw UsageError(why);
-}
-
 // Share of the pixels whose encoded luma differs by 0.1 or more (SMAA's threshold at HIGH) from the pixel to the left
 // or above.
 double edgeShare(const std::vector<Frame>& frames) {
@@ -101,7 +71,8 @@ double edgeShare(const std::vector<Frame>& frames) {
 void framesFor(std::optional<Frames>& frames, const BenchFrames& o, const MethodSpec& method,
                const std::vector<MethodSpec>& methods, const Exec& exec) {
     const bool synthetic = o.shot.empty();
-    const std::string pattern = synthetic ? patternFor(method) : "", scene = synthetic ? sceneFor(o, method) : "";
+    const std::string pattern = synthetic ? subSamplePatternFor(method) : "",
+                      scene = synthetic ? synthSceneFor(method, o.scene) : "";
     if (frames && (!synthetic || (frames->subsamples == pattern && frames->scene == scene))) return;
     frames.reset();  // frames with many sub-samples are large: one pattern's are in memory at a time
     frames = synthetic ? synthFrames(o, methods, scene, pattern) : shotFrames(o, methods);

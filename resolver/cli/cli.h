@@ -60,6 +60,7 @@ void addDevices(CommandLine& line, Context& context);
 void addSurvey(CommandLine& line, Context& context);
 void addGate(CommandLine& line, Context& context);
 void addVerify(CommandLine& line, Context& context);
+void addStability(CommandLine& line, Context& context);
 void addHelp(CommandLine& line, Context& context);
 void addCompletion(CommandLine& line, Context& context);
 

@@ -27,9 +27,10 @@ int main(int argc, char** argv) {
         AA_VERSION);
     aa::Context context{.exitCode = 0, .arguments = {argv, argv + argc}};
     const auto commands = {
-        aa::addList,   aa::addPlan,    aa::addCheck,  aa::addRun,       aa::addFilter,     aa::addBench, aa::addSheet,
-        aa::addReport, aa::addCompare, aa::addSynth,  aa::addLearnRsaa, aa::addImport,     aa::addSweep, aa::addAngles,
-        aa::addSurvey, aa::addDevices, aa::addVerify, aa::addHelp,      aa::addCompletion, aa::addGate,
+        aa::addList,       aa::addPlan,   aa::addCheck,     aa::addRun,     aa::addFilter,    aa::addBench,
+        aa::addSheet,      aa::addReport, aa::addCompare,   aa::addSynth,   aa::addLearnRsaa, aa::addImport,
+        aa::addSweep,      aa::addAngles, aa::addSurvey,    aa::addDevices, aa::addVerify,    aa::addHelp,
+        aa::addCompletion, aa::addGate,   aa::addStability,
     };
     for (const auto add : commands) add(line, context);
     try {

@@ -5,6 +5,7 @@
 #include "image/io.h"
 #include "report/angles.h"
 #include "report/html.h"
+#include "report/stability.h"
 #include "report/summary.h"
 
 namespace aa {
@@ -58,7 +59,7 @@ void writeReport(const Options& o) {
                              .limitBytes = size_t(o.limitMb * 1e6)};
     withThreads(o.work.threads, [&] {
         const ViewerData viewer = viewerData(run, given, embed, exec);
-        const std::string page = reportHtml(run, viewer, anglesForReport(given));
+        const std::string page = reportHtml(run, viewer, stabilityForReport(given) + anglesForReport(given));
         writeText(out, page);
         std::printf("%s: %.1f MB, of which pictures %.1f MB", out.c_str(), double(page.size()) / 1e6,
                     double(viewer.textBytes()) / 1e6);

@@ -4,11 +4,8 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
-#include "image/error.h"
 #include "image/json_text.h"
 #include "image/markup.h"
 #include "report/page.h"
@@ -115,15 +112,7 @@ std::string toSvgText(const AngleStudy& s) {
 }
 
 std::string anglesForReport(const std::filesystem::path& folder) {
-    const auto file = folder / "angles.json";
-    std::ifstream in(file);
-    if (!in) return "";
-    const json j = json::parse(in, nullptr, false);
-    if (j.is_discarded() || !j.is_object() || j.value("format", "") != "aaresolve-angles" || !j.contains("degrees") ||
-        !j.contains("methods"))
-        throw InputError(file.string() + ": expected what `aaresolve angles` writes; run it again or remove the file");
-    return "<script type=\"application/json\" id=\"angles-data\">" + forScript(j) + "</script>\n<script>" +
-           std::string(web::angles) + "</script>\n";
+    return sectionOf({"angles.json", "aaresolve-angles", "angles", "angles-data", web::angles}, folder);
 }
 
 }  // namespace aa

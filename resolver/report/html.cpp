@@ -48,7 +48,7 @@ std::string base64(const std::vector<unsigned char>& bytes) {
     return text;
 }
 
-std::string reportHtml(const RunResults& run, const ViewerData& viewer, const std::string& angles) {
+std::string reportHtml(const RunResults& run, const ViewerData& viewer, const std::string& sections) {
     json data = {{"run", json::parse(toJsonText(run))}, {"order", presentationOrder(run)}, {"words", captions(run)}};
     data["protocol"] = inWords(run.protocol);
     data["space"] = spaceInWords(run.protocol);
@@ -82,7 +82,7 @@ std::string reportHtml(const RunResults& run, const ViewerData& viewer, const st
                               {"tables", web::tables},
                               {"viewer", viewerScripts()},
                               {"js", web::js},
-                              {"angles", angles},
+                              {"sections", sections},
                               {"data", forScript(data)},
                               {"pictures", viewerElements(viewer)}});
 }

@@ -4,9 +4,9 @@
 
 namespace aa {
 
-// The page, with the pictures of `viewer`. `angles` is the section of the half-plane study (report/angles.h), empty
-// when there is none.
-std::string reportHtml(const RunResults& run, const ViewerData& viewer, const std::string& angles = {});
+// The page, with the pictures of `viewer`. `sections`: what other commands measured (report/angles.h, stability.h),
+// empty when there is none.
+std::string reportHtml(const RunResults& run, const ViewerData& viewer, const std::string& sections = {});
 // The same pixels as writePng's, packed as small as PNG can.
 std::vector<unsigned char> pngBytes(const Rgb& encoded);
 std::string base64(const std::vector<unsigned char>& bytes);

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "image/colour_map.h"
+#include "image/error.h"
 #include "image/json_text.h"
 #include "image/markup.h"
 #include "metrics/metric.h"
@@ -55,6 +58,22 @@ nlohmann::ordered_json figureJson(const Figure& f) {
             {"about", f.help},
             {"better", f.higherIsBetter ? "high" : "low"},
             {"form", name(f.form)}};
+}
+
+std::string sectionOf(const MeasuredSection& s, const std::filesystem::path& folder) {
+    const auto file = folder / s.file;
+    std::ifstream in(file);
+    if (!in) return "";
+    std::ostringstream text;
+    text << in.rdbuf();
+    const std::string advice = "run `aaresolve " + std::string(s.command) + "` again or remove the file";
+    const nlohmann::ordered_json j = parseJson(text.str(), file.string(), advice);
+    const auto is = [&](const char* key, const nlohmann::ordered_json& v) { return j.contains(key) && j.at(key) == v; };
+    if (!j.is_object() || !is("format", s.format) || !is("version", 1) || !j.contains("methods"))
+        throw InputError(file.string() + ": expected what `aaresolve " + std::string(s.command) + "` writes; " +
+                         advice);
+    return "<script type=\"application/json\" id=\"" + std::string(s.dataId) + "\">" + forScript(j) +
+           "</script>\n<script>" + std::string(s.script) + "</script>\n";
 }
 
 std::string pageHead(const std::string& title, std::initializer_list<std::string_view> styles) {

@@ -7,6 +7,7 @@
 #include "image/error.h"
 #include "methods/driver.h"
 #include "shot/synth/synth.h"
+#include "study/synthetic_frames.h"
 
 namespace aa {
 namespace {
@@ -24,20 +25,6 @@ SynthOptions pictureOf(const AngleStudyOptions& o, const std::string& subsamples
     s.angleDegrees = degrees;
     s.offsetPx = offsetPx;
     return s;
-}
-// A pattern of sub-samples that the method accepts.
-std::string patternFor(const MethodSpec& spec, const AngleStudyOptions& o) {
-    if (!spec.passes().has(Pass::subsamples) && !spec.passes().has(Pass::subsampleColor)) return "";
-    const std::string patterns[] = {"d3d8", "d3d4", "d3d2", "d3d16"};
-    for (const auto& pattern : patterns) {
-        try {
-            spec.create(shotInfo(SynthShot(pictureOf(o, pattern, true, 20, 0)).manifest()));
-            return pattern;
-        } catch (const std::runtime_error&) {
-            if (pattern == std::end(patterns)[-1]) throw;
-        }
-    }
-    return "";
 }
 double squaredError(const Rgb& image, const Rgb& truth) {  // mean over the middle half
     const int w = truth.width(), h = truth.height();
@@ -121,7 +108,7 @@ AngleStudy studyAngles(const AngleStudyOptions& o, const Exec& exec) {
     for (int k = 0; k < o.angles; k++) study.degrees.push_back((k + 0.5) * 360 / o.angles);
     for (const auto& spec : o.methods)
         study.methods.push_back({spec.text, std::string(spec.method->title), std::string(spec.method->family),
-                                 patternFor(spec, o), std::vector<double>(size_t(o.angles))});
+                                 subSamplePatternFor(spec), std::vector<double>(size_t(o.angles))});
     const MethodSpec noaa = parseMethod("noaa");
     Exec alone = exec;
     alone.parallel = false;  // the angles run in parallel

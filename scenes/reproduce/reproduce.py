@@ -362,6 +362,10 @@ def write_pages(
     if speed:
         speed.write(docs / "speed.md")
         index.append("[speed.md](speed.md): ns per pixel, memory, and the fast form against double")
+    if (docs / "stability.md").exists():  # of `make docs`
+        index.append(
+            "[stability.md](stability.md): the accuracy that speed costs, of every method at its defaults"
+        )
     return index
 
 

@@ -8,6 +8,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "$program" synth moving -o "$folder/shot" --frames 3 >/dev/null
 "$program" run "$folder/shot" -m noaa -m fxaa311 -m taaSimplest -m uncharted -m unchartedNorm -o "$folder/run" -q >/dev/null
+"$program" stability -m noaa,uncharted --size 48x27 --frames 4 --long-frames 128 --device cpu -o "$folder/run" -q >/dev/null
 "$program" report "$folder/run" -o "$folder/report.html" >/dev/null
 
 # A visitor who sorts by PSNR.
@@ -39,6 +40,8 @@ expect "charts that were drawn" '<canvas id="(scatter|gain|frames)"[^>]*style="[
 expect "figures over time" 'Flicker in motion' 1
 expect "charts over time" '<canvas id="(flicker|ghost)"[^>]*style="[^"]*(width|height)' 2
 expect "memory" 'Kept, MB at 1080p' 1
+expect "stability, where it was measured" '>(The accuracy that speed costs|16-bit [0-9.]+)' 2
+expect "what stability was not measured of" 'Not measured: fxaa311, taaSimplest, unchartedNorm' 1
 expect "labels of the viewer's pictures" 'class="label"' 4
 expect "places that differ" '<canvas width="48" height="48"' 3
 expect "parameters" 'What was run' 1

@@ -91,6 +91,10 @@ def stale_docs(root: Path, markdown: str, listed: dict) -> list[str]:
     for method in listed["methods"]:
         if method["family"] == "temporal" and f"`{method['id']}`" not in precision:
             found.append(f"docs/precision.md: lacks '{method['id']}'; run `make docs`")
+    stability = (root / "docs/results/stability.md").read_text()
+    for method in listed["methods"]:
+        if f"| `{method['id']}` |" not in stability:
+            found.append(f"docs/results/stability.md: lacks '{method['id']}'; run `make docs`")
     bits = json.loads((root / "tests/e2e/same_bits.json").read_text())
     for method in listed["methods"]:
         if not any(method["id"] in shot for shot in bits.values()):

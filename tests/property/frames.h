@@ -8,6 +8,7 @@
 #include "methods/driver.h"
 #include "methods/methods_under_test.h"
 #include "shot/pass_table.h"
+#include "shot/synth/drawn_frames.h"
 
 namespace aa::testing {
 
@@ -25,86 +26,11 @@ inline std::vector<glm::dvec2> pattern(int samples) {
     return r;
 }
 
-// What lies at a continuous position of the un-jittered picture.
-struct Surface {
-    glm::vec3 color;
-    float depthView;
-    glm::vec3 normalWorld;
-    uint32_t objectId;
-};
-using Scene = std::function<Surface(double x, double y)>;
-
-// An orthographic camera whose view space is the pixel grid: x right, y up, looking along -z.
-inline Camera pixelCamera(int w, int h) {
-    Camera c;
-    c.kind = "orthographic";
-    c.nearClip = 0.1;
-    c.farClip = 100;
-    c.projection = glm::dmat4(1.0);
-    c.projection[0][0] = 2.0 / w;
-    c.projection[1][1] = 2.0 / h;
-    c.projection[2][2] = -2.0 / (c.farClip - c.nearClip);
-    c.projection[3][2] = -(c.farClip + c.nearClip) / (c.farClip - c.nearClip);
-    return c;
-}
+using Scene = DrawnScene;
 
 inline Frame renderFrame(const Scene& scene, int w, int h, int number, glm::dvec2 jitterPx, glm::dvec2 motionPx,
                          int samples) {
-    Frame f;
-    f.number = number;
-    f.width = w;
-    f.height = h;
-    f.reset = number == 1;
-    f.jitterPx = jitterPx;
-    f.camera = pixelCamera(w, h);
-    if (!f.reset) f.previousCamera = f.camera;
-    for (const auto& p : allPasses()) f.passes |= p.pass;
-    f.colorLinear = f.albedoLinear = f.normalWorld = Rgb(w, h);
-    f.depthView = f.motionXPx = f.motionYPx = f.edgeXPx = f.edgeYPx = PlaneF(w, h);
-    f.objectId = f.subSampleMask = PlaneU(w, h);
-    f.subSamplePositionsPx = pattern(samples);
-    f.subSamples.resize(f.subSamplePositionsPx.size());
-    for (auto& s : f.subSamples) s = {PlaneF(w, h), Rgb(w, h), PlaneU(w, h), Rgb(w, h)};
-    for (int i = 0; i < 12; i++) {  // a star that crosses the picture, each ray at another depth
-        const float x = float(w) * (0.5f + 0.6f * float(std::cos(i * 0.53))),
-                    y = float(h) * (0.5f + 0.6f * float(std::sin(i * 0.53)));
-        f.segments.push_back({float(w) * 0.4f, float(h) * 0.45f, 2.0f + float(i), x, y, 3.0f});
-    }
-    for (int y = 0; y < h; y++)
-        for (int x = 0; x < w; x++) {
-            const Surface s = scene(x + 0.5 + jitterPx.x, y + 0.5 + jitterPx.y);
-            for (int c = 0; c < 3; c++) {
-                f.colorLinear.c[size_t(c)].at(x, y) = s.color[c];
-                f.albedoLinear.c[size_t(c)].at(x, y) = s.color[c];
-                f.normalWorld.c[size_t(c)].at(x, y) = s.normalWorld[c];
-            }
-            f.depthView.at(x, y) = s.depthView;
-            f.objectId.at(x, y) = s.objectId;
-            f.motionXPx.at(x, y) = float(motionPx.x);
-            f.motionYPx.at(x, y) = float(motionPx.y);
-            f.edgeXPx.at(x, y) = 0.5f;
-            f.edgeYPx.at(x, y) = 0.5f;
-            uint32_t mask = 0;
-            for (size_t k = 0; k < f.subSamples.size(); k++) {
-                const auto o = f.subSamplePositionsPx[k];
-                const Surface t = scene(x + 0.5 + jitterPx.x + o.x, y + 0.5 + jitterPx.y + o.y);
-                for (int c = 0; c < 3; c++) {
-                    f.subSamples[k].colorLinear.c[size_t(c)].at(x, y) = t.color[c];
-                    f.subSamples[k].normalWorld.c[size_t(c)].at(x, y) = t.normalWorld[c];
-                }
-                f.subSamples[k].depthView.at(x, y) = t.depthView;
-                f.subSamples[k].objectId.at(x, y) = t.objectId;
-                if (t.objectId == s.objectId) mask |= 1u << k;
-            }
-            f.subSampleMask.at(x, y) = mask;
-        }
-    for (Rgb* i : {&f.colorLinear, &f.albedoLinear, &f.normalWorld}) i->fillBorder();
-    for (PlaneF* p : {&f.depthView, &f.motionXPx, &f.motionYPx, &f.edgeXPx, &f.edgeYPx}) p->fillBorder();
-    f.objectId.fillBorder();
-    f.subSampleMask.fillBorder();
-    for (auto& s : f.subSamples)
-        s.colorLinear.fillBorder(), s.normalWorld.fillBorder(), s.depthView.fillBorder(), s.objectId.fillBorder();
-    return f;
+    return drawFrame(scene, w, h, number, jitterPx, motionPx, pattern(samples));
 }
 
 // A tilted quad and a disc before a dark background, translated by `at`.
@@ -120,21 +46,6 @@ inline Scene shapes(glm::dvec2 at = {0, 0}) {
 inline Scene constantScene(glm::vec3 color) {
     return [color](double, double) -> Surface { return {color, 5.0f, {0, 0, 1}, 1}; };
 }
-// Vigna's splitmix64: good numbers from any seed at once, where an mt19937 first fills 2.5 KB of state.
-class SplitMix64 {
-  public:
-    explicit SplitMix64(uint64_t seed) : state_(seed) {}
-    uint64_t next() {
-        uint64_t z = state_ += 0x9E3779B97F4A7C15ull;
-        z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9ull;
-        z = (z ^ z >> 27) * 0x94D049BB133111EBull;
-        return z ^ z >> 31;
-    }
-    float uniform() { return float(next() >> 40) * 0x1p-24f; }  // [0, 1)
-
-  private:
-    uint64_t state_;
-};
 // Uncorrelated values: every branch of every method is visited.
 inline Scene noise(unsigned seed) {
     return [seed](double x, double y) -> Surface {

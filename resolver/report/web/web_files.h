@@ -3,7 +3,7 @@
 #include <string_view>
 
 namespace aa::web {
-extern const std::string_view html, css, js, chart, common, tables, angles;
+extern const std::string_view html, css, js, chart, common, tables, angles, stability;
 // The viewer's, in the order in which they build on each other.
 extern const std::string_view viewerCss, viewerCodec, viewerPictures, viewerMeasure, viewerFlip, viewerPaint,
     viewerState, viewerStage, viewerInput, viewerFigures, viewerControls, viewerCrops, viewerMain;
