@@ -56,6 +56,11 @@ def _layout(content: dict) -> str:
     return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
+def _age(path: str) -> float:
+    """Seconds since the file was written; since a clock may be set back, one of the future is as old as it is ahead."""
+    return abs(time.time() - os.path.getmtime(path))
+
+
 def _read_json(path: str) -> dict:
     try:
         with open(path, encoding="utf-8") as file:
@@ -214,7 +219,7 @@ class Store:
                 leftover = os.path.join(path, name)
                 with contextlib.suppress(OSError):
                     alive = os.path.exists(f"/proc/{owner[0]}") or not os.path.isdir("/proc")
-                    if not alive or time.time() - os.path.getmtime(leftover) > self._timeout:
+                    if not alive or _age(leftover) > self._timeout:
                         os.unlink(leftover)
 
     @contextlib.contextmanager
@@ -242,7 +247,7 @@ class Store:
         try:
             with open(path, encoding="utf-8") as file:
                 owner = json.load(file)
-            age = time.time() - os.path.getmtime(path)
+            age = _age(path)
         except (OSError, ValueError):
             return True
         if owner.get("host") == self._identity["host"] and os.name != "nt":
