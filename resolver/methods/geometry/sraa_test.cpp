@@ -65,6 +65,43 @@ TEST(Sraa, ObjectsOfOnePlaneAreToldApartByTheirIds) {
     EXPECT_LT(halfPlaneGainDb("sraa:ids=depth", d3dPattern(8), flat), 9.0);
     EXPECT_LT(halfPlaneGainDb("sraa", d3dPattern(8), flat), 9.0);
 }
+// Lanes give pixels of one plane the weights of that plane and compute the others on a list; one lane computes them
+// all. Floors bent by every amount around the limit, noise of colours everywhere, a silhouette, sky, lost normals.
+TEST(Sraa, PixelsOfOnePlaneAreNoSpecialCase) {
+    const glm::dvec3 n = glm::normalize(glm::dvec3(0.02, 1, 0.05));
+    const TestScene scene{{{n, -1.5, glm::vec3(1.0f), 1}, {{0, 0, 1}, -9, glm::vec3(0.5f), 2}}, [](double x, double y) {
+                              return y > 22 + 0.2 * x ? 0 : y > 9 ? 1 : -1;
+                          }};
+    for (const char* method : {"sraa", "sraa:radius=2", "sraa:distance=depth", "sraa:ids=always", "sraa:sigmaX=4",
+                               "sraa:sigmaZ=0.5,sigmaN=2"})
+        for (const double bend : {0.0, 1e-7, 1e-6, 1e-5, 1e-3}) {
+            Frame f = renderPlanes(scene, 77, 43, d3dPattern(8), {0.2, -0.3});
+            uint32_t state = 1;
+            const auto noise = [&] {
+                state = state * 1664525u + 1013904223u;
+                return float(state >> 8) / 16777216.0f;
+            };
+            const auto bent = [&](PlaneF& depth, Rgb& normal, int x, int y) {
+                depth.at(x, y) *= float(1 + bend * (noise() - 0.5f));
+                normal.c[0].at(x, y) += float(bend * 40 * (noise() - 0.5f));
+            };
+            for (int y = 0; y < 43; y++)
+                for (int x = 0; x < 77; x++) {
+                    bent(f.depthView, f.normalWorld, x, y);
+                    for (auto& s : f.subSamples) bent(s.depthView, s.normalWorld, x, y);
+                    for (auto& c : f.colorLinear.c) c.at(x, y) = noise();
+                }
+            f.normalWorld.c[1].at(40, 38) = NAN, f.subSamples[3].depthView.at(60, 40) = NAN;
+            f.depthView.fillBorder(), f.normalWorld.fillBorder(), f.colorLinear.fillBorder();
+            for (auto& s : f.subSamples) s.depthView.fillBorder(), s.normalWorld.fillBorder();
+            std::vector<DebugLayer> lanes, single;
+            Exec one;
+            one.precision = Precision::scalar;
+            const Rgb a = resolved(method, f, {}, &lanes), b = resolved(method, f, one, &single);
+            EXPECT_TRUE(a.samePixels(b)) << method << " " << bend;
+            EXPECT_TRUE(layer(lanes, "ownShare").samePixels(layer(single, "ownShare"))) << method << " " << bend;
+        }
+}
 // conventions 11: all weights may underflow; the nearest match is then taken, never 0/0.
 TEST(Sraa, UnlikeNeighboursAndLoneSamplesStayFinite) {
     Frame f = renderPlanes(parallelPlanes(kLine), 33, 21, d3dPattern(4));
