@@ -93,6 +93,17 @@ template <class R>
 AA_INLINE Texel<R> fetchRgba(const float* p, const Offsets<R>& at) {
     return at.together ? loadRgba<R>(p + 4l * at.k[0]) : fetchRgba<R>(p, at.k);
 }
+// Calls run(fetch) for a function of several texels around each offset, fetch(p) being fetchRgba(p, at): decided once,
+// so that neighbouring fetches of pixels side by side share what they load and sort.
+template <class R, class Run>
+AA_INLINE auto withTexels(const Offsets<R>& at, const Run& run) {
+    if constexpr (N < R >> 1)
+        if (at.together) {
+            const long first = 4l * at.k[0];
+            return run([&](const float* p) __attribute__((always_inline)) { return loadRgba<R>(p + first); });
+        }
+    return run([&](const float* p) __attribute__((always_inline)) { return fetchRgba<R>(p, at.k); });
+}
 // One value of a plane for each pixel.
 template <class R>
 AA_INLINE R gather(const float* p, const Offsets<R>& at) {

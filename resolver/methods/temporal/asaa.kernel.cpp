@@ -40,6 +40,7 @@ AA_INLINE void addTent(const float* p, int stride, R dx, R dy, R rx, R ry, Mask<
     for (int j = 0; j < 2; j++)
         for (int i = 0; i < 2; i++) {
             const R w = select(valid, wx[i] * wy[j], zero);
+            if (!maskBits<R>(w != zero)) continue;  // a narrow tent covers one sample of the four
             const vec3<R> c = fetchRgba<R>(p + 4l * (j * stride + i), k).rgb;
             sum.color = sum.color + select(w == zero, vec3<R>(zero), c * w);
             sum.weight = sum.weight + w;
@@ -85,6 +86,7 @@ AA_INLINE void asaaPixel(const AsaaArgs& a, int x, int y) {
             const R scale(T(a.rejection.magnification));
             valid = both(valid, both(nearX <= footX * scale, nearY <= footY * scale));
         }
+        if (!maskBits<R>(valid)) continue;
         anyValid = either(anyValid, valid);
         const R least(T(0.125)), most(T(1));  // the four nearest samples serve radii up to 1 px
         const R rx = min(max(footX * half, least), most), ry = min(max(footY * half, least), most);

@@ -10,41 +10,83 @@ constexpr float kSimilarLuma = 1.05f;  // ratio up to which two pixels are of on
 constexpr float kLockedLuma = 0.9f;    // ratio down to which a lock's luma is unchanged (FSR 2)
 constexpr float kFastPx = 20;          // speed at which box and weight are those of motion (FSR 2)
 
-AA_INLINE void takeLeast(float* at, float z, bool shared) {
-    if (!shared) {
-        if (z < *at) *at = z;
-        return;
-    }
+AA_INLINE void takeLeastShared(float* at, float z) {
     int32_t bits, *cell = (int32_t*)at;
     std::memcpy(&bits, &z, 4);
     int32_t old = __atomic_load_n(cell, __ATOMIC_RELAXED);
     while (bits < old && !__atomic_compare_exchange_n(cell, &old, bits, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
     }
 }
+// N pixels whose depths go to four texels each, those for which `lands` says so.
+template <class R>
+struct Splats {
+    Offsets<R> texel;
+    R depthView;
+    Mask<R> lands[4];
+};
+template <class R>
+AA_INLINE Splats<R> splats(const TemporalIn& in, int x, int y) {
+    using T = Elem<R>;
+    const Surface<R> s = closestSurface<R>(in, long(y) * in.stride + x, false);
+    const Reprojection<R> q = reproject(in, s.motion, x, y);
+    const R zero(T(0)), one(T(1)), left = R(T(x)) + iota<R>() + q.wholeX, top = R(T(y)) + q.wholeY;
+    const auto known = both(both(q.inside, s.depthView > zero), iota<R>() < R(T(in.width - x)));
+    Splats<R> p{texelOffsets(q, in.stride), s.depthView, {}};
+    for (int tap = 0; tap < 4; tap++) {
+        const int dx = tap & 1, dy = tap >> 1;
+        const R w = (dx ? q.fracX : one - q.fracX) * (dy ? q.fracY : one - q.fracY);
+        const auto inX = both(left >= R(T(-dx)), left < R(T(in.width - dx))),
+                   inY = both(top >= R(T(-dy)), top < R(T(in.height - dy)));
+        p.lands[tap] = both(both(known, w > R(T(kLeastSplat))), both(inX, inY));
+    }
+    return p;
+}
+// Pixels that move alike land side by side and are taken together; most of a group do.
+template <class R>
+AA_INLINE void takeLeast(float* at, const Splats<R>& p, Mask<R> lands) {
+    if constexpr (N<R> == 1) {
+        at += p.texel.k[0];
+        if (lands && float(p.depthView) < *at) *at = float(p.depthView);
+    } else {
+        using I = typename IntsOf<N<R>>::type;
+        const I first = *(const I*)p.texel.k - __builtin_convertvector(iota<R>().v, I);
+        for (unsigned left = maskBits<R>(lands); left;) {
+            const int i = __builtin_ctz(left);
+            const Mask<R> alike = p.texel.together ? lands : Mask<R>(first == I{} + first[i]);
+            float* const texels = at + first[i];
+            const R old = load<R>(texels);
+            const auto nearer = both(both(lands, alike), p.depthView < old);
+            if (maskBits<R>(nearer)) store(select(nearer, p.depthView, old), texels);
+            left &= ~maskBits<R>(alike);
+        }
+    }
+}
+template <class R>
+AA_INLINE void takeLeastShared(float* at, const Splats<R>& p, Mask<R> lands) {
+    alignas(64) float z[N<R>];
+    store(p.depthView, z);
+    for (unsigned left = maskBits<R>(lands); left; left &= left - 1) {
+        const int i = __builtin_ctz(left);
+        takeLeastShared(at + p.texel.k[i], z[i]);
+    }
+}
+// Some pixels, then one of their texels after the other: the neighbours that read what was just written are far away.
 template <class R>
 __attribute__((flatten)) void fsr2nScatterRows(const Fsr2nScatterArgs& a, int y0, int y1) {
-    using T = Elem<R>;
+    constexpr int kGroups = 32;
     const TemporalIn& in = a.in;
+    Splats<R> group[kGroups];
     for (int y = y0; y < y1; y++)
-        for (int x = 0; x < in.width; x += N<R>) {
-            const Surface<R> s = closestSurface<R>(in, long(y) * in.stride + x, false);
-            const Reprojection<R> q = reproject(in, s.motion, x, y);
-            alignas(64) float z[N<R>];
-            store(s.depthView, z);
-            const Offsets<R> texel = texelOffsets(q, in.stride);
-            const R zero(T(0)), one(T(1)), left = R(T(x)) + iota<R>() + q.wholeX, top = R(T(y)) + q.wholeY;
-            const auto known = both(both(q.inside, s.depthView > zero), iota<R>() < R(T(in.width - x)));
+        for (int x0 = 0; x0 < in.width; x0 += kGroups * N<R>) {
+            int count = 0;
+            for (int x = x0; x < in.width && count < kGroups; x += N<R>) group[count++] = splats<R>(in, x, y);
             for (int tap = 0; tap < 4; tap++) {
-                const int dx = tap & 1, dy = tap >> 1;
-                const R w = (dx ? q.fracX : one - q.fracX) * (dy ? q.fracY : one - q.fracY);
-                const auto inX = both(left >= R(T(-dx)), left < R(T(in.width - dx))),
-                           inY = both(top >= R(T(-dy)), top < R(T(in.height - dy)));
-                unsigned lanes = maskBits<R>(both(both(known, w > R(T(kLeastSplat))), both(inX, inY)));
-                float* at = a.nearest + long(y + dy) * in.stride + x + dx;
-                for (; lanes; lanes &= lanes - 1) {
-                    const int i = __builtin_ctz(lanes);
-                    takeLeast(at + texel.k[i], z[i], a.shared);
-                }
+                float* const at = a.nearest + long(y + (tap >> 1)) * in.stride + x0 + (tap & 1);
+                for (int i = 0; i < count; i++)
+                    if (a.shared)
+                        takeLeastShared(at + i * N<R>, group[i], group[i].lands[tap]);
+                    else
+                        takeLeast(at + i * N<R>, group[i], group[i].lands[tap]);
             }
         }
 }
@@ -58,9 +100,12 @@ AA_INLINE R depthClip(const Fsr2nArgs& a, const Reprojection<R>& q, R depth, lon
     const R wx[2] = {one - q.fracX, q.fracX}, wy[2] = {one - q.fracY, q.fracY};
     R visible(zero), weights(zero);
     for (int tap = 0; tap < 4; tap++) {
+        const R w = wx[tap & 1] * wy[tap >> 1];
+        const auto evident = w > R(T(kLeastSplat));
+        if (maskBits<R>(evident) == 0) continue;  // three of the four where nothing moves
         const R found = gather<R>(a.nearest + o + long(tap >> 1) * a.in.stride + (tap & 1), k);
-        const R behind = depth - found, w = wx[tap & 1] * wy[tap >> 1];
-        const auto counts = both(behind > zero, w > R(T(kLeastSplat)));
+        const R behind = depth - found;
+        const auto counts = both(behind > zero, evident);
         if (maskBits<R>(counts) == 0) continue;
         const R least = max(depth, found) * R(T(a.separation));
         const R share = min(least / select(counts, behind, one), one);

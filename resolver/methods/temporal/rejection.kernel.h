@@ -11,14 +11,21 @@ AA_INLINE R fetchDepth(const float* p, int stride, const Reprojection<R>& q) {
     using T = Elem<R>;
     const Offsets<R> k = texelOffsets(q, stride);
     const R zero(T(0));
+    if (allWhole(q)) {
+        const R own = fetchRgba<R>(p, k).a;
+        return own + (own - own);  // infinite depths are no numbers, as below
+    }
     const auto wholeX = q.fracX == zero, wholeY = q.fracY == zero;
-    const R a = fetchRgba<R>(p, k).a;
-    const R b = select(wholeX, a, fetchRgba<R>(p + 4, k).a);
-    const R c = select(wholeY, a, fetchRgba<R>(p + 4l * stride, k).a);
-    const R d = select(wholeY, b, select(wholeX, c, fetchRgba<R>(p + 4l * stride + 4, k).a));
-    const R nearest = min(min(a, b), min(c, d)), farthest = max(max(a, b), max(c, d));
-    const R top = a + (b - a) * q.fracX, bottom = c + (d - c) * q.fracX;
-    return select(farthest > nearest * R(T(10)), nearest, top + (bottom - top) * q.fracY);
+    return withTexels<R>(
+        k, [&](const auto& fetch) __attribute__((always_inline)) {
+            const R a = fetch(p).a;
+            const R b = select(wholeX, a, fetch(p + 4).a);
+            const R c = select(wholeY, a, fetch(p + 4l * stride).a);
+            const R d = select(wholeY, b, select(wholeX, c, fetch(p + 4l * stride + 4).a));
+            const R nearest = min(min(a, b), min(c, d)), farthest = max(max(a, b), max(c, d));
+            const R top = a + (b - a) * q.fracX, bottom = c + (d - c) * q.fracX;
+            return select(farthest > nearest * R(T(10)), nearest, top + (bottom - top) * q.fracY);
+        });
 }
 // True where the surface was hidden: it should have been at `expected`, something nearer by more than `tolerance` times
 // that was there. NaN is hidden.

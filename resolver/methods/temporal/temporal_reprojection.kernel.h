@@ -72,13 +72,17 @@ AA_INLINE Texel<R> fetchBilinear(const float* p, int stride, const Reprojection<
     const Offsets<R> k = texelOffsets(q, stride);
     if (allWhole(q)) return fetchRgba<R>(p, k);
     const Mask<R> wholeX = q.fracX == R(Elem<R>(0)), wholeY = q.fracY == R(Elem<R>(0));
-    auto row = [&](const float* r) __attribute__((always_inline)) {
-        const Texel<R> a = fetchRgba<R>(r, k), b = fetchRgba<R>(r + 4, k);
-        return Texel<R>{lerpExact(a.rgb, b.rgb, q.fracX, wholeX), select(wholeX, a.a, a.a + (b.a - a.a) * q.fracX)};
-    };
-    const Texel<R> top = row(p), bottom = row(p + 4l * stride);
-    return {lerpExact(top.rgb, bottom.rgb, q.fracY, wholeY),
-            select(wholeY, top.a, top.a + (bottom.a - top.a) * q.fracY)};
+    return withTexels<R>(
+        k, [&](const auto& fetch) __attribute__((always_inline)) {
+            const auto row = [&](const float* r) __attribute__((always_inline)) {
+                const Texel<R> a = fetch(r), b = fetch(r + 4);
+                return Texel<R>{lerpExact(a.rgb, b.rgb, q.fracX, wholeX),
+                                select(wholeX, a.a, a.a + (b.a - a.a) * q.fracX)};
+            };
+            const Texel<R> top = row(p), bottom = row(p + 4l * stride);
+            return Texel<R>{lerpExact(top.rgb, bottom.rgb, q.fracY, wholeY),
+                            select(wholeY, top.a, top.a + (bottom.a - top.a) * q.fracY)};
+        });
 }
 // Catmull-Rom weights of taps -1, 0, 1, 2 (conventions 1).
 template <class R>
@@ -114,23 +118,26 @@ AA_INLINE vec3<R> fetch4x4(const float* p, int stride, const Reprojection<R>& q,
     const Offsets<R> k = texelOffsets(q, stride);
     if (allWhole(q)) return fetchRgba<R>(p, k).rgb;
     const R zero(T(0)), inner = wx[1] + wx[2], all4 = corners ? inner + (wx[0] + wx[3]) : R(T(1));
-    vec3<R> sum(zero), lo(zero), hi(zero), own(zero);
-    R norm(zero);
+    return withTexels<R>(
+        k, [&](const auto& fetch) __attribute__((always_inline)) {
+            vec3<R> sum(zero), lo(zero), hi(zero), own(zero);
+            R norm(zero);
 #pragma GCC unroll 4
-    for (int j = 0; j < 4; j++) {
-        const bool outerRow = j == 0 || j == 3;
-        const float* r = p + 4l * (j - 1) * stride;
-        const vec3<R> t1 = fetchRgba<R>(r, k).rgb, t2 = fetchRgba<R>(r + 4, k).rgb;
-        vec3<R> line = t1 * wx[1] + t2 * wx[2];
-        if (corners || !outerRow) line = line + fetchRgba<R>(r - 4, k).rgb * wx[0] + fetchRgba<R>(r + 8, k).rgb * wx[3];
-        if (j == 1) lo = min(t1, t2), hi = max(t1, t2), own = t1;
-        if (j == 2) lo = min(lo, min(t1, t2)), hi = max(hi, max(t1, t2));
-        sum = sum + line * wy[j];
-        if constexpr (normalise) norm = norm + (!corners && outerRow ? wy[j] * inner : wy[j] * all4);
-    }
-    if constexpr (normalise) sum = sum * (R(T(1)) / norm);
-    const vec3<R> held = clamped ? max(clamp3(sum, lo, hi), vec3<R>(zero)) : sum;
-    return select(both(q.fracX == zero, q.fracY == zero), own, held);
+            for (int j = 0; j < 4; j++) {
+                const bool outerRow = j == 0 || j == 3;
+                const float* r = p + 4l * (j - 1) * stride;
+                const vec3<R> t1 = fetch(r).rgb, t2 = fetch(r + 4).rgb;
+                vec3<R> line = t1 * wx[1] + t2 * wx[2];
+                if (corners || !outerRow) line = line + fetch(r - 4).rgb * wx[0] + fetch(r + 8).rgb * wx[3];
+                if (j == 1) lo = min(t1, t2), hi = max(t1, t2), own = t1;
+                if (j == 2) lo = min(lo, min(t1, t2)), hi = max(hi, max(t1, t2));
+                sum = sum + line * wy[j];
+                if constexpr (normalise) norm = norm + (!corners && outerRow ? wy[j] * inner : wy[j] * all4);
+            }
+            if constexpr (normalise) sum = sum * (R(T(1)) / norm);
+            const vec3<R> held = clamped ? max(clamp3(sum, lo, hi), vec3<R>(zero)) : sum;
+            return select(both(q.fracX == zero, q.fracY == zero), own, held);
+        });
 }
 template <bool corners, class R>
 AA_INLINE vec3<R> fetchCatmullRom(const float* p, int stride, const Reprojection<R>& q, bool clamped = true) {
