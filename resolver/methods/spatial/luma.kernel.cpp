@@ -1,3 +1,4 @@
+#include "kernels/display.h"
 #include "kernels/lanes.h"
 #include "methods/spatial/luma_kernels.h"
 
@@ -63,8 +64,13 @@ AA_INLINE void lumaRowsOf(const LumaArgs& a, int y0, int y1) {
     for (int y = y0; y < y1; y++)
         for (int x = 0; x < a.width; x += N<R>) {
             const long o = long(y) * a.stride + x;
-            store(lumaOf(vec3<R>(load<R>(a.in.c[0] + o), load<R>(a.in.c[1] + o), load<R>(a.in.c[2] + o)), kind),
-                  a.luma + long(y) * a.lumaStride + x);
+            const vec3<R> c(load<R>(a.in.c[0] + o), load<R>(a.in.c[1] + o), load<R>(a.in.c[2] + o));
+            R luma;
+            if constexpr (kind == LumaKind::rec709)
+                luma = lumaOf(a.encodes ? display(a.display, c) : c, kind);
+            else
+                luma = lumaOf(c, kind);
+            store(luma, a.luma + long(y) * a.lumaStride + x);
         }
 }
 template <class R>

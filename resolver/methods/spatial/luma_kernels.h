@@ -1,4 +1,5 @@
 #pragma once
+#include "kernels/display_args.h"
 #include "kernels/table.h"
 
 namespace aa {
@@ -18,6 +19,8 @@ struct LumaArgs {
     float* luma;
     int stride, lumaStride, width;
     LumaKind kind;
+    bool encodes = false;  // the input is linear and is shown by `display` first
+    DisplayArgs display = {};
 };
 struct LumaKernels {
     RowKernel<LumaArgs> luma;

@@ -78,26 +78,32 @@ const Smaa::Tables& Smaa::tablesFor(glm::dvec2 samplePx) {
 }
 
 void Smaa::findEdges(const Frame& frame, const Rgb& colorEncoded, glm::dvec2 samplePx, const Exec& exec) {
-    width_ = colorEncoded.width();
-    height_ = colorEncoded.height();
+    if (edge_.kind == SmaaEdges::luma) lumaPlane(colorEncoded, LumaKind::rec709, exec, luma_);
+    findEdges(frame, &colorEncoded, colorEncoded.width(), colorEncoded.height(), samplePx, exec);
+}
+void Smaa::findEdgesOfLinear(const Frame& frame, const Rgb& colorLinear, glm::dvec2 samplePx, const Exec& exec) {
+    if (edge_.kind == SmaaEdges::luma) encodedLumaPlane(colorLinear, frame.display, exec, luma_);
+    if (edge_.kind == SmaaEdges::colour) encode(colorLinear, frame.display, exec, encoded_);
+    findEdges(frame, edge_.kind == SmaaEdges::colour ? &encoded_ : nullptr, colorLinear.width(), colorLinear.height(),
+              samplePx, exec);
+}
+void Smaa::findEdges(const Frame& frame, const Rgb* colorEncoded, int width, int height, glm::dvec2 samplePx,
+                     const Exec& exec) {
+    width_ = width, height_ = height;
     samplePx_ = samplePx;
     top_.resize(width_, height_, border_);
     left_.resize(width_, height_, border_);
     topByColumn_.resize(height_, width_, border_);
     leftByColumn_.resize(height_, width_, border_);
     SmaaEdgeArgs args = edge_;
-    if (args.kind == SmaaEdges::luma) {
-        lumaPlane(colorEncoded, LumaKind::rec709, exec, luma_);
-        args.scalar = luma_.row(0);
-    } else if (args.kind == SmaaEdges::depth) {
-        args.scalar = frame.depthView.row(0);
-    }
-    args.color = view(colorEncoded);
+    if (args.kind == SmaaEdges::luma) args.scalar = luma_.row(0);
+    if (args.kind == SmaaEdges::depth) args.scalar = frame.depthView.row(0);
+    if (args.kind == SmaaEdges::colour) args.color = view(*colorEncoded);
     if (args.predication == SmaaPredication::depth) args.depthView = frame.depthView.row(0);
     if (args.predication == SmaaPredication::object) args.objectId = frame.objectId.row(0);
     args.top = top_.row(0);
     args.left = left_.row(0);
-    args.stride = colorEncoded.stride();
+    args.stride = paddedStride(width_);
     args.bitStride = top_.stride();
     args.width = width_;
     const auto& kernels = smaaKernelsFor(exec);
@@ -110,8 +116,9 @@ void Smaa::findEdges(const Frame& frame, const Rgb& colorEncoded, glm::dvec2 sam
     }
 }
 
-void Smaa::blend(const Rgb& in, Rgb& out, const Exec& exec) { blend(in, out, nullptr, nullptr, exec); }
-void Smaa::blend(const Rgb& in, Rgb& out, const PlaneF* const motion[2], PlaneF* const motionOut[2], const Exec& exec) {
+void Smaa::blend(const Rgb& in, Rgb& out, const Exec& exec) { blend(in, out, nullptr, nullptr, false, exec); }
+void Smaa::blend(const Rgb& in, Rgb& out, const PlaneF* const motion[2], PlaneF* const motionOut[2], bool averaged,
+                 const Exec& exec) {
     const size_t pixels = size_t(width_) * size_t(height_);
     if (keepDebugLayers) {
         for (auto* plane : {&topWeights_, &leftWeights_, &topLengths_, &leftLengths_}) plane->assign(2 * pixels, 0);
@@ -143,6 +150,7 @@ void Smaa::blend(const Rgb& in, Rgb& out, const PlaneF* const motion[2], PlaneF*
                      leftLengths_);
     args.isDiagonal = keepDebugLayers ? isDiagonal_.data() : nullptr;
     for (size_t c = 0; c < 3; c++) args.in[c] = in.c[c].row(0), args.out[c] = out.c[c].row(0);
+    args.averaged = averaged;
     args.channels = 3;
     for (size_t c = 0; motion && c < 2; c++, args.channels++)
         args.in[args.channels] = motion[c]->row(0), args.out[args.channels] = motionOut[c]->row(0);
@@ -163,8 +171,8 @@ size_t Smaa::bytes() const {
     size_t tables = 0;
     for (const auto& t : tables_)
         for (const auto* v : {&t.orthogonal[0], &t.orthogonal[1], &t.diagonal[0], &t.diagonal[1]}) tables += v->size();
-    return luma_.bytes() + top_.bytes() + left_.bytes() + topByColumn_.bytes() + leftByColumn_.bytes() +
-           (scratch_.size() + tables) * sizeof(float) + diagonals_.size();
+    return luma_.bytes() + encoded_.bytes() + top_.bytes() + left_.bytes() + topByColumn_.bytes() +
+           leftByColumn_.bytes() + (scratch_.size() + tables) * sizeof(float) + diagonals_.size();
 }
 
 std::vector<DebugLayer> Smaa::debugLayers() const {

@@ -31,10 +31,13 @@ class Smaa {
     // Finds edges in `colorEncoded` (or frame.depthView). The image was sampled at `samplePx` from the pixel centres (y
     // down); its revectorised edges are moved back by that much (decisions 40).
     void findEdges(const Frame& frame, const Rgb& colorEncoded, glm::dvec2 samplePx, const Exec& exec);
+    // The same for linear colours, which the frame's display chain encodes.
+    void findEdgesOfLinear(const Frame& frame, const Rgb& colorLinear, glm::dvec2 samplePx, const Exec& exec);
     // Blends planes of one stride by the weights of the edges found last: the colour and, when given, the motion.
-    // Borders of the input are filled.
+    // Borders of the input are filled. `averaged`: the mean of the result and of what `out` and `motionOut` hold.
     void blend(const Rgb& in, Rgb& out, const Exec& exec);
-    void blend(const Rgb& in, Rgb& out, const PlaneF* const motion[2], PlaneF* const motionOut[2], const Exec& exec);
+    void blend(const Rgb& in, Rgb& out, const PlaneF* const motion[2], PlaneF* const motionOut[2], bool averaged,
+               const Exec& exec);
     size_t bytes() const;
     bool keepDebugLayers = false;
     std::vector<DebugLayer> debugLayers() const;
@@ -46,6 +49,9 @@ class Smaa {
         std::vector<float> orthogonal[2], diagonal[2];
     };
     const Tables& tablesFor(glm::dvec2 samplePx);  // made on first use
+    // From luma_ where edges are those of luma, and otherwise from `colorEncoded` or the frame's depth.
+    void findEdges(const Frame& frame, const Rgb* colorEncoded, int width, int height, glm::dvec2 samplePx,
+                   const Exec& exec);
     SmaaEdgeArgs edge_{};
     SmaaBlendArgs blend_{};
     bool published_;  // areas as in the shader's texture
@@ -53,6 +59,7 @@ class Smaa {
     std::vector<Tables> tables_;
     int width_ = 0, height_ = 0, border_;
     PlaneF luma_;
+    Rgb encoded_;  // of linear colours, where their edges are those of colour
     BitPlane top_, left_, topByColumn_, leftByColumn_;
     std::vector<float> scratch_;
     std::vector<uint8_t> diagonals_;

@@ -46,6 +46,7 @@ struct SmaaBlendArgs {
     bool unorm8;
     const float* in[kSmaaChannels];
     float* out[kSmaaChannels];
+    bool averaged;  // with what `out` holds, both alike
     int channels;
     float* scratch;       // per block: weights of two rows of top edges and of one row of left edges, own and opposite
     uint8_t* diagonals;   // per block: bits of the pixels of two rows that the diagonal pass has handled

@@ -254,6 +254,14 @@ AA_INLINE void leftWeights(const SmaaBlendArgs& a, const Corners<T>& corners, in
         });
     weights.opposite[a.width] = weights.opposite[a.width - 1];  // the sampler clamps
 }
+template <class R>
+AA_INLINE void put(const SmaaBlendArgs& a, R result, float* out) {
+    if (a.averaged) {
+        const R held = load<R>(out);
+        result = held + (result - held) * R(Elem<R>(0.5));
+    }
+    store(result, out);
+}
 // N<R> pixels with the weights of their four borders.
 template <class R>
 AA_INLINE void blendPixels(const SmaaBlendArgs& a, long o, R right, R left, R bottom, R top) {
@@ -269,7 +277,7 @@ AA_INLINE void blendPixels(const SmaaBlendArgs& a, long o, R right, R left, R bo
         const R own = load<R>(p);
         const R next = select(horizontal, load<R>(p + 1), load<R>(p + a.stride)),
                 previous = select(horizontal, load<R>(p - 1), load<R>(p - a.stride));
-        store(select(active, own + f * (next - own) + b * (previous - own), own), a.out[c] + o);
+        put(a, select(active, own + f * (next - own) + b * (previous - own), own), a.out[c] + o);
     }
 }
 template <class R>
@@ -284,7 +292,7 @@ AA_INLINE void blendRow(const SmaaBlendArgs& a, int y, RowWeights top, RowWeight
                 blendPixels<R>(a, o + i, load<R>(left.opposite + x + i + 1), load<R>(left.own + x + i),
                                load<R>(below.opposite + x + i), load<R>(top.own + x + i));
             else
-                for (int c = 0; c < a.channels; c++) store(load<R>(a.in[c] + o + i), a.out[c] + o + i);
+                for (int c = 0; c < a.channels; c++) put(a, load<R>(a.in[c] + o + i), a.out[c] + o + i);
     }
 }
 template <class R>

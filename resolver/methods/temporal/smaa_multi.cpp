@@ -56,44 +56,36 @@ class TwoSamples {
         smaa_.keepDebugLayers = debug;
         for (size_t k = 0; k < 2; k++) {
             const Rgb& color = frame.subSamples[samples[k]].colorLinear;
-            encode(color, frame.display, exec, encoded_);
-            smaa_.findEdges(frame, encoded_, frame.jitterPx + shot.subSamplePositionsPx[samples[k]], exec);
-            blend(frame, linear_ ? color : encoded_, k == 0 ? out : fitted(second_, frame.width, frame.height),
-                  !velocity ? nullptr
-                  : k == 0  ? velocity
-                            : &fitted(secondVelocity_, frame.width, frame.height),
-                  exec);
+            const glm::dvec2 samplePx = frame.jitterPx + shot.subSamplePositionsPx[samples[k]];
+            if (linear_) {
+                smaa_.findEdgesOfLinear(frame, color, samplePx, exec);
+            } else {
+                encode(color, frame.display, exec, encoded_);
+                smaa_.findEdges(frame, encoded_, samplePx, exec);
+            }
+            blend(frame, linear_ ? color : encoded_, out, velocity, k == 1, exec);
             for (auto& layer : smaa_.debugLayers()) {
                 layer.name = "s" + std::to_string(k) + "." + layer.name;
                 debugLayers_.push_back(std::move(layer));
             }
         }
-        average(out, second_, 3, exec);
-        if (velocity) average(*velocity, secondVelocity_, 2, exec);
     }
     // By the weights of the edges found last; `velocity` (null: not wanted) gets the motion.
-    void blend(const Frame& frame, const Rgb& in, Rgb& out, Rgb* velocity, const Exec& exec) {
+    void blend(const Frame& frame, const Rgb& in, Rgb& out, Rgb* velocity, bool averaged, const Exec& exec) {
         const PlaneF* const motion[2] = {&frame.motionXPx, &frame.motionYPx};
         PlaneF* const blended[2] = {velocity ? &velocity->c[0] : nullptr, velocity ? &velocity->c[1] : nullptr};
-        smaa_.blend(in, out, velocity ? motion : nullptr, blended, exec);
+        smaa_.blend(in, out, velocity ? motion : nullptr, blended, averaged, exec);
     }
     Smaa& smaa() { return smaa_; }
     const Smaa& smaa() const { return smaa_; }
     bool linear() const { return linear_; }
-    size_t bytes() const { return smaa_.bytes() + encoded_.bytes() + second_.bytes() + secondVelocity_.bytes(); }
+    size_t bytes() const { return smaa_.bytes() + encoded_.bytes(); }
     std::vector<DebugLayer> debugLayers() const { return debugLayers_; }
 
   private:
-    static void average(Rgb& a, const Rgb& b, size_t channels, const Exec& exec) {
-        forRows(exec, a.height(), [&](int y0, int y1) {
-            for (size_t c = 0; c < channels; c++)
-                for (int y = y0; y < y1; y++)
-                    for (int x = 0; x < a.width(); x++) a.c[c].at(x, y) += (b.c[c].at(x, y) - a.c[c].at(x, y)) * 0.5f;
-        });
-    }
     bool linear_;
     Smaa smaa_;
-    Rgb encoded_, second_, secondVelocity_;
+    Rgb encoded_;  // to blend, where that is wanted
     std::vector<DebugLayer> debugLayers_;
 };
 
@@ -180,7 +172,7 @@ class SmaaT2x : public Method {
         smaa.keepDebugLayers = keepDebugLayers;
         smaa.findEdges(frame, frame.colorEncoded, frame.jitterPx, exec);
         one_.blend(frame, one_.linear() ? frame.colorLinear : frame.colorEncoded, pair_.color(), &pair_.velocity(),
-                   exec);
+                   false, exec);
         pair_.resolve(frame, keepDebugLayers, exec, out);
     }
     size_t stateBytes() const override { return one_.bytes() + pair_.bytes(); }
