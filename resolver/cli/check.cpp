@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "cli/cli.h"
+#include "cli/one_line.h"
 #include "cli/progress.h"
 #include "image/json_text.h"
 #include "shot/manifest.h"
@@ -16,12 +17,12 @@ std::string passList(PassSet passes) {
     return s;
 }
 void print(const CheckReport& r) {
-    for (const auto& f : r.findings) std::printf("%s\n", f.line().c_str());
+    for (const auto& f : r.findings) std::printf("%s\n", onOneLine(f.line()).c_str());
     for (const auto& m : r.measured) std::printf("  %-32s %.4g\n", m.name.c_str(), m.value);
     for (const auto& v : r.variants) std::printf("  labelled variant: %s\n", v.c_str());
     for (const auto& n : r.notChecked) std::printf("  not checked: %s\n", n.c_str());
     const std::string centre = r.centrePasses.empty() ? "" : "; at the pixel centres: " + passList(r.centrePasses);
-    std::printf("%s: %s; %zu frames; passes: %s%s\n", r.name.c_str(),
+    std::printf("%s: %s; %zu frames; passes: %s%s\n", onOneLine(r.name).c_str(),
                 r.clean()
                     ? (r.variants.empty() ? "clean" : "clean as the labelled variant that it is")
                     : (std::to_string(r.findings.size()) + (r.findings.size() == 1 ? " finding" : " findings")).c_str(),

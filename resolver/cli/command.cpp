@@ -5,6 +5,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "cli/one_line.h"
 #include "image/error.h"
 
 namespace aa {
@@ -188,7 +189,7 @@ int CommandLine::parse(int argc, char** argv) {
         app_->parse(std::move(words));
     } catch (const CLI::ParseError& e) {
         if (e.get_exit_code() == 0) return app_->exit(e);  // --help, --version
-        std::cerr << "aaresolve: " << e.what() << " (see " << commandBeingRead(*app_) << " --help)\n";
+        std::cerr << "aaresolve: " << onOneLine(e.what()) << " (see " << commandBeingRead(*app_) << " --help)\n";
         return 2;
     }
     return 0;

@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "cli/cli.h"
+#include "cli/one_line.h"
 #include "image/error.h"
 #include "image/io.h"
 
@@ -27,16 +28,16 @@ void print(const GateReport& report, bool all) {
                             Verdict::within, Verdict::same})
         for (auto r = report.rows.begin(); r != report.rows.end(); ++r) {
             if (r->verdict != v || !shown(v)) continue;
-            std::printf("%-10s %-*s  %s\n", name(v), int(width), r->method.c_str(), r->inWords().c_str());
+            std::printf("%-10s %-*s  %s\n", name(v), int(width), onOneLine(r->method).c_str(), r->inWords().c_str());
             const bool more = std::any_of(r + 1, report.rows.end(), [&](const GateRow& other) {
                 return other.verdict == v && other.method == r->method;
             });
             if (v == Verdict::worse && !more && !r->rerun.empty())
-                std::printf("%-10s again: %s\n", "", r->rerun.c_str());
+                std::printf("%-10s again: %s\n", "", onOneLine(r->rerun).c_str());
         }
-    for (const auto& note : report.notes) std::printf("note: %s\n", note.c_str());
+    for (const auto& note : report.notes) std::printf("note: %s\n", onOneLine(note).c_str());
     std::printf("%s: %s, %zu rows: %zu worse, %zu missing, %zu unresolved, %zu better, %zu as before, %zu new\n",
-                report.passed() ? "passed" : "FAILED", report.shot.c_str(), report.rows.size(),
+                report.passed() ? "passed" : "FAILED", onOneLine(report.shot).c_str(), report.rows.size(),
                 report.count(Verdict::worse), report.count(Verdict::missing), report.count(Verdict::unresolved),
                 report.count(Verdict::better), report.count(Verdict::same) + report.count(Verdict::within),
                 report.count(Verdict::added));

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "cli/cli.h"
+#include "cli/one_line.h"
 #include "cli/progress.h"
 #include "image/error.h"
 #include "image/folder_claim.h"
@@ -47,12 +48,12 @@ void print(const ImportReport& r, const Options& o) {
         std::printf("no %s (%s): %s\n", std::string(name(m.pass)).c_str(), m.advice.c_str(),
                     families.empty() ? "no method needs it by default" : (families + " methods will not run").c_str());
     }
-    for (const auto& n : r.notes) std::printf("note: %s\n", n.c_str());
+    for (const auto& n : r.notes) std::printf("note: %s\n", onOneLine(n).c_str());
     const Manifest& m = r.manifest;
     std::string passes;
     for (auto n : names(r.passes)) passes += " " + std::string(n);
     std::printf("%s: %zu frames of %s, %dx%d, %s, passes:%s (%zu imported, %zu kept) -> %s\n",
-                r.complete ? "done" : "stopped", m.frames.size(), m.name.c_str(), m.width, m.height,
+                r.complete ? "done" : "stopped", m.frames.size(), onOneLine(m.name).c_str(), m.width, m.height,
                 m.isStatic ? "static" : "moving", passes.c_str(), r.imported, r.kept, o.out.c_str());
 }
 nlohmann::ordered_json toJson(const ImportReport& r) {
@@ -94,7 +95,7 @@ int import(Options& o) {
         };
         report = o.layout.empty() ? importBlender(o.import, goOn) : importEngine(engine, goOn);
     });
-    for (const auto& w : report.warnings) std::fprintf(stderr, "warning: %s\n", w.c_str());
+    for (const auto& w : report.warnings) std::fprintf(stderr, "warning: %s\n", onOneLine(w).c_str());
     if (o.json)
         std::cout << jsonText(toJson(report)) << "\n";
     else

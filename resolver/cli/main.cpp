@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <system_error>
 
 #include "cli/cli.h"
 #include "cli/completion.h"
+#include "cli/one_line.h"
 #include "image/output_error.h"
 
 namespace {
@@ -50,13 +52,17 @@ int main(int argc, char** argv) {
         if (const int code = line.parse(argc, argv)) return code;
         flushOutput();
     } catch (const aa::UsageError& e) {
-        std::cerr << "aaresolve: " << e.what() << "\n";
+        std::cerr << "aaresolve: " << aa::onOneLine(e.what()) << "\n";
         return 2;
     } catch (const aa::OutputError& e) {
-        std::cerr << "aaresolve: " << e.what() << "\n";
+        std::cerr << "aaresolve: " << aa::onOneLine(e.what()) << "\n";
         return 1;
     } catch (const aa::InputError& e) {
-        std::cerr << "aaresolve: " << e.what() << "\n";
+        std::cerr << "aaresolve: " << aa::onOneLine(e.what()) << "\n";
+        return 3;
+    } catch (const std::filesystem::filesystem_error& e) {  // a name too long, a loop of links, a folder without rights
+        std::cerr << "aaresolve: " << aa::onOneLine(e.path1().string() + ": " + e.code().message())
+                  << "; check the path and its permissions\n";
         return 3;
     } catch (const std::bad_alloc&) {
         std::cerr << "aaresolve: out of memory; use fewer methods or threads, or a smaller resolution\n";

@@ -2,15 +2,16 @@
 #include "report/survey.h"
 
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <optional>
 #include <sstream>
 
 #include "cli/cli.h"
+#include "cli/one_line.h"
 #include "cli/progress.h"
 #include "image/error.h"
 #include "image/io.h"
+#include "image/json_text.h"
 
 namespace aa {
 namespace {
@@ -22,12 +23,9 @@ constexpr const char* kIntro =
     "or do they flicker, crawl or leave trails?\n"
     "What counts is your impression; there is no right answer.";
 
-std::string textOf(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    if (!in || fs::is_directory(file)) throw InputError(file.string() + ": no such file");
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
+std::string readText(const fs::path& file) {
+    if (auto text = textOf(file)) return *std::move(text);
+    throw InputError(file.string() + ": no such file");
 }
 
 // ---- make ----
@@ -54,7 +52,7 @@ void make(MakeOptions& o, Context& context) {
     const Exec exec = o.work.exec();
     for (const auto& q : o.questions) o.survey.questions.push_back({q, "--question '" + q + "'", false});
     if (!o.file.empty()) {
-        std::istringstream lines(textOf(o.file));
+        std::istringstream lines(readText(o.file));
         std::string line;
         for (int number = 1; std::getline(lines, line); number++) {
             const size_t from = line.find_first_not_of(" \t\r");
@@ -64,7 +62,7 @@ void make(MakeOptions& o, Context& context) {
         }
         if (o.survey.questions.empty()) throw InputError(o.file + ": expected a question per line, found none");
     }
-    o.survey.intro = o.introFile.empty() ? kIntro : textOf(o.introFile);
+    o.survey.intro = o.introFile.empty() ? kIntro : readText(o.introFile);
     if (!o.seed.empty()) {
         char* end = nullptr;
         o.survey.seed = std::strtoull(o.seed.c_str(), &end, 10);
@@ -88,7 +86,8 @@ void make(MakeOptions& o, Context& context) {
     if (page.has_parent_path()) makeWritableFolder(page.parent_path());
     writeText(page, survey.page);
     writeText(keyBeside(page), toJsonText(survey.key));
-    for (const auto& note : survey.notes) std::fprintf(stderr, "aaresolve: survey: note: %s\n", note.c_str());
+    for (const auto& note : survey.notes)
+        std::fprintf(stderr, "aaresolve: survey: note: %s\n", onOneLine(note).c_str());
     std::printf("%zu questions, %zu pictures, %.1f MB\n", survey.key.questions.size(), survey.pictures,
                 double(survey.page.size()) / 1e6);
     for (const auto& q : survey.key.questions) {
@@ -173,7 +172,7 @@ void score(const ScoreOptions& o) {
         written.push_back(file);
     };
     const auto page = [&] {
-        return scoresHtml(scores, fs::path(o.survey).extension() == ".html" && fs::exists(o.survey) ? textOf(o.survey)
+        return scoresHtml(scores, fs::path(o.survey).extension() == ".html" && fs::exists(o.survey) ? readText(o.survey)
                                                                                                     : std::string());
     };
     const fs::path out = o.out;
@@ -190,7 +189,8 @@ void score(const ScoreOptions& o) {
         write(out / "scores.json", toJsonText(scores));
         write(out / "scores.csv", toCsvText(scores));
     }
-    for (const auto& note : scores.notes) std::fprintf(stderr, "aaresolve: survey: note: %s\n", note.c_str());
+    for (const auto& note : scores.notes)
+        std::fprintf(stderr, "aaresolve: survey: note: %s\n", onOneLine(note).c_str());
     if (o.json) {
         std::cout << toJsonText(scores);
         return;

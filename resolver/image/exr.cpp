@@ -26,6 +26,7 @@
 
 #include "image/channel_order.h"
 #include "image/error.h"
+#include "image/exr_header.h"
 #include "image/io.h"
 
 namespace aa {
@@ -260,9 +261,12 @@ ExrFile::ExrFile(const fs::path& file, std::string advice) : path_(file), advice
     std::error_code ignored;
     if (!fs::exists(file, ignored)) throw InputError(file.string() + ": no such file" + advice_);
     if (fs::is_directory(file, ignored)) throw InputError(file.string() + ": is a folder; expected an EXR file");
+    if (!fs::is_regular_file(file, ignored))
+        throw InputError(file.string() + ": is a pipe or a device; expected an EXR file");
     if (!isExr(file)) throw InputError(file.string() + ": not an EXR file" + advice_);
     startThreads();
     try {
+        checkAttributeSizes(file);
         input_ = std::make_unique<Input>(file.c_str());
         for (int i = 0; i < input_->file.parts(); i++) parts_.push_back(described(input_->file.header(i)));
     } catch (const std::exception& e) {
@@ -284,7 +288,9 @@ void ExrFile::read(const ExrPart& part, std::vector<ChannelTarget>& targets) {
     if (part.deep)
         throw InputError(where + ": deep pixels (" + part.storage +
                          "), of which each holds several values; not supported, flatten it to one value per pixel");
-    const uint64_t asked = uint64_t(part.width) * uint64_t(part.height) * sizeof(float) * targets.size();
+    // All channels of a part lie in its blocks, and OpenEXR unpacks a block as a whole.
+    const uint64_t channels = std::max(targets.size(), part.channels.size());
+    const uint64_t asked = uint64_t(part.width) * uint64_t(part.height) * sizeof(float) * channels;
     std::error_code ignored;
     const uint64_t stored = fs::file_size(path_, ignored);
     if (asked > kAlwaysBytes && asked / mostBytesPerByte(part.compression) > stored)

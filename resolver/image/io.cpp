@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <charconv>
 #include <fstream>
+#include <mutex>
+#include <set>
 #include <sstream>
 #include <string_view>
 #include <system_error>
@@ -51,9 +53,17 @@ void removePartials(const fs::path& folder) {
             fs::remove(entry.path(), failed);
     }
 }
+// When a process first writes into a folder: a single file is asked for in any.
+void clearOnce(const fs::path& folder) {
+    static std::mutex one;
+    static std::set<fs::path> cleared;
+    const std::lock_guard lock(one);
+    if (cleared.insert(folder).second) removePartials(folder.empty() ? "." : folder);
+}
 }  // namespace
 
 fs::path temporaryName(const fs::path& file) {
+    clearOnce(file.parent_path());
     std::string name = ".";
     name += file.stem().string();
     name += writerOf(std::to_string(::getpid()));
@@ -170,7 +180,10 @@ bool LoadedImage::isOpaque() const {
 }
 
 LoadedImage readImage(const fs::path& file, const ReadOptions& o) {
-    if (!fs::exists(file)) throw InputError(file.string() + ": no such file");
+    std::error_code ignored;
+    if (!fs::exists(file, ignored)) throw InputError(file.string() + ": no such file");
+    if (!fs::is_regular_file(file, ignored) && !fs::is_directory(file, ignored))
+        throw InputError(file.string() + ": is a pipe or a device; expected an image, PNG or EXR");
     const bool exr = isExr(file);
     if (!exr && !o.layer.empty()) throw UsageError("--layer " + o.layer + ": " + file.string() + " is no EXR");
     StoredPicture stored;

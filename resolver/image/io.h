@@ -62,7 +62,7 @@ void writePng(const std::filesystem::path& file, const Rgb& encoded, const Plane
 // As one float EXR: channels NAME, or NAME.R/.G/.B.
 void writeLayers(const std::filesystem::path& file, const std::vector<NamedPlanes>& layers);
 
-// A path next to `file` to write to before renaming over it; another one in every process.
+// Where to write `file` before renaming over it, its own in every process; asked first, clears what killed ones left.
 std::filesystem::path temporaryName(const std::filesystem::path& file);
 void renameInto(const std::filesystem::path& temporary, const std::filesystem::path& file);  // throws InputError
 // Removes the temporary file and throws InputError.

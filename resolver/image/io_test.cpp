@@ -542,6 +542,14 @@ TEST_F(ImageFiles, WhatKilledProcessesLeftIsRemovedAndWhatLivingOnesWriteIsNot) 
     for (const fs::path& file : {alive, foreign, own}) EXPECT_TRUE(fs::exists(file)) << file;
 }
 
+TEST_F(ImageFiles, AFileThatIsAskedForClearsWhatKilledProcessesLeftOfIt) {
+    const fs::path other = folder / "other", dead = other / leftover(folder / "a.png").filename();
+    fs::create_directories(other);
+    std::ofstream(dead) << "x";
+    writePng(other / "a.png", ramp());
+    EXPECT_FALSE(fs::exists(dead));
+    EXPECT_TRUE(fs::exists(other / "a.png"));
+}
 TEST_F(ImageFiles, WhatCannotBeWrittenIsSaidAndLeavesNothing) {
     for (const char* name : {"a.png", "a.exr"}) {
         const fs::path file = folder / "nowhere" / name;

@@ -1,10 +1,13 @@
 #include "image/json_text.h"
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 
 #include "image/error.h"
 
 namespace aa {
+namespace fs = std::filesystem;
 using nlohmann::json;
 
 namespace {
@@ -31,6 +34,23 @@ json parseJson(const std::string& text, const std::string& file, const std::stri
     } catch (const json::exception&) {
         throw InputError(file + ": holds a number that does not fit into a double; " + advice);
     }
+}
+
+std::optional<std::string> textOf(const fs::path& file) {
+    std::error_code failed;
+    const fs::file_status about = fs::status(file, failed);
+    if (!fs::is_regular_file(about) && !fs::is_fifo(about)) return std::nullopt;
+    std::ifstream in(file, std::ios::binary);
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    return in.bad() || !in.is_open() ? std::nullopt : std::optional(std::move(text));
+}
+
+bool isPathBelow(const std::string& path) {
+    const fs::path p(path);
+    bool below = !path.empty() && path.find('\0') == std::string::npos && path.find('\\') == std::string::npos &&
+                 p.is_relative();
+    for (const auto& step : p) below = below && step != "..";
+    return below;
 }
 
 }  // namespace aa

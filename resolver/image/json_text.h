@@ -1,6 +1,8 @@
 // JSON as it is written and read: shot.json, results, surveys and their answers.
 #pragma once
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 namespace aa {
@@ -15,5 +17,11 @@ std::string jsonText(const Json& value, int indent = 1) {
 // `file` begins the message of an error and `advice` ends it. Throws InputError, one line: not JSON (with line and
 // column), nested too deep, a number beyond a double.
 nlohmann::json parseJson(const std::string& text, const std::string& file, const std::string& advice);
+
+// A whole file; nothing where there is none, or none that ends: a folder, a device. A pipe may be one.
+std::optional<std::string> textOf(const std::filesystem::path& file);
+
+// Whether a path in a document stays below the folder that the document speaks of.
+bool isPathBelow(const std::string& path);
 
 }  // namespace aa

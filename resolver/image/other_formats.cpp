@@ -18,6 +18,11 @@ namespace {
 constexpr const char* kModule = "aaresolve_formats.so";
 constexpr const char* kVariable = "AARESOLVE_FORMATS";
 
+// A damaged size must not ask for the machine's memory. WebP and the like need no bytes for a picture of one colour, so
+// that one of 3840 x 2160 always goes; beyond, what deflate unpacks furthest to: 1032 codes, four of them from a bit
+// each.
+constexpr size_t kAlwaysValues = 4 * size_t(3840) * 2160, kMostValuesPerByte = 8 * 1032;
+
 struct Module {
     AaOpenPicture open = nullptr;
     AaReadPicture read = nullptr;
@@ -71,7 +76,13 @@ StoredPicture readOtherFormat(const fs::path& file) {
         throw InputError(file.string() + ": " + std::to_string(w) + " x " + std::to_string(h) +
                          " pixels; expected 1..16384 a side");
     const size_t channels = size_t(std::min(stored, 4));
-    std::vector<float> pixels(size_t(w) * size_t(h) * channels);
+    const size_t values = size_t(w) * size_t(h) * channels;
+    std::error_code ignored;
+    const uintmax_t bytes = fs::file_size(file, ignored);
+    if (values > kAlwaysValues && values / kMostValuesPerByte > bytes)
+        throw InputError(file.string() + ": " + std::to_string(w) + " x " + std::to_string(h) +
+                         " pixels cannot be in a file of " + std::to_string(bytes) + " bytes; write the file again");
+    std::vector<float> pixels(values);
     if (!module.read(opened.get(), int(channels), pixels.data()))
         throw InputError(file.string() + ": truncated or damaged; write the file again");
     StoredPicture read{Rgb(w, h), {}, isFloat != 0, orientation};

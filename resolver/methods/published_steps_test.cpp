@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "image/error.h"
 #include "methods/method.h"
 #include "methods/spec.h"
 
@@ -24,6 +25,19 @@ TEST(PublishedSteps, EveryOptionStringOfThePageIsAccepted) {
         count++, from = to + 1;
     }
     EXPECT_GE(count, 60u) << page;
+}
+
+// What is published for one step acts in it alone: elsewhere it is refused, with the setting that it waits for.
+TEST(PublishedSteps, AnOptionThatActsInNoOtherModeIsRefusedThere) {
+    for (const char* method : {"salvi:neighbourhood=plus", "falcor:neighbourhood=plus", "donut:neighbourhood=plus",
+                               "raptor:temporalFiltering=off"}) {
+        try {
+            parseMethod(method);
+            ADD_FAILURE() << method;
+        } catch (const UsageError& e) {
+            EXPECT_NE(std::string(e.what()).find("has no effect unless"), std::string::npos) << e.what();
+        }
+    }
 }
 
 }  // namespace

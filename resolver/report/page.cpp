@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "image/colour_map.h"
 #include "image/error.h"
@@ -36,10 +34,12 @@ std::string forScript(const nlohmann::ordered_json& j) {
     const std::string text = jsonText(j, -1);
     std::string safe;
     safe.reserve(text.size());
-    for (const char c : text) {
-        if (c == '/' && !safe.empty() && safe.back() == '<') safe += '\\';
-        safe += c;
-    }
+    // Every one, not "</" alone: after "<!--<script>" an end tag ends nothing.
+    for (const char c : text)
+        if (c == '<')
+            safe += "\\u003c";
+        else
+            safe += c;
     return safe;
 }
 
@@ -62,12 +62,10 @@ nlohmann::ordered_json figureJson(const Figure& f) {
 
 std::string sectionOf(const MeasuredSection& s, const std::filesystem::path& folder) {
     const auto file = folder / s.file;
-    std::ifstream in(file);
-    if (!in) return "";
-    std::ostringstream text;
-    text << in.rdbuf();
+    const auto text = textOf(file);
+    if (!text) return "";
     const std::string advice = "run `aaresolve " + std::string(s.command) + "` again or remove the file";
-    const nlohmann::ordered_json j = parseJson(text.str(), file.string(), advice);
+    const nlohmann::ordered_json j = parseJson(*text, file.string(), advice);
     const auto is = [&](const char* key, const nlohmann::ordered_json& v) { return j.contains(key) && j.at(key) == v; };
     if (!j.is_object() || !is("format", s.format) || !is("version", 1) || !j.contains("methods"))
         throw InputError(file.string() + ": expected what `aaresolve " + std::string(s.command) + "` writes; " +

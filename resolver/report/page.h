@@ -12,7 +12,7 @@ struct Figure;
 
 // `page` with each {{name}} replaced. What is put in is not searched for places again.
 std::string filled(std::string_view page, std::initializer_list<std::pair<std::string_view, std::string_view>> places);
-// Inside <script>, "</" would end it; "<\/" is the same JSON string.
+// Inside <script>, where "</" would end it: "\u003c" is the same in a JSON string.
 std::string forScript(const nlohmann::ordered_json& j);
 // The 256 colours of errors, [red, green, blue] in codes, of 0 first.
 nlohmann::ordered_json errorColoursJson();

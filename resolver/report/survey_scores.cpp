@@ -18,8 +18,10 @@ json picturesOf(const std::string& page, const std::string& survey) {
     if (from == std::string::npos) return pictures;
     const size_t start = from + kFrom.size();
     const json data = json::parse(page.substr(start, page.find(kTo, start) - start), nullptr, false);
-    if (!data.is_object() || data.value("survey", "") != survey || !data.contains("images")) return pictures;
-    for (const auto& [code, frames] : data["images"].items()) pictures[code] = frames.at(0);
+    const auto isOf = [&](const json& d) { return d.is_object() && d.contains("survey") && d["survey"] == survey; };
+    if (!isOf(data) || !data.contains("images") || !data["images"].is_object()) return pictures;
+    for (const auto& [code, frames] : data["images"].items())
+        if (frames.is_array() && !frames.empty() && frames[0].is_string()) pictures[code] = frames[0];
     return pictures;
 }
 }  // namespace

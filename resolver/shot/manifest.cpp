@@ -1,9 +1,7 @@
 #include "shot/manifest.h"
 
 #include <cmath>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 #include "image/error.h"
 #include "image/io.h"
@@ -108,11 +106,7 @@ class Member {
     // A path below the shot's folder.
     std::string relativePath() const {
         const std::string path = text();
-        const fs::path p(path);
-        bool safe = !path.empty() && path.find('\0') == std::string::npos && path.find('\\') == std::string::npos &&
-                    p.is_relative();
-        for (const auto& step : p) safe = safe && step != "..";
-        if (!safe) fail("a relative path below the shot's folder");
+        if (!isPathBelow(path)) fail("a relative path below the shot's folder");
         return path;
     }
 
@@ -265,13 +259,8 @@ json toJson(const FrameEntry& f) {
 }
 
 std::string readText(const fs::path& file) {
-    std::error_code ignored;
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    if (!in || fs::is_directory(file, ignored))
-        throw InputError(file.string() + ": cannot be read; check its permissions");
-    return text.str();
+    if (auto text = textOf(file)) return *std::move(text);
+    throw InputError(file.string() + ": cannot be read; check its permissions");
 }
 }  // namespace
 

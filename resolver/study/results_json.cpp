@@ -1,9 +1,9 @@
 // results.json. Every member is described once, in a members() below: the writer and the reader are visitors of the
 // same description, so that nothing is written that cannot be read. JSON has no infinity and no NaN: they are texts.
 #include <cmath>
-#include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
-#include <sstream>
+#include <utility>
 
 #include "image/error.h"
 #include "image/io.h"
@@ -16,6 +16,16 @@ namespace {
 namespace fs = std::filesystem;
 using json = nlohmann::ordered_json;
 
+template <class T>
+T wholeOf(const json& j) {
+    const bool isBelow = j.is_number_unsigned() ? std::in_range<T>(j.get<uint64_t>())
+                                                : j.is_number_integer() && std::in_range<T>(j.get<int64_t>());
+    if (!isBelow)
+        throw std::runtime_error("expected a whole number from " + std::to_string(std::numeric_limits<T>::min()) +
+                                 " to " + std::to_string(std::numeric_limits<T>::max()) + ", found " +
+                                 jsonText(j, -1).substr(0, 40));
+    return j.get<T>();
+}
 // A value as JSON holds it, and back.
 template <class T>
 json toJson(const T& v) {
@@ -24,12 +34,25 @@ json toJson(const T& v) {
     else
         return v;
 }
+// JSON's library would cut off what an integer does not hold.
 template <class T>
 void fromJson(const json& j, T& v) {
     if constexpr (std::is_same_v<T, double>)
         v = numberOf(j);
+    else if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>)
+        v = wholeOf<T>(j);
     else
         j.get_to(v);
+}
+template <class T>
+void fromJson(const json& j, std::vector<T>& values) {
+    if (!j.is_array()) throw std::runtime_error("expected a list, found " + jsonText(j, -1).substr(0, 40));
+    for (const json& value : j) fromJson(value, values.emplace_back());
+}
+template <class T, class Less>
+void fromJson(const json& j, std::map<std::string, T, Less>& values) {
+    if (!j.is_object()) throw std::runtime_error("expected an object, found " + jsonText(j, -1).substr(0, 40));
+    for (const auto& [key, value] : j.items()) fromJson(value, values[key]);
 }
 // Enumerations by name.
 json toJson(const ToneMap& v) { return name(v); }
@@ -40,7 +63,7 @@ void fromJson(const json& j, Transfer& v) { v = transferByName(j.get<std::string
 void fromJson(const json& j, History& v) { v = historyByName(j.get<std::string>()); }
 json toJson(const Window& v) { return {v.x, v.y, v.width, v.height}; }
 void fromJson(const json& j, Window& v) {
-    v = {j.at(0).get<int>(), j.at(1).get<int>(), j.at(2).get<int>(), j.at(3).get<int>()};
+    v = {wholeOf<int>(j.at(0)), wholeOf<int>(j.at(1)), wholeOf<int>(j.at(2)), wholeOf<int>(j.at(3))};
 }
 // JSON's keys are texts.
 json toJson(const std::map<int, std::string>& images) {
@@ -456,23 +479,40 @@ void writeResults(const RunResults& run, const fs::path& folder) {
     writeText(folder / "results.json", toJsonText(run));  // last: whole results have a whole table beside them
 }
 
+namespace {
+// What is read, replaced or removed by these names lies in the run's folder.
+void checkPaths(const RunResults& run) {
+    const auto check = [](const std::string& path, const char* what) {
+        if (!isPathBelow(path))
+            throw std::runtime_error(std::string(what) + ": expected a path below the run's folder, found '" + path +
+                                     "'");
+    };
+    for (const auto& [frame, image] : run.truthImages) check(image, "truth.images");
+    for (const auto& kind : run.maps) check(kind.first, "run.maps");
+    for (const MethodResult& m : run.methods) {
+        check(m.folder, "folder");
+        for (const FrameResult& f : m.frames)
+            if (!f.image.empty()) check(f.image, "image");
+    }
+}
+}  // namespace
+
 RunResults readResults(const fs::path& path) {
     std::error_code ignored;
     const fs::path file = fs::is_regular_file(path, ignored) ? path : path / "results.json";
-    std::ifstream in(file);
-    if (!in)
+    const auto text = textOf(file);
+    if (!text)
         throw InputError(file.string() +
                          ": no such file; expected the output folder of `aaresolve run SHOT -m ... -o OUT`");
     RunResults run;
     try {
-        std::ostringstream text;
-        text << in.rdbuf();
-        const json j = parseJson(text.str(), file.string(), "run the shot again");
+        const json j = parseJson(*text, file.string(), "run the shot again");
         if (j.at("format") != "aaresolve-results" || j.at("version") != 1)
             throw InputError(file.string() + ": not results of this program's version; run the shot again");
         members(Reader(j), run);
         if (run.protocol.region && !run.protocol.region->isInside(run.width, run.height))
             throw InputError(file.string() + ": its region is not within the picture; run the shot again");
+        checkPaths(run);
         for (const PairResult& p : run.pairs)
             if (p.first >= run.methods.size() || p.second >= run.methods.size())
                 throw InputError(file.string() + ": a pair names a method that is not there; run the shot again");

@@ -1,9 +1,7 @@
 // The survey's two files, key and answers.
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 
 #include "image/error.h"
 #include "image/json_text.h"
@@ -77,11 +75,9 @@ class Place {
 };
 
 json parsed(const fs::path& file, const std::string& what) {
-    std::ifstream in(file);
-    if (!in || fs::is_directory(file)) throw InputError(file.string() + ": no such file; expected " + what);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return parseJson(text.str(), file.string(), "expected " + what);
+    const auto text = textOf(file);
+    if (!text) throw InputError(file.string() + ": no such file; expected " + what);
+    return parseJson(*text, file.string(), "expected " + what);
 }
 void checkFormat(const Place& top, const char* format, const std::string& what) {
     top.at("format").mustBe(format, ", " + what);

@@ -1,12 +1,14 @@
 #include "study/warm_up.h"
 
 #include "gpu/method.h"
+#include "image/error.h"
 #include "shot/frame_stream.h"
 #include "shot/pass_table.h"
 
 namespace aa {
 namespace {
-constexpr size_t kHistoryPeriods = 10;  // decisions 13
+constexpr size_t kHistoryPeriods = 10;   // decisions 13
+constexpr size_t kMostFrames = 1000000;  // days of work: no sequence that one waits for repeats after so many
 
 std::vector<MethodSpec> withHistory(const std::vector<MethodSpec>& methods) {
     std::vector<MethodSpec> chosen;
@@ -25,6 +27,10 @@ int numberInPass(int number, size_t passesLeft, const RunOptions& o, const Manif
 size_t warmUpPasses(const RunOptions& o, const Manifest& m) {
     if (o.protocol.history != History::full || o.frames.empty() || withHistory(o.every()).empty()) return 0;
     const size_t frames = kHistoryPeriods * size_t(std::max(m.jitterPeriod, 1));
+    if (frames > kMostFrames)
+        throw InputError((m.folder / "shot.json").string() + ": jitter.period: a full history takes " +
+                         std::to_string(kHistoryPeriods) + " periods of " + std::to_string(m.jitterPeriod) +
+                         " frames, above " + std::to_string(kMostFrames) + "; run with --history first");
     return (frames + o.frames.size() - 1) / o.frames.size();
 }
 

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
+#include <limits>
 #include <set>
 
 #include "image/error.h"
@@ -87,11 +86,8 @@ EngineSource sourceOf(Object& o, std::vector<std::string> usual) {
     EngineSource s;
     s.files = o.text("files").value_or("");
     const size_t at = s.files.find("{frame}");
-    const fs::path path(s.files);
-    bool below = path.is_relative();
-    for (const auto& step : path) below = below && step != "..";
     if (at == std::string::npos || s.files.find("{frame}", at + 1) != std::string::npos ||
-        path.filename().string().find("{frame}") == std::string::npos || !below)
+        fs::path(s.files).filename().string().find("{frame}") == std::string::npos || !isPathBelow(s.files))
         o.fail("files", "a path below the folder of frames with {frame} once in its file name, as color/{frame}.exr");
     s.part = o.text("part").value_or("");
     s.channels = std::move(usual);
@@ -172,10 +168,9 @@ void jitterOf(Object& o, int width, int height, EngineLayout& layout) {
     o.finish();
 }
 json parsed(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    if (!in) throw InputError(file.string() + ": no such file, or it cannot be read");
-    return parseJson({std::istreambuf_iterator<char>(in), {}}, file.string(),
-                     "correct it (docs/format.md describes it)");
+    const auto text = textOf(file);
+    if (!text) throw InputError(file.string() + ": no such file, or it cannot be read");
+    return parseJson(*text, file.string(), "correct it (docs/format.md describes it)");
 }
 }  // namespace
 
@@ -218,7 +213,10 @@ EngineLayout readEngineLayout(const fs::path& file, int width, int height) {
         if (layout.truth.empty()) truth->fail("a", "an object: where the truth lies");
         layout.truthFilter = truth->text("filter").value_or("unknown");
         layout.truthFilterWidthPx = truth->number("filter_width").value_or(0);
-        layout.truthSamplesPerHalf = int(truth->number("samples_per_half").value_or(0));
+        const double samples = truth->number("samples_per_half").value_or(0);
+        if (!(samples >= 0 && samples <= std::numeric_limits<int>::max() && samples == std::floor(samples)))
+            truth->fail("samples_per_half", "a whole number from 0 on");
+        layout.truthSamplesPerHalf = int(samples);
         truth->finish();
     }
     if (auto jitter = doc.object("jitter")) jitterOf(*jitter, width, height, layout);

@@ -1,7 +1,6 @@
 #include "shot/import/store.h"
 
 #include <cstdio>
-#include <fstream>
 
 #include "image/error.h"
 #include "image/folder_claim.h"
@@ -14,8 +13,12 @@ using nlohmann::json;
 
 namespace {
 json readJson(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return in ? json::parse(in, nullptr, false) : json();
+    const auto text = textOf(file);
+    try {
+        return text ? parseJson(*text, file.string(), "") : json();
+    } catch (const InputError&) {
+        return json();  // as if it were not there
+    }
 }
 std::string shown(const json& value) { return value.dump(-1, ' ', true, json::error_handler_t::replace); }
 std::string numbered(const std::string& kind, int frame, const char* extension) {
