@@ -33,7 +33,8 @@ help:
 	@echo "make test-addon     the add-on's tests in the Blender at BLENDER=/path/to/blender; ONLY=\"light motion\""
 	@echo "make test-blenders  the same, scenes and more in the Blenders of Debian 13 and sid; SUITES=\"trixie sid\", ONLY=..."
 	@echo "make test-bundle    the bundle and the zips in bare systems of Debian 12, 13 and sid"
-	@echo "make fuzz       damaged input through the program, then each parser under libFuzzer, FUZZ_SECONDS=300 each"
+	@echo "make fuzz       damaged input through the program, then each parser under libFuzzer, FUZZ_SECONDS=300 or"
+	@echo "                FUZZ_RUNS=1000000 each; how much of the parsers the corpus reaches; COVERAGE=1: this table alone"
 	@echo "make sanitize   unit and property tests under AddressSanitizer and UndefinedBehaviorSanitizer"
 	@echo "make asserts    unit tests with asserts on"
 	@echo "make deps, docs, bits, format, clean; PRESET=dev: the quickest build, in build-dev/ (CONTRIBUTING.md)"
@@ -79,11 +80,11 @@ blenders-clean:
 FUZZ_SECONDS ?= 300
 SEED ?= 1
 fuzz: program
-	@python3 tests/fuzz/fuzz.py $(BUILD)/aaresolve --seconds $(FUZZ_SECONDS) --seed $(SEED) --jobs $(JOBS)
+	@$(if $(COVERAGE),,python3 tests/fuzz/fuzz.py $(BUILD)/aaresolve --seconds $(FUZZ_SECONDS) --seed $(SEED) --jobs $(JOBS))
 	@CI_PACKAGES="clang llvm" .ci/bootstrap
 	@cmake --preset fuzz $(LAUNCHER) >/dev/null
-	@cmake --build --preset fuzz -j $(JOBS) --target fuzz_target aaresolve
-	@python3 tests/fuzz/search.py build-fuzz --seconds $(FUZZ_SECONDS) --jobs $(JOBS)
+	@cmake --build --preset fuzz -j $(JOBS) --target fuzz_target
+	@python3 tests/fuzz/search.py build-fuzz $(BUILD)/aaresolve $(if $(COVERAGE),--coverage,$(if $(FUZZ_RUNS),--runs $(FUZZ_RUNS),--seconds $(FUZZ_SECONDS))) --jobs $(JOBS)
 
 sanitize: deps
 	@cmake --preset sanitize $(LAUNCHER) -DAA_WERROR=$(WERROR) >/dev/null

@@ -5,33 +5,36 @@ from __future__ import annotations
 import struct
 
 
-def _attribute(name: str, kind: str, value: bytes) -> bytes:
+def attribute(name: str, kind: str, value: bytes) -> bytes:
     return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
 
 
 def write(
-    path, width: int, height: int, channels: dict[str, list[float]], texts: dict[str, str]
+    path,
+    width: int,
+    height: int,
+    channels: dict[str, list[float]],
+    texts: dict[str, str],
+    more: bytes = b"",
 ) -> None:
-    """Float channels of width * height values each."""
+    """Float channels of width * height values each; `more`: further attributes."""
     names = sorted(channels)
     listed = b"".join(n.encode() + b"\0" + struct.pack("<iiii", 2, 0, 1, 1) for n in names) + b"\0"
     window = struct.pack("<iiii", 0, 0, width - 1, height - 1)
     header = struct.pack("<II", 20000630, 2)
-    header += _attribute("channels", "chlist", listed) + _attribute(
+    header += attribute("channels", "chlist", listed) + attribute(
         "compression", "compression", b"\0"
     )
-    header += _attribute("dataWindow", "box2i", window) + _attribute(
-        "displayWindow", "box2i", window
-    )
-    header += _attribute("lineOrder", "lineOrder", b"\0") + _attribute(
+    header += attribute("dataWindow", "box2i", window) + attribute("displayWindow", "box2i", window)
+    header += attribute("lineOrder", "lineOrder", b"\0") + attribute(
         "pixelAspectRatio", "float", struct.pack("<f", 1)
     )
-    header += _attribute("screenWindowCenter", "v2f", struct.pack("<ff", 0, 0)) + _attribute(
+    header += attribute("screenWindowCenter", "v2f", struct.pack("<ff", 0, 0)) + attribute(
         "screenWindowWidth", "float", struct.pack("<f", 1)
     )
     for key, value in texts.items():
-        header += _attribute(key, "string", value.encode())
-    header += b"\0"
+        header += attribute(key, "string", value.encode())
+    header += more + b"\0"
     row_bytes = 4 * width * len(names)
     first = len(header) + 8 * height
     offsets = b"".join(struct.pack("<Q", first + y * (8 + row_bytes)) for y in range(height))

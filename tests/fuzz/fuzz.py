@@ -25,6 +25,7 @@ from pathlib import Path
 
 import exr
 import mutate
+import seeds
 
 HEADER_BYTES = 700
 METHODS = [
@@ -109,7 +110,7 @@ class Corpus:
     def _survey(self, folder: Path) -> None:
         """A survey's page, key and answers."""
         questions = [w for kind in ("rank", "pair", "rating") for w in ("-q", kind)]
-        self._call("survey", "make", self.folder / "run", "-o", folder, *questions)
+        self._call("survey", "make", self.folder / "run", "-o", folder, "--quiet", *questions)
         key = json.loads((folder / "survey.key.json").read_text())
         codes = [p["code"] for p in key["questions"][0]["pictures"]]
         given = [
@@ -130,45 +131,52 @@ class Corpus:
         (folder / "answers.json").write_text(json.dumps(answers, indent=1))
 
     def write_seeds(self, to: Path) -> None:
-        """A folder of whole inputs per target (targets.h)."""
+        """A folder of whole inputs per target (targets.h). They are small, since a search tries thousands a second; those
+        whose names begin with "bad-" must be refused."""
 
-        def keep(target: str, name: str, content: bytes | str) -> None:
+        def keep(target: str, name: str, content: bytes | str | dict) -> None:
+            if isinstance(content, dict):
+                content = json.dumps(content, separators=(",", ":"))
             folder = to / target
             folder.mkdir(parents=True, exist_ok=True)
             folder.joinpath(name).write_bytes(
                 content if isinstance(content, bytes) else content.encode()
             )
 
-        def keep_file(target: str, path: Path) -> None:
-            keep(target, path.name, path.read_bytes())
+        def keep_file(target: str, path: Path, name: str = "") -> None:
+            content = path.read_bytes()
+            if path.suffix == ".json":
+                content = json.dumps(json.loads(content), separators=(",", ":")).encode()
+            keep(target, name or path.name, content)
 
         for target, path in (
             ("manifest", "shot/shot.json"),
             ("notes", "notes.json"),
             ("results", "run/results.json"),
             ("key", "survey/survey.key.json"),
-            ("blender", "native/0001.exr"),
             ("png", "run/noaa/000001.png"),
             ("parts", "run/noaa/000001.exr"),
         ):
             keep_file(target, self.folder / path)
-        keep_file("frame", min((self.folder / "shot/frames").iterdir()))
-        truth = min((self.folder / "shot/truth").iterdir())
-        keep_file("parts", truth)
-        keep_file("truth", truth)
-        key = {"format": "aaresolve-survey-answers", "version": 1, "survey": "s1"}
-        given = ({"ranks": {"aa": 1, "bb": 2}}, {"better": "aa"}, {"ratings": {"aa": 4, "bb": 5}})
-        answers = [
-            {"question": f"q{i + 1}", "shown": ["aa", "bb"], "seconds": 1.5, **own}
-            for i, own in enumerate(given)
-        ]
-        keep("answers", "answers.json", json.dumps(key | {"participant": "p", "answers": answers}))
+        self._write_frames(keep_file)
+        seeds.write_documents(keep)
+        seeds.write_blender_frames(keep, self.folder / "seed.exr")
+        seeds.write_pictures(keep, self.folder / "seed.exr")
         for i, method in enumerate(METHODS):
             keep("method", f"{i}.txt", method)
-        keep("vary", "one.txt", "kmin=0.5,0.9")
-        keep("question", "rank.txt", "rank noaa fxaa311 frames=1-2 fps=8 region=2,3,16,8 zoom=2")
-        keep("question", "pairs.txt", "pairs noaa smaa1x region=auto:120x80 text=Which is better?")
         self._write_kinds(keep)
+
+    def _write_frames(self, keep_file) -> None:
+        """Of a shot of the size of targets.cpp."""
+        shot = self.folder / "small"
+        self._call(
+            *("synth", "two_planes", "-o", shot, "--size", "8x6", "--frames", "1", "-q"),
+            *("--subsamples", "d3d2", "--subsample-color"),
+        )
+        keep_file("frame", min((shot / "frames").iterdir()))
+        truth = min((shot / "truth").iterdir())
+        keep_file("parts", truth, "truth.exr")
+        keep_file("truth", truth)
 
     @staticmethod
     def _write_kinds(keep) -> None:

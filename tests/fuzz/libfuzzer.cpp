@@ -1,9 +1,11 @@
-// A target under libFuzzer (clang -fsanitize=fuzzer): fuzz_target TARGET [options of libFuzzer] [corpus folders].
+// A target under libFuzzer (clang -fsanitize=fuzzer): fuzz_target TARGET [options of libFuzzer] [corpus folders]; or
+// fuzz_target --seeds FOLDER, which adds the whole inputs that are made here to those of fuzz.py.
 #include <tbb/global_control.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 
 #include "targets.h"
 
@@ -15,6 +17,16 @@ const aa::fuzz::Target* chosen = nullptr;
 
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
     static tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
+    if (*argc == 3 && std::string_view((*argv)[1]) == "--seeds") {
+        for (const auto& target : aa::fuzz::targets())
+            for (const auto& seed : aa::fuzz::pictureSeeds(target.name)) {
+                const auto file = std::filesystem::path((*argv)[2]) / target.name / seed.name;
+                std::filesystem::create_directories(file.parent_path());
+                std::ofstream(file, std::ios::binary)
+                    .write(reinterpret_cast<const char*>(seed.bytes.data()), std::streamsize(seed.bytes.size()));
+            }
+        std::exit(0);
+    }
     chosen = *argc > 1 ? aa::fuzz::find((*argv)[1]) : nullptr;
     if (!chosen) {
         std::fprintf(stderr, "usage: fuzz_target TARGET [libFuzzer's options] [CORPUS...]; TARGET:");

@@ -1,6 +1,6 @@
-// Every target over its seeds, which must be accepted, and over a fixed number of damaged copies of each, which must be
-// accepted or refused in one line: fuzz_replay SEEDS CASES. SEEDS holds a folder per target (fuzz.py --seeds); CASES
-// are per seed and always the same.
+// Every target over its seeds, which must be accepted (those called bad-...: refused), and over a fixed number of
+// damaged copies of each, which must be accepted or refused in one line: fuzz_replay SEEDS CASES. SEEDS holds a folder
+// per target (fuzz.py --seeds); CASES are per seed and always the same.
 #include <sys/resource.h>
 #include <tbb/global_control.h>
 
@@ -96,21 +96,26 @@ int main(int argc, char** argv) {
         }
         size_t accepted = 0, refused = 0;
         for (const Seed& seed : seeds) {
+            std::string said;
             try {
                 target.read(seed.bytes);
             } catch (const std::exception& e) {
-                std::printf("%s: the whole seed %s is refused: %s\n", std::string(target.name).c_str(),
-                            seed.name.c_str(), e.what());
+                said = e.what();
+            }
+            if (said.empty() == seed.name.starts_with("bad-")) {
+                std::printf("%s: the seed %s is %s\n", std::string(target.name).c_str(), seed.name.c_str(),
+                            said.empty() ? "accepted" : ("refused: " + said).c_str());
                 ok = false;
             }
             Random random(std::hash<std::string>()(seed.name) + seed.bytes.size());
-            for (int i = 0; i < cases; i++) {
+            // What is refused anyway shows less.
+            for (int i = 0; i < (said.empty() ? cases : cases / 10); i++) {
                 std::vector<uint8_t> input = damaged(seed.bytes, target.isText, random);
                 if (target.mend) input.resize(target.mend(input.data(), input.size()));
                 (readOrAbort(target, input) ? accepted : refused)++;
             }
         }
-        if (accepted == 0 || refused == 0) {
+        if (accepted == 0 || (target.refuses && refused == 0)) {
             std::printf("%s: %zu accepted, %zu refused; the cases test nothing\n", std::string(target.name).c_str(),
                         accepted, refused);
             ok = false;

@@ -14,12 +14,16 @@
 #include "image/io.h"
 #include "image/png.h"
 #include "methods/spec.h"
+#include "report/angles.h"
+#include "report/survey.h"
 #include "report/survey_questions.h"
 #include "shot/frame_notes.h"
+#include "shot/import/engine_layout.h"
 #include "shot/import/frame.h"
 #include "shot/import/pitfalls.h"
 #include "shot/manifest.h"
 #include "shot/reader.h"
+#include "shot/segments.h"
 #include "study/results.h"
 #include "study/survey.h"
 #include "study/sweep.h"
@@ -28,8 +32,8 @@ namespace aa::fuzz {
 namespace fs = std::filesystem;
 
 namespace {
-// The size and pattern of fuzz.py's corpus.
-constexpr int kWidth = 24, kHeight = 16;
+// The size of fuzz.py's smallest shot, and its pattern.
+constexpr int kWidth = 8, kHeight = 6;
 
 // A folder of this process, in memory where the system has such a place; emptied at exit.
 class Folder {
@@ -59,12 +63,18 @@ const Folder& folder() {
     static const Folder one;
     return one;
 }
-std::string textOf(Bytes input) { return {reinterpret_cast<const char*>(input.data()), input.size()}; }
+std::string asText(Bytes input) { return {reinterpret_cast<const char*>(input.data()), input.size()}; }
 
+// Pictures that only take longer; those above what is read at all are refused without room being made for them.
+bool isLarge(int width, int height) {
+    constexpr int kMost = 1 << 16;
+    return width <= kLargestSide && height <= kLargestSide && int64_t(width) * height > kMost;
+}
 // Every channel of every part, each as what it is stored as.
 void readParts(Bytes input) {
     ExrFile file(folder().write("parts.exr", input));
     for (const ExrPart& part : file.parts()) {
+        if (isLarge(part.width, part.height)) continue;
         std::vector<PlaneF> numbers(part.channels.size());
         std::vector<PlaneU> ids(part.channels.size());
         std::vector<ChannelTarget> targets;
@@ -107,7 +117,7 @@ void readBlenderFrame(Bytes input) {
     const fs::path file = folder().write("blender.exr", input);
     ImportReport report;
     const ImportPlan plan = planImport(file, {}, report);
-    if (plan.width > 256 || plan.height > 256) return;  // only slower
+    if (isLarge(plan.width, plan.height)) return;
     FrameEntry entry;
     ImportCounts counts;
     importFrame(file, plan, entry, {}, counts);
@@ -118,7 +128,7 @@ void readBlenderFrame(Bytes input) {
     headerPitfalls(whole);
 }
 void readPicture(Bytes input) { readImage(folder().write("picture.png", input)); }
-void readShotManifest(Bytes input) { parseManifest(textOf(input), folder().path() / "shot.json"); }
+void readShotManifest(Bytes input) { parseManifest(asText(input), folder().path() / "shot.json"); }
 void readNotes(Bytes input) { readFrameNotes(folder().write("notes.json", input)); }
 void readRun(Bytes input) {
     folder().write("results.json", input);
@@ -127,8 +137,8 @@ void readRun(Bytes input) {
     toCsvText(run);
 }
 void readKey(Bytes input) { toJsonText(readSurveyKey(folder().write("survey.key.json", input))); }
-// The key is that of one question of each kind.
-void readSurveyAnswers(Bytes input) {
+// That of one question of each kind.
+const SurveyKey& surveyKey() {
     static const SurveyKey key = [] {
         SurveyKey k;
         k.survey = "s1";
@@ -144,10 +154,31 @@ void readSurveyAnswers(Bytes input) {
         }
         return k;
     }();
-    readParticipant(folder().write("answers.json", input), key);
+    return key;
+}
+void readSurveyAnswers(Bytes input) {
+    const std::string file = folder().write("answers.json", input).string();
+    readAnswers({file, file}, surveyKey());  // the second time they are known
+}
+void readSurveyPage(Bytes input) {
+    static const SurveyScores scores = [] {
+        SurveyScores s;
+        s.key = &surveyKey();
+        return s;
+    }();
+    scoresHtml(scores, asText(input));
+}
+void readLayout(Bytes input) {
+    const fs::path file = folder().write("layout.json", input);
+    colourFilesOf(file);
+    readEngineLayout(file, kWidth, kHeight);
+}
+void readAngles(Bytes input) {
+    folder().write("angles.json", input);
+    anglesForReport(folder().path());
 }
 void readMethod(Bytes input) {
-    const MethodSpec spec = parseMethod(textOf(input));
+    const MethodSpec spec = parseMethod(asText(input));
     spec.params();
     spec.folderName();
     withParameters(spec.text, "a=1");
@@ -155,11 +186,11 @@ void readMethod(Bytes input) {
 void readVaried(Bytes input) {
     SweepOptions o;
     o.methods = {"uncharted"};
-    o.vary = {textOf(input)};
+    o.vary = {asText(input)};
     o.with = {};
     variantsOf(o);
 }
-void readQuestion(Bytes input) { wishOf(textOf(input)); }
+void readQuestion(Bytes input) { wishOf(asText(input)); }
 
 // Chunks are length, name, data, CRC of name and data.
 size_t mendPng(uint8_t* bytes, size_t size) {
@@ -188,12 +219,44 @@ PlaneF ramp(int width, int height, float scale) {
         for (int x = 0; x < width; x++) p.at(x, y) = scale * float(x + 3 * y);
     return p;
 }
+Seed written(const char* name, const std::vector<PartSource>& parts) {
+    const fs::path file = folder().path() / "seed.exr";
+    writeParts(file, parts);
+    return {name, contentOf(file)};
+}
 Seed partsSeed() {
     const PlaneF a = ramp(9, 5, 0.1f), b = ramp(3, 1, 1);
     const PlaneU ids(9, 5, 7);
-    const fs::path file = folder().path() / "seed.exr";
-    writeParts(file, {{"one", {{"R", &a}, {"id", &ids}}, {{"aaresolve", 1}}}, {"two", {{"value", &b}}}});
-    return {"parts.exr", contentOf(file)};
+    return written("parts.exr", {{"one", {{"R", &a}, {"id", &ids}}, {{"aaresolve", 1}}}, {"two", {{"value", &b}}}});
+}
+// Frames that the program does not write itself: ids stored as numbers, lists of edges, parts that do not fit.
+std::vector<Seed> frameSeeds() {
+    const PlaneF a = ramp(kWidth, kHeight, 0.1f), ids = ramp(kWidth, kHeight, 1), ends = ramp(5, 1, 1),
+                 tall = ramp(3, 2, 1), other = ramp(kWidth + 1, kHeight, 0.1f);
+    const PlaneU whole(kWidth, kHeight, 7);
+    const auto part = [](const char* name, std::vector<std::string> channels, const PlaneF& plane) {
+        PartSource p{name, {}};
+        for (const auto& c : channels) p.channels.push_back({c, &plane});
+        return p;
+    };
+    const auto color = part("color", {"R", "G", "B"}, a);
+    std::vector<std::string> ofSegments(kSegmentChannels.begin(), kSegmentChannels.end());
+    return {
+        written("numbers.exr", {color, part("object", {"id"}, ids)}),
+        written("bad-fraction.exr", {color, part("object", {"id"}, a)}),
+        written("bad-type.exr", {{"color", {{"R", &whole}, {"G", &whole}, {"B", &whole}}}}),
+        written("bad-channel.exr", {part("color", {"R", "G"}, a)}),
+        written("bad-size.exr", {part("color", {"R", "G", "B"}, other)}),
+        written("segments.exr", {color, part("segments", ofSegments, ends)}),
+        written("bad-segments.exr", {color, part("segments", ofSegments, tall)}),
+    };
+}
+std::vector<Seed> truthSeeds() {
+    const PlaneF a = ramp(kWidth, kHeight, 0.1f), other = ramp(kWidth + 1, kHeight, 0.1f);
+    const auto half = [](const char* name, const PlaneF& p) {
+        return PartSource{name, {{"R", &p}, {"G", &p}, {"B", &p}}};
+    };
+    return {written("bad-half.exr", {half("a", a)}), written("bad-size.exr", {half("a", a), half("b", other)})};
 }
 Seed pngSeed() {
     Rgb picture;
@@ -209,6 +272,9 @@ const std::vector<Target>& targets() {
         {"results", readRun, true},
         {"key", readKey, true},
         {"answers", readSurveyAnswers, true},
+        {.name = "page", .read = readSurveyPage, .isText = true, .refuses = false},
+        {"layout", readLayout, true},
+        {"angles", readAngles, true},
         {"method", readMethod, true},
         {"vary", readVaried, true},
         {"question", readQuestion, true},
@@ -247,6 +313,8 @@ bool readOrAbort(const Target& target, Bytes input) {
 
 std::vector<Seed> pictureSeeds(std::string_view target) {
     if (target == "parts") return {partsSeed()};
+    if (target == "frame") return frameSeeds();
+    if (target == "truth") return truthSeeds();
     if (target == "png") return {pngSeed()};
     return {};
 }

@@ -20,6 +20,7 @@ struct Target {
     bool isText = false;
     // Makes checksums right again after a mutation, so that what lies behind them is reached; null: there are none.
     size_t (*mend)(uint8_t* bytes, size_t size) = nullptr;
+    bool refuses = true;  // some inputs; else what is damaged counts as not there
 };
 const std::vector<Target>& targets();
 const Target* find(std::string_view name);  // null: no such target
