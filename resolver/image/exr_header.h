@@ -5,7 +5,8 @@
 
 namespace aa {
 
-// Throws std::runtime_error, with the attribute's name, when one is said to be larger than what is left of the file.
+// Throws std::runtime_error, with the attribute's name, when one is said to be larger than what is left of the file or
+// has another size than its type.
 // Whatever else is wrong with a header OpenEXR tells.
 void checkAttributeSizes(const std::filesystem::path& file);
 

@@ -386,10 +386,11 @@ StabilityResults measureStability(const StabilityOptions& o, const Progress& pro
     for (size_t k = 0; k < o.methods.size(); k++) groups[keyOf(o, o.methods[k])].push_back(k);
     std::vector<char> done(o.methods.size());
     std::mutex stepping;
-    for (const auto& [key, members] : groups) {
+    for (const auto& group : groups) {
+        const auto& members = group.second;
         std::vector<const MethodSpec*> methods;
         for (const size_t k : members) methods.push_back(&o.methods[k]);
-        const Material material = reader ? ofShot(o, *reader, counts) : synthetic(o, key, methods);
+        const Material material = reader ? ofShot(o, *reader, counts) : synthetic(o, group.first, methods);
         forRows(
             o.exec, int(members.size()),
             [&](int from, int to) {

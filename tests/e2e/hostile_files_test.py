@@ -179,9 +179,30 @@ class HostileFiles(ProgramTest):
         at = whole.index(b"about\0string\0") + len(b"about\0string\0")
         attribute.write_bytes(whole[:at] + struct.pack("<i", 0x7FFFFFF0) + whole[at + 4 :])
         self.refused(
-            3, "filter", "noaa", attribute, self.folder / "o.png", says=("'about'", "larger than the file"),
+            3,
+            "filter",
+            "noaa",
+            attribute,
+            self.folder / "o.png",
+            says=("'about'", "larger than the file"),
             preexec_fn=little_memory,
-        )  # fmt: skip
+        )
+        # OpenEXR reads some by their type alone, and would go on in the middle of them.
+        for kind, longer, words in (
+            (b"dataWindow\0box2i\0", 4, ("'dataWindow'", "20 bytes", "16")),
+            (b"channels\0chlist\0", 1, ("'channels'", "other than its size")),
+        ):
+            start = whole.index(kind) + len(kind)
+            size = struct.unpack_from("<i", whole, start)[0]
+            end = start + 4 + size
+            attribute.write_bytes(
+                whole[:start]
+                + struct.pack("<i", size + longer)
+                + whole[start + 4 : end]
+                + bytes(longer)
+                + whole[end:]
+            )
+            self.refused(3, "filter", "noaa", attribute, self.folder / "o.png", says=words)  # fmt: skip
 
     def test_a_history_that_takes_for_ever_is_refused(self) -> None:
         self.edit(self.shot / "shot.json", lambda j: j["jitter"].update(period=2**31 - 1))
