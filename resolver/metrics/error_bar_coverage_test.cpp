@@ -9,21 +9,16 @@
 #include <cstdlib>
 #include <string>
 
+#include "image/split_mix64.h"
 #include "metrics/error_bar.h"
 #include "metrics/measure.h"
 
 namespace aa {
 namespace {
 
-struct Random {
-    uint64_t state;
-    uint64_t next() {  // splitmix64
-        uint64_t z = (state += 0x9E3779B97F4A7C15u);
-        z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
-        z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
-        return z ^ (z >> 31);
-    }
-    double uniform() { return double(next() >> 11) * 0x1p-53; }
+struct Random : SplitMix64 {
+    using SplitMix64::SplitMix64;
+    double uniform() { return uniformDouble(); }
     double normal() {  // sum of four of 16 bits, variance 1
         const uint64_t z = next();
         const auto part = [&](int shift) { return double(z >> shift & 0xFFFF); };

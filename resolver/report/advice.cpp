@@ -75,12 +75,9 @@ std::vector<std::string> adviceInWords(const RunResults& run) {
             const auto gain = compared(run, step.method, *noaa);
             s += (i ? "; " : "") + std::string("from ") + shortNumber(step.nsPerPixel) + " ns/px " + m.text;
             if (gain) s += ", " + signedDecibelNumber(gain->gainDb) + " dB " + intervalInBrackets(*gain);
-            constexpr size_t kListed = 3;
             std::vector<std::string> alike;
-            for (const size_t k : step.alike)
-                if (alike.size() < kListed) alike.push_back(run.methods[k].text);
-            if (const size_t more = step.alike.size() - alike.size()) alike.push_back(std::to_string(more) + " more");
-            if (!alike.empty()) s += ", not told apart from " + enumerated(alike);
+            for (const size_t k : step.alike) alike.push_back(run.methods[k].text);
+            if (!alike.empty()) s += ", not told apart from " + enumerated(alike, 3);
         }
         all.push_back(s + ".");
     }

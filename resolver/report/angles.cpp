@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "image/formatted.h"
 #include "image/json_text.h"
 #include "image/markup.h"
 #include "report/page.h"
@@ -17,14 +17,6 @@ using json = nlohmann::ordered_json;
 
 double psnrOf(double mse) { return -10 * std::log10(mse); }
 
-std::string formatted(const char* format, ...) {
-    char text[256];
-    va_list values;
-    va_start(values, format);
-    std::vsnprintf(text, sizeof text, format, values);
-    va_end(values);
-    return text;
-}
 }  // namespace
 
 std::string toJsonText(const AngleStudy& s) {

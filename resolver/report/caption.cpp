@@ -40,7 +40,6 @@ std::vector<size_t> ranking(const RunResults& run) {
 
 std::string bestSentence(const RunResults& run, const std::vector<size_t>& order) {
     const MethodResult& best = run.methods[order[0]];
-    constexpr size_t kListed = 4;
     std::vector<std::string> peers;
     size_t unjudged = 0;
     for (size_t i = 1; i < order.size(); i++)
@@ -54,9 +53,7 @@ std::string bestSentence(const RunResults& run, const std::vector<size_t>& order
                     (run.protocol.reference.empty() ? "the ground truth" : run.protocol.reference) + ": PSNR " +
                     decibels(best.pooled->mean.psnr);
     if (best.pooled->gainDb && best.id != "noaa") s += ", " + gain(run, best) + " over no anti-aliasing";
-    if (const size_t more = peers.size() > kListed ? peers.size() - kListed : 0)
-        peers.resize(kListed), peers.push_back(std::to_string(more) + " more");
-    if (!peers.empty()) s += "; " + enumerated(peers) + " cannot be told apart from it";
+    if (!peers.empty()) s += "; " + enumerated(peers, 4) + " cannot be told apart from it";
     if (unjudged)
         s += "; to hold it against " + (unjudged + 1 == order.size() ? "the" : std::to_string(unjudged)) +
              (unjudged == 1 ? " other" : " others") + " this picture is too small";

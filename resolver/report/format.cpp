@@ -99,7 +99,12 @@ std::string leftOutInWords(const RunResults& run) {
            " s: " + names + ". Ask for them by --metrics " + names + ".";
 }
 
-std::string enumerated(const std::vector<std::string>& parts) {
+std::string enumerated(std::vector<std::string> parts, size_t most) {
+    if (parts.size() > most) {
+        const size_t more = parts.size() - most;
+        parts.resize(most);
+        parts.push_back(std::to_string(more) + " more");
+    }
     std::string all;
     for (size_t i = 0; i < parts.size(); i++) all += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
     return all;

@@ -19,7 +19,8 @@ std::string similarity(double v);  // 6 decimals: three saturate (conventions 13
 
 // What was run, in one line: size, jitter and whether its block is centred, machine.
 std::string runLine(const RunResults& run);
-std::string enumerated(const std::vector<std::string>& parts);  // "a, b and c"
+// "a, b and c"; of more than `most` the first ones "and 4 more".
+std::string enumerated(std::vector<std::string> parts, size_t most = SIZE_MAX);
 // The 95 % interval of a gain: "+0.12 to +0.34", "above +0.12" or "below +0.34" where it has one end, "no interval".
 std::string intervalInWords(const Comparison& c);
 std::string intervalInBrackets(const Comparison& c);  // "(95 %: +0.12 to +0.34)", "(no interval)"

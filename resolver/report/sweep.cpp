@@ -59,18 +59,16 @@ std::string valuesAt(const std::vector<SweepAxis>& axes, const SweepVariant& v) 
 std::string alikeInWords(const std::vector<SweepAxis>& axes, std::vector<SweepVariant> alike) {
     std::sort(alike.begin(), alike.end(), [](const auto& x, const auto& y) { return x.at < y.at; });
     std::vector<std::string> parts;
-    constexpr size_t kListed = 6;
     // A run of neighbours on a single axis is a range.
     const bool range =
         axes.size() == 1 && alike.size() > 2 && alike.back().at[0] - alike.front().at[0] + 1 == alike.size();
     if (range)
         return axes[0].name + "=" + axes[0].values[alike.front().at[0]] + " to " + axes[0].values[alike.back().at[0]] +
                " (" + std::to_string(alike.size()) + " values)";
-    for (size_t i = 0; i < std::min(alike.size(), kListed); i++)
+    for (size_t i = 0; i < alike.size(); i++)
         parts.push_back(axes.size() > 1 ? "(" + valuesAt(axes, alike[i]) + ")"
                                         : (i == 0 ? axes[0].name + "=" : "") + axes[0].values[alike[i].at[0]]);
-    if (alike.size() > kListed) parts.push_back(std::to_string(alike.size() - kListed) + " more");
-    return enumerated(parts);
+    return enumerated(parts, 6);
 }
 // Whether the parameter takes no value beyond this one.
 bool isLimit(const std::string& method, const std::string& name, double value) {

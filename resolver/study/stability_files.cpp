@@ -1,10 +1,10 @@
 // What `aaresolve stability` writes: stability.json, a text for a terminal, the page docs/results/stability.md.
 #include <algorithm>
 #include <cctype>
-#include <cstdarg>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "image/formatted.h"
 #include "image/json_text.h"
 #include "methods/float_bounds.h"
 #include "study/json_number.h"
@@ -59,14 +59,6 @@ json toJson(const MethodStability& m) {
 }
 
 // ---- tables ----
-std::string formatted(const char* format, ...) {
-    char text[160];
-    va_list values;
-    va_start(values, format);
-    std::vsnprintf(text, sizeof text, format, values);
-    va_end(values);
-    return text;
-}
 const char* const kNone = "–";
 std::string number(double v) {
     if (const char* word = nonFinite(v)) return word;

@@ -1,5 +1,5 @@
 """viewer_speed.py REPORT.html [--browser CHROMIUM]: how fast a report's viewer is in a headless browser without a graphics
-card, for docs/results. Prints one line per measurement; it is no test, since it measures speed."""
+card. Prints one line per measurement; it is no test, since it measures speed."""
 
 from __future__ import annotations
 

@@ -9,25 +9,16 @@
 #include <cstdio>
 #include <fstream>
 
+#include "image/split_mix64.h"
 #include "targets.h"
 
 namespace {
 using namespace aa::fuzz;
 namespace fs = std::filesystem;
 
-// splitmix64
-class Random {
-  public:
-    explicit Random(uint64_t seed) : state_(seed) {}
-    size_t below(size_t n) {
-        uint64_t z = (state_ += 0x9e3779b97f4a7c15);
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
-        return size_t((z ^ (z >> 31)) % n);
-    }
-
-  private:
-    uint64_t state_;
+struct Random : aa::SplitMix64 {
+    using SplitMix64::SplitMix64;
+    size_t below(size_t n) { return size_t(next() % n); }
 };
 
 std::vector<uint8_t> damaged(std::vector<uint8_t> bytes, bool text, Random& random) {

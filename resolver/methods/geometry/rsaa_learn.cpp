@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "image/split_mix64.h"
 #include "shot/patterns.h"
 
 namespace aa {
@@ -44,18 +45,9 @@ dvec2 unitVector(double turns) {
     }
 }
 
-class Random {  // SplitMix64, [Steele 2014]
-  public:
-    explicit Random(uint64_t seed) : state_(seed) {}
-    double uniform(double lo, double hi) {
-        uint64_t z = state_ += 0x9e3779b97f4a7c15u;
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-        return lo + (hi - lo) * (double((z ^ (z >> 31)) >> 11) * 0x1p-53);
-    }
-
-  private:
-    uint64_t state_;
+struct Random : SplitMix64 {
+    using SplitMix64::SplitMix64;
+    double uniform(double lo, double hi) { return lo + (hi - lo) * uniformDouble(); }
 };
 
 struct HalfPlane {  // the points p with n.p > r

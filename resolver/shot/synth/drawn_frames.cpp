@@ -9,14 +9,14 @@
 
 namespace aa {
 
-Camera pixelCamera(int w, int h) {
+Camera orthographicCamera(int w, int h, double unitsPerPixel) {
     Camera c;
     c.kind = "orthographic";
     c.nearClip = 0.1;
     c.farClip = 100;
     c.projection = glm::dmat4(1.0);
-    c.projection[0][0] = 2.0 / w;
-    c.projection[1][1] = 2.0 / h;
+    c.projection[0][0] = 2 / (unitsPerPixel * w);
+    c.projection[1][1] = 2 / (unitsPerPixel * h);
     c.projection[2][2] = -2.0 / (c.farClip - c.nearClip);
     c.projection[3][2] = -(c.farClip + c.nearClip) / (c.farClip - c.nearClip);
     return c;
@@ -30,7 +30,7 @@ Frame drawFrame(const DrawnScene& scene, int w, int h, int number, glm::dvec2 ji
     f.height = h;
     f.reset = number == 1;
     f.jitterPx = jitterPx;
-    f.camera = pixelCamera(w, h);
+    f.camera = orthographicCamera(w, h, 1);
     if (!f.reset) f.previousCamera = f.camera;
     for (const auto& p : allPasses()) f.passes |= p.pass;
     f.colorLinear = f.albedoLinear = f.normalWorld = Rgb(w, h);

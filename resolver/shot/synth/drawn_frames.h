@@ -4,6 +4,7 @@
 #include <functional>
 #include <glm/vec3.hpp>
 
+#include "image/split_mix64.h"
 #include "shot/frame.h"
 
 namespace aa {
@@ -17,29 +18,14 @@ struct Surface {
 };
 using DrawnScene = std::function<Surface(double x, double y)>;
 
-// An orthographic camera whose view space is the pixel grid: x right, y up, looking along -z.
-Camera pixelCamera(int width, int height);
+// Its view space has x right and y up, looks along -z from 0.1 to 100, and has so many units in a pixel.
+Camera orthographicCamera(int width, int height, double unitsPerPixel);
 
 // Sampled at the pixels' centres plus the jitter, and at `subSamplesPx` from there. Every pixel has the same motion;
 // edge distances are 0.5 everywhere, and the segments are a star that crosses the picture. Frame 1 resets.
 Frame drawFrame(const DrawnScene& scene, int width, int height, int number, glm::dvec2 jitterPx, glm::dvec2 motionPx,
                 const std::vector<glm::dvec2>& subSamplesPx);
 
-// Vigna's splitmix64: good numbers from any seed at once, where an mt19937 first fills 2.5 KB of state.
-class SplitMix64 {
-  public:
-    explicit SplitMix64(uint64_t seed) : state_(seed) {}
-    uint64_t next() {
-        uint64_t z = state_ += 0x9E3779B97F4A7C15ull;
-        z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9ull;
-        z = (z ^ z >> 27) * 0x94D049BB133111EBull;
-        return z ^ z >> 31;
-    }
-    float uniform() { return float(next() >> 40) * 0x1p-24f; }  // [0, 1)
-
-  private:
-    uint64_t state_;
-};
 float logUniform(SplitMix64& g, double least, double most);
 
 // What `draw` makes of the numbers that belong to a sixteenth of a pixel; sub-samples differ.

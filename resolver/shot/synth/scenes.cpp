@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "image/error.h"
+#include "shot/synth/drawn_frames.h"
 
 namespace aa {
 using glm::dvec2;
@@ -45,19 +46,6 @@ class Palette {
     uint32_t seed_, index_ = 0;
 };
 
-Camera orthographicCamera(int w, int h) {
-    Camera c;
-    c.kind = "orthographic";
-    c.nearClip = 0.1;
-    c.farClip = 100;
-    c.projection = glm::dmat4(0.0);
-    c.projection[0][0] = 2 / (kUnitsPerPixel * w);
-    c.projection[1][1] = 2 / (kUnitsPerPixel * h);
-    c.projection[2][2] = -2 / (c.farClip - c.nearClip);
-    c.projection[3][2] = -(c.farClip + c.nearClip) / (c.farClip - c.nearClip);
-    c.projection[3][3] = 1;
-    return c;
-}
 Camera perspectiveCamera(int w, int h, double fieldOfViewX) {
     Camera c;
     c.kind = "perspective";
@@ -410,7 +398,7 @@ SynthSceneContents makeScene(const SynthOptions& o) {
     const int w = o.width, h = o.height;
     const uint32_t seed = o.seed;
     const auto with = [&](SynthSceneContents s) {
-        if (s.camera.projection == glm::dmat4(1.0)) s.camera = orthographicCamera(w, h);
+        if (s.camera.projection == glm::dmat4(1.0)) s.camera = orthographicCamera(w, h, kUnitsPerPixel);
         return s;
     };
     if (name == "half_plane") return with(halfPlane(w, h, o.angleDegrees, o.offsetPx));
