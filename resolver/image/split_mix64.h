@@ -15,8 +15,8 @@ class SplitMix64 {
         z = (z ^ z >> 27) * 0x94D049BB133111EBull;
         return z ^ z >> 31;
     }
-    float uniform() { return float(next() >> 40) * 0x1p-24f; }           // [0, 1)
-    double uniformDouble() { return double(next() >> 11) * 0x1p-53; }    // [0, 1)
+    float uniform() { return float(next() >> 40) * 0x1p-24f; }         // [0, 1)
+    double uniformDouble() { return double(next() >> 11) * 0x1p-53; }  // [0, 1)
 
   private:
     uint64_t state_;
