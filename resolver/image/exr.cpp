@@ -3,39 +3,29 @@
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
-#include <OpenEXR/ImfMultiPartOutputFile.h>
-#include <OpenEXR/ImfOutputFile.h>
-#include <OpenEXR/ImfOutputPart.h>
-#include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cassert>
-#include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <limits>
-#include <system_error>
-#include <tuple>
 
 #include "image/channel_order.h"
 #include "image/error.h"
 #include "image/exr_header.h"
+#include "image/exr_lines.h"
 #include "image/io.h"
 
 namespace aa {
 namespace fs = std::filesystem;
 
 namespace {
-// The same image must give the same file, so the date of every file is this one.
-constexpr const char* kNoDate = "2000:01:01 00:00:00";
-
 // A damaged size must not ask for the machine's memory: bytes of planes per byte of the file, at most, half values
 // doubled. ZIP packs a thousandfold; what unpacks furthest is DWA: an 8 x 8 block of one colour is two bytes, which are
 // zipped.
@@ -156,71 +146,6 @@ void idsOf(const PlaneF& numbers, PlaneU& ids, const std::string& where) {
             ids.at(x, y) = uint32_t(v);
         }
 }
-
-// A file that remembers its first failure: OpenEXR writes its table of offsets in a destructor, which cannot throw.
-class OutputStream : public Imf::OStream {
-  public:
-    explicit OutputStream(const fs::path& file) : Imf::OStream(file.c_str()), out_(file, std::ios::binary) { check(); }
-    void write(const char bytes[], int count) override {
-        out_.write(bytes, count);
-        check();
-    }
-    uint64_t tellp() override { return uint64_t(std::streamoff(out_.tellp())); }
-    void seekp(uint64_t position) override {
-        out_.seekp(std::streamoff(position));
-        check();
-    }
-    void close() {
-        out_.close();
-        check();
-    }
-
-  private:
-    void check() {
-        if (out_) return;
-        if (why_.empty()) why_ = std::generic_category().message(errno);
-        throw std::runtime_error(why_);
-    }
-    std::ofstream out_;
-    std::string why_;
-};
-
-std::pair<int, int> sizeOf(const ChannelSource& source) {
-    return std::visit([](auto* plane) { return std::pair(plane->width(), plane->height()); }, source.plane);
-}
-// The pixels' place where the display window begins at 0, 0.
-Imath::Box2i windowOf(const PartSource& part) {
-    const auto [w, h] = sizeOf(part.channels.at(0));
-    const int x = part.shown ? -part.shown->x : 0, y = part.shown ? -part.shown->y : 0;
-    return {{x, y}, {x + w - 1, y + h - 1}};
-}
-Imath::Box2i displayWindowOf(const PartSource& part) {
-    if (!part.shown) return windowOf(part);
-    return {{0, 0}, {part.shown->width - 1, part.shown->height - 1}};
-}
-Imf::PixelType typeOf(const ChannelSource& source) {
-    return std::holds_alternative<const PlaneU*>(source.plane) ? Imf::UINT : Imf::FLOAT;
-}
-Imf::Header headerOf(const PartSource& part, const Imath::Box2i& displayWindow) {
-    Imf::Header header(displayWindow, windowOf(part));
-    header.compression() = Imf::ZIP_COMPRESSION;
-    header.insert("capDate", Imf::StringAttribute(kNoDate));
-    for (const auto& [key, value] : part.integers) header.insert(key, Imf::IntAttribute(value));
-    if (!part.name.empty()) header.setName(part.name);
-    for (const auto& c : part.channels) header.channels().insert(c.channel, Imf::Channel(typeOf(c)));
-    return header;
-}
-// Into an OutputFile or an OutputPart.
-template <class Output>
-void writePixels(Output&& out, const PartSource& part) {
-    Imf::FrameBuffer samples;
-    for (const auto& c : part.channels) {
-        assert(sizeOf(c) == sizeOf(part.channels[0]));
-        std::visit([&](auto* plane) { samples.insert(c.channel, slice(typeOf(c), *plane, windowOf(part))); }, c.plane);
-    }
-    out.setFrameBuffer(samples);
-    out.writePixels(sizeOf(part.channels[0]).second);
-}
 }  // namespace
 
 std::string_view name(ChannelType type) {
@@ -280,6 +205,32 @@ const ExrPart* ExrFile::find(std::string_view part) const {
     return nullptr;
 }
 
+struct ExrFile::Slices : Imf::FrameBuffer {};
+
+bool ExrFile::readLines(int index, const Slices& samples) {
+    if (!hasZipLines(input_->file.header(index))) return false;
+    try {
+        Imf::InputPart in(input_->file, index);
+        if (readZipLines(in, samples)) return true;
+    } catch (const std::exception&) {  // said by OpenEXR's reader
+    }
+    input_ = std::make_unique<Input>(path_.c_str());  // it keeps chunks, and what we read is none that it knows of
+    return false;
+}
+
+void ExrFile::readByOpenExr(int index, const Slices& samples, const std::string& where) {
+    const Imath::Box2i window = input_->file.header(index).dataWindow();
+    std::unique_ptr<Imf::InputPart> in;
+    try {
+        in = std::make_unique<Imf::InputPart>(input_->file, index);
+        in->setFrameBuffer(samples);
+        in->readPixels(window.min.y, window.max.y);
+    } catch (const std::exception& e) {
+        throw InputError(where + ": truncated or damaged at row " +
+                         std::to_string(in ? unreadableRow(*in, window) : 0) + " (" + whyOf(e) + ")" + advice_);
+    }
+}
+
 void ExrFile::read(const ExrPart& part, std::vector<ChannelTarget>& targets) {
     const std::string where = path_.string() + (part.name.empty() ? "" : ": part '" + part.name + "'");
     if (part.width < 1 || part.height < 1 || part.width > kLargestSide || part.height > kLargestSide)
@@ -298,7 +249,7 @@ void ExrFile::read(const ExrPart& part, std::vector<ChannelTarget>& targets) {
                          " pixels cannot be in a file of " + std::to_string(stored) + " bytes" + advice_);
     const int index = int(&part - parts_.data());
     const Imath::Box2i window = input_->file.header(index).dataWindow();
-    Imf::FrameBuffer samples;
+    Slices samples;
     std::map<size_t, PlaneF> numbers;  // ids that are stored as numbers, by target
     for (size_t i = 0; i < targets.size(); i++) {
         ChannelTarget& t = targets[i];
@@ -324,39 +275,9 @@ void ExrFile::read(const ExrPart& part, std::vector<ChannelTarget>& targets) {
                       window));
     }
     if (targets.empty()) return;
-    std::unique_ptr<Imf::InputPart> in;
-    try {
-        in = std::make_unique<Imf::InputPart>(input_->file, index);
-        in->setFrameBuffer(samples);
-        in->readPixels(window.min.y, window.max.y);
-    } catch (const std::exception& e) {
-        throw InputError(where + ": truncated or damaged at row " +
-                         std::to_string(in ? unreadableRow(*in, window) : 0) + " (" + whyOf(e) + ")" + advice_);
-    }
+    if (!readLines(index, samples)) readByOpenExr(index, samples, where);
     for (const auto& [i, plane] : numbers)
         idsOf(plane, *std::get<PlaneU*>(targets[i].plane), where + ", channel '" + targets[i].channel + "'");
-}
-
-void writeParts(const fs::path& file, const std::vector<PartSource>& parts) {
-    startThreads();
-    // All parts show one picture: a list of another size keeps its display window.
-    const Imath::Box2i displayWindow = displayWindowOf(parts.at(0));
-    std::vector<Imf::Header> headers;
-    for (const auto& part : parts) headers.push_back(headerOf(part, displayWindow));
-    try {
-        OutputStream stream(temporaryName(file));
-        if (parts.size() == 1) {
-            writePixels(Imf::OutputFile(stream, headers[0]), parts[0]);
-        } else {
-            for (auto& header : headers) header.setType(Imf::SCANLINEIMAGE);
-            Imf::MultiPartOutputFile out(stream, headers.data(), int(headers.size()));
-            for (size_t i = 0; i < parts.size(); i++) writePixels(Imf::OutputPart(out, int(i)), parts[i]);
-        }
-        stream.close();
-    } catch (const std::exception& e) {
-        giveUpWriting(file, whyOf(e));
-    }
-    renameInto(temporaryName(file), file);
 }
 
 }  // namespace aa

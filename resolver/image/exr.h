@@ -1,8 +1,9 @@
 // OpenEXR files, part by part and channel by channel: what images, shots and imports share.
 //
-// Pixels go straight between the file and planes, so that a part of 40 channels needs no second copy of itself; OpenEXR
-// unpacks and packs them in threads of its own, as many as the program may use (-j). Types are converted only without
-// loss: half -> float; uint stays uint; an id stored as float must be a whole number.
+// Pixels go straight between the file and planes, so that a part of 40 channels needs no second copy of itself. ZIP,
+// which is all that we write, is unpacked and packed by image/exr_zip.h on all threads that the program may use (-j);
+// what else others write OpenEXR unpacks, in as many threads of its own. Types are converted only without loss: half ->
+// float; uint stays uint; an id stored as float must be a whole number.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -68,6 +69,10 @@ class ExrFile {
 
   private:
     struct Input;
+    struct Slices;
+    // False where OpenEXR's reader must: other compressions, and to say what is wrong.
+    bool readLines(int part, const Slices& slices);
+    void readByOpenExr(int part, const Slices& slices, const std::string& where);
     std::filesystem::path path_;
     std::string advice_;
     std::unique_ptr<Input> input_;

@@ -185,6 +185,7 @@ class Program(BundleTest):
             "libimath",
             "libtbb",
             "libpng",
+            "libdeflate",
             "libfreetype",
             "libbrotli",
             "zlib",

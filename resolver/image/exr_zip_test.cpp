@@ -1,0 +1,88 @@
+#include "image/exr_zip.h"
+
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <algorithm>
+
+#include "image/split_mix64.h"
+
+namespace aa {
+namespace {
+
+// As the format's description says it, byte by byte, packed by the library that defines it.
+std::vector<uint8_t> packedByZlib(const std::vector<uint8_t>& chunk) {
+    std::vector<uint8_t> sorted;
+    for (size_t start : {0, 1})
+        for (size_t i = start; i < chunk.size(); i += 2) sorted.push_back(chunk[i]);
+    std::vector<uint8_t> differences(sorted);
+    for (size_t i = 1; i < sorted.size(); i++) differences[i] = uint8_t(sorted[i] - sorted[i - 1] + 128);
+    uLongf size = compressBound(uLong(chunk.size()));
+    std::vector<uint8_t> packed(size);
+    EXPECT_EQ(compress(packed.data(), &size, differences.data(), uLong(differences.size())), Z_OK);
+    packed.resize(size);
+    return packed;
+}
+// Rows of slowly changing numbers, which packing makes smaller, or noise, which it does not.
+std::vector<uint8_t> chunkOf(size_t bytes, bool noise) {
+    SplitMix64 random(bytes);
+    std::vector<uint8_t> chunk(bytes);
+    for (size_t i = 0; i < bytes; i++) chunk[i] = uint8_t(noise ? random.next() >> 32 : i * i / 700 + i % 4 * 60);
+    return chunk;
+}
+std::vector<uint8_t> whole(const ZipUnpacker& unpacker, size_t bytes) {
+    std::vector<uint8_t> chunk(bytes);
+    unpacker.copy(0, bytes, chunk.data());
+    return chunk;
+}
+
+TEST(ExrZip, UnpacksWhatZlibPacked) {
+    ZipUnpacker unpacker;
+    for (const size_t bytes : {64, 66, 78, 200, 4096, 100'002}) {
+        const auto chunk = chunkOf(bytes, false), packed = packedByZlib(chunk);
+        ASSERT_LT(packed.size(), bytes);
+        ASSERT_TRUE(unpacker.unpack(packed, bytes)) << bytes;
+        EXPECT_EQ(whole(unpacker, bytes), chunk) << bytes;
+        std::vector<uint8_t> part(20);
+        unpacker.copy(bytes - 30, part.size(), part.data());
+        EXPECT_TRUE(std::equal(part.begin(), part.end(), chunk.end() - 30)) << bytes;
+    }
+}
+
+TEST(ExrZip, UnpacksWhatItPacked) {
+    ZipPacker packer;
+    ZipUnpacker unpacker;
+    for (const bool noise : {false, true})
+        for (const size_t bytes : {2, 4, 14, 16, 18, 1000, 65'536, 400'000}) {
+            const auto chunk = chunkOf(bytes, noise);
+            const auto packed = packer.pack(chunk);
+            ASSERT_LE(packed.size(), bytes);
+            EXPECT_EQ(packed.size() == bytes, noise || bytes < 100) << bytes;  // stored as it is
+            ASSERT_TRUE(unpacker.unpack(packed, bytes));
+            EXPECT_EQ(whole(unpacker, bytes), chunk) << bytes;
+        }
+}
+
+TEST(ExrZip, DamagedChunksAreRefused) {
+    ZipUnpacker unpacker;
+    const auto chunk = chunkOf(4096, false), packed = packedByZlib(chunk);
+    EXPECT_FALSE(unpacker.unpack(packed, 4098));  // too few bytes in it
+    EXPECT_FALSE(unpacker.unpack(packed, 4094));  // too many
+    EXPECT_FALSE(unpacker.unpack({packed.data(), packed.size() / 2}, 4096));
+    EXPECT_FALSE(unpacker.unpack({}, 4096));
+    EXPECT_FALSE(unpacker.unpack(chunk, 4094));  // stored as it is, and too long
+    size_t refused = 0;
+    for (size_t i = 2; i < packed.size(); i++) {
+        auto damaged = packed;
+        damaged[i] ^= 0x10;
+        if (!unpacker.unpack(damaged, 4096)) {
+            refused++;
+            continue;
+        }
+        EXPECT_EQ(whole(unpacker, 4096), chunk) << i;  // a bit that means nothing
+    }
+    EXPECT_GE(refused + 10, packed.size());
+}
+
+}  // namespace
+}  // namespace aa
