@@ -1,8 +1,5 @@
 #include "cli/bench.h"
 
-#include <time.h>
-
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -12,63 +9,64 @@
 #include "cli/choose.h"
 #include "image/error.h"
 #include "image/json_text.h"
+#include "kernels/dispatch.h"
 #include "methods/driver.h"
 #include "shot/pass_table.h"
 #include "study/json_number.h"
+#include "study/machine_load.h"
+#include "study/provenance.h"
 
 namespace aa {
 namespace {
 
+using Json = nlohmann::ordered_json;
 using Options = BenchOptions;
+struct Error {  // against the double form, over all frames
+    double largest = NAN, rms = NAN;
+    size_t nonFinite = 0;  // values of the results that are no numbers
+};
 struct Row {
     std::string text;
-    double nsMedian = 0, nsMin = 0, nsPerEdgePixel = 0, maxError = NAN, rmsError = NAN;
+    Isa isa = Isa::v2;
+    Spread ns{};  // processor time per pixel
+    double wallNs = 0, nsPerEdgePixel = 0;
     size_t inputBytes = 0, targetBytes = 0, stateBytes = 0;
-    size_t nonFinite = 0;  // values of the results that are no numbers, over all frames
+    std::optional<Error> error{};
 };
-
-// Seconds of this thread's processor, which other programs on the machine cannot lengthen; with several threads only
-// the wall clock counts them all.
-double seconds(const Exec& exec) {
-    if (exec.parallel)
-        return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-}
 
 // The first pass over the frames is not timed: it allocates, and the first touch of a page costs as much as a method.
 // Nor is a frame that drops the history: it costs less than the others.
 Row time(const MethodSpec& spec, const Frames& all, const Exec& exec, int repeats) {
-    Row row{.text = spec.text};
+    using Clock = std::chrono::steady_clock;
+    Row row{.text = spec.text, .isa = exec.isa};
     const std::vector<Frame>& frames = all.of(spec);
     const double pixels = double(all.info.width) * all.info.height;
-    std::vector<double> ns;
+    std::vector<double> ns, wallNs;
     const auto method = spec.create(all.info);
     Rgb out(all.info.width, all.info.height);
     for (int r = 0; r <= repeats; r++)
         for (size_t i = 0; i < frames.size(); i++) {
-            const double start = seconds(exec);
+            const auto start = Clock::now();
+            const ProcessorTime processor;  // of all threads that help
             method->resolve(frames[i], exec, out);
-            const double took = seconds(exec) - start;
-            if (r > 0 && (i > 0 || !spec.method->temporal || frames.size() == 1)) ns.push_back(took * 1e9 / pixels);
+            const double took = processor.seconds();
+            const std::chrono::duration<double> wall = Clock::now() - start;
+            if (r == 0 || (i == 0 && spec.method->temporal && frames.size() > 1)) continue;
+            ns.push_back(took * 1e9 / pixels), wallNs.push_back(wall.count() * 1e9 / pixels);
         }
     row.stateBytes = method->stateBytes();
     row.inputBytes = bytesOf(spec.passes(), frames[0], all.info.subSamplePositionsPx.size());
     row.targetBytes = bytesOfTarget(all.info.width, all.info.height);
-    std::sort(ns.begin(), ns.end());
-    row.nsMedian = ns[ns.size() / 2];
-    row.nsMin = ns.front();
-    row.nsPerEdgePixel = all.edgeShare > 0 ? row.nsMedian / all.edgeShare : NAN;
+    row.ns = spreadOf(ns), row.wallNs = spreadOf(wallNs).median;
+    row.nsPerEdgePixel = all.edgeShare > 0 ? row.ns.median / all.edgeShare : NAN;
     return row;
 }
 
-// Largest and root-mean-square difference from the double form, over all frames.
-void compareWithDouble(Row& row, const MethodSpec& spec, const std::vector<Frame>& frames, const ShotInfo& info,
-                       const Exec& exec) {
+Error errorOf(const MethodSpec& spec, const std::vector<Frame>& frames, const ShotInfo& info, const Exec& exec) {
     RunningMethod lanes(spec, info), oracle(spec, info);
     Exec exact = exec;
     exact.precision = Precision::oracle;
+    Error error;
     double sum = 0, largest = 0, count = 0;
     for (const auto& f : frames) {
         lanes.resolve(f, {}, exec);
@@ -77,22 +75,23 @@ void compareWithDouble(Row& row, const MethodSpec& spec, const std::vector<Frame
             for (int y = 0; y < f.height; y++)
                 for (int x = 0; x < f.width; x++, count++) {
                     const double d = double(lanes.out.c[c].at(x, y)) - double(oracle.out.c[c].at(x, y));
-                    row.nonFinite += !std::isfinite(lanes.out.c[c].at(x, y));
+                    error.nonFinite += !std::isfinite(lanes.out.c[c].at(x, y));
                     sum += d * d;
                     largest = std::max(largest, std::isfinite(d) ? std::fabs(d) : INFINITY);
                 }
     }
-    row.maxError = largest;
-    row.rmsError = std::sqrt(sum / count);
+    error.largest = largest;
+    error.rms = std::sqrt(sum / count);
+    return error;
 }
 
 // In float planes of the image's size, the unit of docs/precision.md.
 double statePlanes(const Row& row, const ShotInfo& info) {
     return double(row.stateBytes) / double(PlaneF(info.width, info.height).bytes());
 }
-void printHead(const Options& o, const Frames& f, const Exec& exec) {
+size_t countOf(const Frames& f) { return std::max(f.jittered.size(), f.centre.size()); }
+void printHead(const Options& o, const Frames& f) {
     if (o.json) return;
-    const size_t count = std::max(f.jittered.size(), f.centre.size());
     if (o.markdown) {  // only what is the same on every machine
         std::printf(
             "# Precision and memory\n\nGenerated by `aaresolve bench --markdown` (`make docs`); do not edit. %zu "
@@ -103,15 +102,19 @@ void printHead(const Options& o, const Frames& f, const Exec& exec) {
             "between frames, history and scratch, in float planes of the\npicture's size; an RGBA history of two "
             "frames is "
             "8.\n\n| method | state, planes | max error | rms error |\n|---|---:|---:|---:|\n",
-            count, f.info.width, f.info.height);
+            countOf(f), f.info.width, f.info.height);
         return;
     }
     std::printf(
-        "%s, %dx%d, %zu frames, %.1f %% edge pixels, %s, threads %d, %s\n%-32s %9s %9s %9s %9s %9s %9s %9s %7s %12s "
-        "%12s\n",
-        (o.shot.empty() ? f.scene : o.shot).c_str(), f.info.width, f.info.height, count, 100 * f.edgeShare,
-        std::string(name(exec.isa)).c_str(), o.work.threads, exec.parallel ? "wall clock" : "processor time", "method",
-        "ns/px", "min", "ns/edge", "ms", "input MB", "target MB", "state MB", "planes", "max error", "rms error");
+        "%s, %s\n%s, %dx%d, %zu frames, %.1f %% edge pixels; processor time\n"
+        "%-32s %9s %9s %9s %19s %9s %9s %9s %9s %9s %9s %7s %12s %12s\n",
+        thisMachine().processor.c_str(),
+        o.work.threads == 0   ? "all threads"
+        : o.work.threads == 1 ? "1 thread"
+                              : (std::to_string(o.work.threads) + " threads").c_str(),
+        (o.shot.empty() ? f.scene : o.shot).c_str(), f.info.width, f.info.height, countOf(f), 100 * f.edgeShare,
+        "method", "set", "ns/px", "min", "quartiles", "by clock", "ns/edge", "ms", "input MB", "target MB", "state MB",
+        "planes", "max error", "rms error");
 }
 void printCounted(const SanitiseCounts& counts) {
     for (const auto& [what, count] : counted(counts))
@@ -121,52 +124,113 @@ void printCounted(const SanitiseCounts& counts) {
 }
 void printRow(const Options& o, const Row& row, const ShotInfo& info) {
     if (o.json) return;
-    const double planes = statePlanes(row, info), ms = row.nsMedian * 1e-6 * info.width * info.height;
+    const Error error = row.error.value_or(Error{});
+    const double planes = statePlanes(row, info), ms = row.ns.median * 1e-6 * info.width * info.height;
     if (o.markdown)
-        std::printf("| `%s` | %.1f | %.2g | %.2g |\n", row.text.c_str(), planes, row.maxError, row.rmsError);
+        std::printf("| `%s` | %.1f | %.2g | %.2g |\n", row.text.c_str(), planes, error.largest, error.rms);
     else
-        std::printf("%-32s %9.2f %9.2f %9.1f %9.3f %9.2f %9.2f %9.2f %7.1f %12.3g %12.3g\n", row.text.c_str(),
-                    row.nsMedian, row.nsMin, row.nsPerEdgePixel, ms, double(row.inputBytes) / (1 << 20),
-                    double(row.targetBytes) / (1 << 20), double(row.stateBytes) / (1 << 20), planes, row.maxError,
-                    row.rmsError);
-    if (row.nonFinite > 0)
-        std::printf("%s: %zu values of its results are no numbers\n", row.text.c_str(), row.nonFinite);
+        std::printf("%-32s %9s %9.2f %9.2f %9.2f %9.2f %9.2f %9.1f %9.3f %9.2f %9.2f %9.2f %7.1f %12.3g %12.3g\n",
+                    row.text.c_str(), std::string(name(row.isa)).c_str(), row.ns.median, row.ns.least, row.ns.low,
+                    row.ns.high, row.wallNs, row.nsPerEdgePixel, ms, double(row.inputBytes) / (1 << 20),
+                    double(row.targetBytes) / (1 << 20), double(row.stateBytes) / (1 << 20), planes, error.largest,
+                    error.rms);
+    if (error.nonFinite > 0)
+        std::printf("%s: %zu values of its results are no numbers\n", row.text.c_str(), error.nonFinite);
     std::fflush(stdout);
+}
+Json jsonOf(const Row& row, const Frames& frames) {
+    Json j = {{"method", row.text},
+              {"instructionSet", name(row.isa)},
+              {"resolution", {frames.info.width, frames.info.height}},
+              {"nsPerPixel", row.ns.median},
+              {"nsPerPixelLow", row.ns.low},
+              {"nsPerPixelHigh", row.ns.high},
+              {"nsPerPixelMin", row.ns.least},
+              {"wallNsPerPixel", row.wallNs},
+              {"nsPerEdgePixel", jsonNumber(row.nsPerEdgePixel)},
+              {"edgeShare", frames.edgeShare},
+              {"inputBytes", row.inputBytes},
+              {"targetBytes", row.targetBytes},
+              {"stateBytes", row.stateBytes}};
+    if (!frames.scene.empty()) j["scene"] = frames.scene;
+    if (!row.error) return j;
+    j["maxError"] = jsonNumber(row.error->largest), j["rmsError"] = jsonNumber(row.error->rms);
+    j["nonFinite"] = row.error->nonFinite;
+    return j;
+}
+// The document without its rows and the load. What the machine is, so that figures are not taken for another's.
+Json describe(const Options& o) {
+    const Machine m = thisMachine();
+    Json j = {{"format", "aaresolve-bench"}, {"version", 1}, {"program", AA_VERSION}};
+    if (const std::string commit = programCommit(); !commit.empty()) j["commit"] = commit;
+    j["machine"] = {
+        {"processor", m.processor}, {"cores", m.cores}, {"instructionSets", m.instructionSets}, {"system", m.system}};
+    j["threads"] = o.work.threads > 0 ? o.work.threads : m.cores;
+    j["precision"] = o.work.precision;
+    j["frames"] = o.frames;
+    j["repeats"] = o.repeats;
+    if (!o.shot.empty()) j["shot"] = o.shot;
+    return j;
+}
+// What was not this program's doing: in the document, on the screen and, where it tells, as a warning.
+void sayLoad(const Options& o, const std::optional<OtherPrograms>& others, Json& document) {
+    if (!others || o.markdown) return;
+    document["load"] = {{"processors", others->processors}, {"others", others->busy}, {"busy", others->disturb()}};
+    char text[96];
+    std::snprintf(text, sizeof text, "other programs kept %.2f of %d processors busy", others->busy,
+                  others->processors);
+    if (!o.json) std::printf("%s\n", text);
+    if (others->disturb())
+        std::fprintf(stderr, "warning: %s: caches and clock rates were shared; measure again on a quiet machine\n",
+                     text);
+}
+
+std::vector<Exec> execsOf(const Options& o) {
+    std::vector<Exec> execs = {o.work.exec()};
+    if (!o.everyIsa) return execs;
+    execs.clear();
+    for (const Isa isa : {Isa::v2, Isa::v3, Isa::v4})
+        if (isaSupported(isa)) execs.push_back(o.work.exec()), execs.back().isa = isa;
+    return execs;
+}
+
+void benchProcessor(const Options& o, const std::vector<MethodSpec>& specs) {
+    const std::vector<Exec> execs = execsOf(o);
+    Json document = describe(o), rows = Json::array();
+    const LoadWatch load;
+    withThreads(o.work.threads, [&] {
+        for (const std::string& size : o.sizes) {
+            BenchFrames source{o.shot, o.scene, 0, 0, o.frames, inputPolicyByName(o.nonFinite)};
+            std::tie(source.width, source.height) = sizeOf("--size", size);
+            std::optional<Frames> frames;
+            for (size_t k = 0; k < specs.size(); k++) {
+                const MethodSpec& spec = specs[k];
+                framesFor(frames, source, spec, specs, execs[0]);
+                if (k == 0) printHead(o, *frames);
+                if (k == 0 && !o.json) printCounted(frames->counts);
+                std::optional<Error> error;  // the same in every instruction set
+                if (!o.noError) error = errorOf(spec, frames->of(spec), frames->info, execs[0]);
+                for (const Exec& exec : execs) {
+                    Row row = time(spec, *frames, exec, o.repeats);
+                    row.error = error;
+                    printRow(o, row, frames->info);
+                    rows.push_back(jsonOf(row, *frames));
+                }
+            }
+            if (!o.shot.empty()) break;
+        }
+    });
+    sayLoad(o, load.sofar(), document);
+    document["methods"] = std::move(rows);
+    if (o.json) std::cout << jsonText(document) << "\n";
 }
 
 void execute(const Options& o) {
+    if (o.everyIsa && o.work.isa != "auto") throw UsageError("--every-isa: leave --isa out");
+    if (o.markdown && (o.everyIsa || o.noError || o.sizes.size() > 1))
+        throw UsageError("--markdown: one table, of errors: leave --every-isa, --no-error and further sizes out");
     const std::vector<MethodSpec> specs = o.shot.empty() ? chosen(o.methods) : chosenFor(o.shot, o.methods);
-    const Exec exec = o.work.exec();
-    if (o.work.device != "cpu") return benchDevice(o, specs);
-    BenchFrames source{o.shot, o.scene, 0, 0, o.frames, inputPolicyByName(o.nonFinite)};
-    std::tie(source.width, source.height) = sizeOf("--size", o.sizes.front());
-    if (o.sizes.size() > 1) throw UsageError("--size: more than one size needs --device vulkan");
-    nlohmann::ordered_json all = nlohmann::ordered_json::array();
-    withThreads(o.work.threads, [&] {
-        std::optional<Frames> frames;
-        for (size_t k = 0; k < specs.size(); k++) {
-            const MethodSpec& spec = specs[k];
-            framesFor(frames, source, spec, specs, exec);
-            const ShotInfo& info = frames->info;
-            if (k == 0) printHead(o, *frames, exec);
-            if (k == 0 && !o.json) printCounted(frames->counts);
-            Row row = time(spec, *frames, exec, o.repeats);
-            compareWithDouble(row, spec, frames->of(spec), info, exec);
-            printRow(o, row, info);
-            all.push_back({{"method", row.text},
-                           {"nsPerPixel", row.nsMedian},
-                           {"nsPerPixelMin", row.nsMin},
-                           {"nsPerEdgePixel", row.nsPerEdgePixel},
-                           {"edgeShare", frames->edgeShare},
-                           {"inputBytes", row.inputBytes},
-                           {"targetBytes", row.targetBytes},
-                           {"stateBytes", row.stateBytes},
-                           {"maxError", jsonNumber(row.maxError)},
-                           {"rmsError", jsonNumber(row.rmsError)},
-                           {"nonFinite", row.nonFinite}});
-        }
-    });
-    if (o.json) std::cout << jsonText(all) << "\n";
+    o.work.device == "cpu" ? benchProcessor(o, specs) : benchDevice(o, specs);
 }
 
 }  // namespace
@@ -176,7 +240,9 @@ void addBench(CommandLine& line, Context&) {
     Command c = line.command("bench", "Speed and memory of methods, and their error against the double form");
     addMethodOption(c, o->methods, "a method to time, noaa first as the baseline", false).required();
     line.renamed("bench", "--family", "--method");
-    c.option("--size", o->sizes, "size of the synthetic frames, px; on a device several").oneEach().typeName("WxH");
+    c.option("--size", o->sizes, "size of the synthetic frames, px; several for as many tables")
+        .oneEach()
+        .typeName("WxH");
     c.option("--shot", o->shot, "time on this shot's frames instead of synthetic ones").typeName("SHOT");
     c.option("--scene", o->scene,
              "synthetic scene (`synth --list`); default moving, half_planes for methods that read edges")
@@ -186,6 +252,8 @@ void addBench(CommandLine& line, Context&) {
     c.option("--runs", o->runs, "frames timed on a device").range(1, 100000);
     c.flag("--json", o->json, "as JSON");
     c.flag("--markdown", o->markdown, "a table of memory and errors, the same on every machine").excludes("--json");
+    c.flag("--every-isa", o->everyIsa, "in every instruction set that this processor has, side by side");
+    c.flag("--no-error", o->noError, "times and memory alone: the double form takes longer than they do");
     addNonFinite(c, o->nonFinite);
     addWorkOptions(c, o->work);
     addDeviceOptions(c, o->work);

@@ -14,15 +14,6 @@ namespace {
 
 constexpr int kWarmUp = 12;  // frames: pipelines are made, clocks rise
 
-// Of one value over all timed frames.
-struct Spread {
-    double median = 0, low = 0, high = 0, least = 0;  // low, high: the quartiles
-};
-Spread spreadOf(std::vector<double> v) {
-    std::sort(v.begin(), v.end());
-    const auto at = [&](double share) { return v[size_t(share * double(v.size() - 1) + 0.5)]; };
-    return {at(0.5), at(0.25), at(0.75), v.front()};
-}
 struct Pass {
     std::string shader;
     std::vector<double> seconds;
@@ -115,6 +106,7 @@ nlohmann::ordered_json json(const Row& r, double copyRate) {
 
 void benchDevice(const BenchOptions& o, const std::vector<MethodSpec>& methods) {
     if (o.markdown) throw UsageError("--markdown: no effect with --device; tests/gpu/page.py makes docs/gpu.md");
+    if (o.everyIsa || o.noError) throw UsageError("--every-isa, --no-error: no effect with --device");
     const auto session = o.work.session();
     const gpu::DeviceInfo& info = session->device().info();
     nlohmann::ordered_json all = {{"device", info.name},   {"deviceKind", info.kind},

@@ -92,7 +92,8 @@ def bench(folder: Path, texts: list[str], shop: Workshop) -> dict[str, dict]:
         out.mkdir(parents=True, exist_ok=True)
         (out / "bench.json").write_text(shop.run(f"bench.{folder.name}", command))
         (out / "made_of").write_text(wish)
-    return {row["method"]: row for row in json.loads((out / "bench.json").read_text())}
+    rows = json.loads((out / "bench.json").read_text())["methods"]
+    return {row["method"]: row for row in rows}
 
 
 def compared(

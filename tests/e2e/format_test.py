@@ -87,6 +87,34 @@ class Format(ProgramTest):
         self.aaresolve("sweep", moving, "-m", "karis", *vary, "-o", out, "-q")
         self.fits("results", out / "results.json")
 
+    def test_what_bench_measured_fits_and_names_the_machine(self) -> None:
+        file = self.folder / "bench.json"
+        size = ("--size", "48x32", "--size", "32x16", "--frames", 2, "--repeats", 1)
+        said = self.aaresolve("bench", "-m", "noaa,karis", *size, "--every-isa", "--json").stdout
+        file.write_text(said)
+        self.fits("bench", file)
+        bench = json.loads(said)
+        sets = bench["machine"]["instructionSets"]
+        self.assertTrue(bench["machine"]["processor"])
+        self.assertEqual(
+            [(r["method"], r["instructionSet"], r["resolution"]) for r in bench["methods"]],
+            [(m, s, r) for r in ([48, 32], [32, 16]) for m in ("noaa", "karis") for s in sets],
+        )
+        for row in bench["methods"]:
+            times = [row[f"nsPerPixel{which}"] for which in ("Min", "Low", "", "High")]
+            self.assertEqual(times, sorted(times))
+            self.assertGreater(row["wallNsPerPixel"], 0)
+        errors = {(*r["resolution"], r["method"], r["maxError"]) for r in bench["methods"]}
+        self.assertEqual(len(errors), 4, "every instruction set gives the same bits")
+        for change in ({"load": {"processors": 2}}, {"machine": None}, {"threads": 0}):
+            file.write_text(json.dumps(bench | change))
+            self.assertTrue(self.faults("bench", file), change)
+        small = ("bench", "-m", "noaa", "--size", "8x8")
+        times_alone = json.loads(self.aaresolve(*small, "--no-error", "--json").stdout)
+        self.assertNotIn("maxError", times_alone["methods"][0])
+        self.refused(2, *small, "--every-isa", "--isa", "v2", says=("--isa",))
+        self.refused(2, *small, "--no-error", "--markdown", says=("--no-error",))
+
     def test_an_export_fits(self) -> None:
         scene = self.folder / "scene.py"
         scene.write_text(

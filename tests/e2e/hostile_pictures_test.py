@@ -140,7 +140,8 @@ class HostilePictures(ProgramTest):
         self.assertIn("are no numbers", self.aaresolve(*run, "--non-finite", "raw").stdout)
         bench = ("bench", "-m", "noaa", "--shot", shot, "--frames", "2", "--repeats", "1")
         self.assertIn("colourNan", self.aaresolve(*bench).stdout)
-        row = json.loads(self.aaresolve(*bench, "--json", "--non-finite", "raw").stdout)[0]
+        raw = json.loads(self.aaresolve(*bench, "--json", "--non-finite", "raw").stdout)
+        row = raw["methods"][0]
         self.assertGreater(row["nonFinite"], 0)
         self.assertEqual(row["maxError"], "Inf")
 

@@ -350,7 +350,7 @@ class Protocol(ProgramTest):
         done = self.aaresolve(
             "bench", "-m", "noaa", "-m", "gbaa", "--size", "64x36", "--frames", 1, "--json"
         )
-        noaa, gbaa = json.loads(done.stdout)
+        noaa, gbaa = json.loads(done.stdout)["methods"]
         self.assertEqual(noaa["inputBytes"], 64 * 36 * 12)
         self.assertEqual(gbaa["inputBytes"] - noaa["inputBytes"], 64 * 36 * 8, "the edges pass")
         self.assertEqual(gbaa["targetBytes"], 64 * 36 * 12)
