@@ -10,6 +10,8 @@
 namespace aa {
 namespace {
 
+constexpr int kRowsPerCall = 32;  // each converts two rows of its neighbours again
+
 double lanczos2(double x) {
     if (x >= 2) return 0;
     const double t = std::numbers::pi * x;
@@ -63,7 +65,7 @@ class Fsr2n : public Method {
             args.debugDepthClip = fitted(depthClip_, frame.width, frame.height).row(0);
             args.debugLock = fitted(lock_, frame.width, frame.height).row(0);
         }
-        temporal::runTemporal(kernels.resolve, exec, args);
+        temporal::runTemporal(kernels.resolve, exec, args, kRowsPerCall, kFsr2nScratchRows);
         history_.end({}, exec);
     }
     size_t stateBytes() const override { return history_.bytes() + nearest_.bytes(); }

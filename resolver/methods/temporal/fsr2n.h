@@ -42,7 +42,9 @@ struct Fsr2nArgs {
     float power;                // of the graded difference
     bool locks;
     float *debugDepthClip, *debugLock;  // or null
+    void* scratch;                      // kFsr2nScratchRows rows
 };
+inline constexpr int kFsr2nScratchRows = 3 * 4;
 // Those of them that a frame's size, camera and jitter decide: lanczos, still, moving, separation, power.
 void setFsr2nFrame(Fsr2nArgs& args, const Frame& frame, float jitterXPx, float jitterYPx);
 struct Fsr2nKernels {

@@ -1,8 +1,11 @@
 #include "methods/temporal/fsr2n.h"
 
 #include "kernels/math.h"
+#include "kernels/ring.h"
 #include "methods/temporal/temporal_blocks.kernel.h"
 
+// Limited by instructions: the scatter and the search for the nearest surface, which both passes need, take a third,
+// the window's sums and the history's 16 texels most of the rest.
 namespace AA_ARCH {
 
 constexpr float kLeastSplat = 0.01f;   // bilinear weights below it are no evidence (FSR 2)
@@ -158,92 +161,169 @@ AA_INLINE vec3<R> preparedColour(const TemporalIn& in, long o) {
     return min(load3<R>(in.color.c, o), vec3<R>(R(Elem<R>(65504))));
 }
 
+// The prepared colours in YCoCg: what all nine neighbours of a pixel would compute again is computed once. They are of
+// a picture that has a row and a column more on each side.
+template <class T>
+struct Fsr2nRings {
+    Ring<T, 4> c[3];
+};
 template <class R>
-AA_INLINE void fsr2nPixel(const Fsr2nArgs& a, int x, int y) {
+AA_INLINE void convertRow(const TemporalIn& in, const Fsr2nRings<Elem<R>>& rings, int y) {
+    Elem<R>*const c0 = rings.c[0](y + 1), *const c1 = rings.c[1](y + 1), *const c2 = rings.c[2](y + 1);
+    const auto convert = [&](auto one, int x) __attribute__((always_inline)) {
+        using S = decltype(one);
+        const vec3<S> c = toYcocg(preparedColour<S>(in, long(y) * in.stride + x));
+        store(c.x, c0 + x), store(c.y, c1 + x), store(c.z, c2 + x);
+    };
+    for (int x = 0; x < in.width; x += N<R>) convert(R(Elem<R>(0)), x);
+    convert(Elem<R>(0), -1), convert(Elem<R>(0), in.width);
+}
+// Rows y - 1, y, y + 1 of them.
+template <class T>
+struct Fsr2nWindow {
+    const T* c[3][3];
+};
+
+// What one step hands to the next, for N pixels.
+template <class R>
+struct Fsr2nPixels {
+    Surface<R> surface;
+    Reprojection<R> q;
+    R hidden, speed, luma, lock;
+    vec3<R> current, past;
+    Box<R> box;
+};
+template <class R>
+struct Fsr2n {
     using T = Elem<R>;
+    const Fsr2nArgs& a;
+    const Fsr2nWindow<T>& rows;
+    int y;
     const TemporalIn& in = a.in;
-    const R zero(T(0)), one(T(1));
-    const long o = long(y) * in.stride + x;
-    const vec3<R> raw = preparedColour<R>(in, o);
-    const Window<R> at([&](int i, int j) __attribute__((always_inline)) {
-        return toYcocg(preparedColour<R>(in, o + long(j) * in.stride + i));
-    });
+
+    AA_INLINE vec3<R> at(int x, int i, int j) const { return loadOwn<R>(rows.c[j + 1], x + i); }
+    AA_INLINE long offset(int x) const { return long(y) * in.stride + x; }
+    static AA_INLINE R fast(const Fsr2nPixels<R>& p) { return saturate(p.speed * R(T(1 / kFastPx))); }
 
     // 1
-    const Surface<R> surface = closestSurface<R>(in, o, false);
-    const Motion<R> motion = surface.motion;
-    const Reprojection<R> q = reproject(in, motion, x, y);
-    const R hidden = depthClip(a, q, surface.depthView, o);
-    const R speed = sqrt(motion.x * motion.x + motion.y * motion.y), fast = saturate(speed * R(T(1 / kFastPx)));
-
+    AA_INLINE void findMotion(Fsr2nPixels<R>& p, int x) const {
+        p.surface = closestSurface<R>(in, offset(x), false);
+        const Motion<R> motion = p.surface.motion;
+        p.q = reproject(in, motion, x, y);
+        p.speed = sqrt(motion.x * motion.x + motion.y * motion.y);
+    }
     // 3. as deviations from the centre
-    const vec3<R> centre = at(0, 0);
-    vec3<R> filtered(zero), m1(zero), m2(zero);
-    R around(zero);
-    Box<R> bounds{centre, centre};
-    for (int j = -1; j <= 1; j++)
-        for (int i = -1; i <= 1; i++) {
-            if (i == 0 && j == 0) continue;
+    AA_INLINE void findBox(Fsr2nPixels<R>& p, int x) const {
+        const R moving = fast(p), scale = mix(R(T(a.boxScale)), R(T(1)), max(p.hidden, moving));
+        R weight[9];
+        eachNeighbour([&](int i, int j) __attribute__((always_inline)) {
             const int n = (j + 1) * 3 + i + 1;
-            const vec3<R> c = at(i, j), d = c - centre;
-            const R w = mix(R(T(a.still[n])), R(T(a.moving[n])), fast);
-            filtered = filtered + d * R(T(a.lanczos[n]));
-            bounds.lo = min(bounds.lo, c), bounds.hi = max(bounds.hi, c);
-            m1 = m1 + d * w, m2 = m2 + d * d * w;
-            around = around + d.x;
-        }
-    const vec3<R> current = clamp3(centre + filtered, bounds.lo, bounds.hi);
-    const vec3<R> mean = centre + m1, sigma = sqrt(max(m2 - m1 * m1, vec3<R>(zero)));
-    const vec3<R> reach = sigma * mix(R(T(a.boxScale)), one, max(hidden, fast));
-    const Box<R> box{max(bounds.lo, mean - reach), min(bounds.hi, mean + reach)};
-
+            weight[n] = mix(R(T(a.still[n])), R(T(a.moving[n])), moving);
+        });
+        vec3<R> current;
+        Box<R> box;
+        R around(T(0));
+        eachChannel([&](auto channel) __attribute__((always_inline)) {
+            const R centre = part(at(x, 0, 0), channel);
+            R filtered(T(0)), m1(T(0)), m2(T(0)), low = centre, high = centre;
+            eachNeighbour([&](int i, int j) __attribute__((always_inline)) {
+                const int n = (j + 1) * 3 + i + 1;
+                const R c = part(at(x, i, j), channel), d = c - centre;
+                filtered = filtered + d * R(T(a.lanczos[n]));
+                low = min(low, c), high = max(high, c);
+                m1 = m1 + d * weight[n], m2 = m2 + d * d * weight[n];
+                if (channel == 0) around = around + d;
+            });
+            part(current, channel) = clamp(centre + filtered, low, high);
+            const R mean = centre + m1, reach = sqrt(max(m2 - m1 * m1, R(T(0)))) * scale;
+            part(box.lo, channel) = max(low, mean - reach), part(box.hi, channel) = min(high, mean + reach);
+        });
+        p.current = current, p.box = box;
+        p.luma = at(x, 0, 0).x + around * R(T(1) / T(9));
+    }
     // 2
-    const Offsets<R> nearest = nearestOffsets(q, in.stride);
-    R lock = fetchRgba<R>(in.history + 4 * o, nearest).a;
-    const R luma = centre.x + around * R(T(1) / T(9)), usual = gather<R>(a.previousLuma + o, nearest);
-    const R brighter = max(luma, usual), darker = min(luma, usual);
-    const auto kept = both(q.inside, either(darker >= brighter * R(T(kLockedLuma)), brighter < R(T(1e-6))));
-    lock = select(kept, max(lock - R(T(a.lockDecay)), zero) * (one - hidden), zero);
-    if (a.locks)
-        lock = select(isRidge<R>([&](int i, int j) __attribute__((always_inline)) { return at(i, j).x; }), one, lock);
-    const auto known = both(q.inside, hidden <= R(T(0.5)));
-    const R nextUsual = select(known, usual + (luma - usual) * R(T(a.lockDecay)), luma);
-
+    AA_INLINE void findLock(Fsr2nPixels<R>& p, int x) const {
+        const R zero(T(0)), one(T(1));
+        const long o = offset(x);
+        const Offsets<R> nearest = nearestOffsets(p.q, in.stride);
+        R lock = fetchRgba<R>(in.history + 4 * o, nearest).a;
+        const R usual = gather<R>(a.previousLuma + o, nearest);
+        const R brighter = max(p.luma, usual), darker = min(p.luma, usual);
+        const auto kept = both(p.q.inside, either(darker >= brighter * R(T(kLockedLuma)), brighter < R(T(1e-6))));
+        lock = select(kept, max(lock - R(T(a.lockDecay)), zero) * (one - p.hidden), zero);
+        if (a.locks)
+            lock = select(isRidge<R>([&](int i, int j) __attribute__((always_inline)) { return at(x, i, j).x; }), one,
+                          lock);
+        p.lock = lock;
+        const R nextUsual = select(known(p), usual + (p.luma - usual) * R(T(a.lockDecay)), p.luma);
+        store(select(finite(nextUsual), nextUsual, zero), a.nextLuma + o);
+    }
+    static AA_INLINE Mask<R> known(const Fsr2nPixels<R>& p) { return both(p.q.inside, p.hidden <= R(T(0.5))); }
     // 4
-    const vec3<R> past = fetchLanczos(in.history + 4 * o, in.stride, q), history = toYcocg(past);
-    const vec3<R> held = mix(clamp3(history, box.lo, box.hi), history, lock);
-    const auto toRgb = [&](vec3<R> c) __attribute__((always_inline)) { return max(fromYcocg(c), vec3<R>(zero)); };
-    const R w(T(a.weight));
-    R accumulated = one - hidden;
-    accumulated = min(accumulated, mix(accumulated, w * R(T(10)), saturate(speed * R(T(10)))));
-    accumulated = min(accumulated, mix(accumulated, w, fast));
-    const R alpha = max(w / (accumulated + w), R(T(1) - T(in.feedbackCeiling)));
-    const vec3<R> mixed = toneMappedMean(toRgb(held), toRgb(current), alpha);
-    const vec3<R> result = select(q.inside, mixed, toRgb(current));
+    AA_INLINE void blendAndStore(const Fsr2nPixels<R>& p, int x) const {
+        const R zero(T(0)), one(T(1));
+        const long o = offset(x);
+        const vec3<R> history = toYcocg(p.past), held = mix(clamp3(history, p.box.lo, p.box.hi), history, p.lock);
+        const auto toRgb = [&](vec3<R> c) __attribute__((always_inline)) { return max(fromYcocg(c), vec3<R>(zero)); };
+        const R w(T(a.weight));
+        R accumulated = one - p.hidden;
+        accumulated = min(accumulated, mix(accumulated, w * R(T(10)), saturate(p.speed * R(T(10)))));
+        accumulated = min(accumulated, mix(accumulated, w, fast(p)));
+        const R alpha = max(w / (accumulated + w), R(T(1) - T(in.feedbackCeiling)));
+        const vec3<R> current = toRgb(p.current);
+        const vec3<R> result = select(p.q.inside, toneMappedMean(toRgb(held), current, alpha), current);
 
-    storeBlend(in, x, y, sanitised(result, raw, past), select(finite(lock), lock, zero));
-    store(select(finite(nextUsual), nextUsual, zero), a.nextLuma + o);
-    if (!in.debug.rejection) return;
-    storeDebug(in.debug, o, motion, q.inside, box, held - history, one - alpha);
-    store(select(known, zero, select(q.inside, R(T(int(Rejection::disoccluded))), R(T(int(Rejection::outside))))),
-          in.debug.rejection + o);
-    if (a.debugLock) store(hidden, a.debugDepthClip + o), store(lock, a.debugLock + o);
+        storeBlend(in, x, y, sanitised(result, preparedColour<R>(in, o), p.past), select(finite(p.lock), p.lock, zero));
+        if (!in.debug.rejection) return;
+        storeDebug(in.debug, o, p.surface.motion, p.q.inside, p.box, held - history, one - alpha);
+        const R hiddenOrOutside = select(p.q.inside, R(T(int(Rejection::disoccluded))), R(T(int(Rejection::outside))));
+        store(select(known(p), zero, hiddenOrOutside), in.debug.rejection + o);
+        if (a.debugLock) store(p.hidden, a.debugDepthClip + o), store(p.lock, a.debugLock + o);
+    }
+    AA_INLINE void row() const {
+        Fsr2nPixels<R> p[kStepGroups];
+        inSteps<R>(
+            in.width, [&](int i, int x) __attribute__((always_inline)) { findMotion(p[i], x); },
+            [&](int i, int x) __attribute__((always_inline)) {
+                p[i].hidden = depthClip(a, p[i].q, p[i].surface.depthView, offset(x));
+            },
+            [&](int i, int x) __attribute__((always_inline)) {
+                p[i].past = fetchLanczos(in.history + 4 * offset(x), in.stride, p[i].q);
+            },
+            [&](int i, int x) __attribute__((always_inline)) { findBox(p[i], x); },
+            [&](int i, int x) __attribute__((always_inline)) { findLock(p[i], x); },
+            [&](int i, int x) __attribute__((always_inline)) { blendAndStore(p[i], x); });
+    }
+};
+template <class R>
+AA_INLINE void firstFrameRow(const Fsr2nArgs& a, int y) {
+    for (int x = 0; x < a.in.width; x += N<R>) {
+        const long o = long(y) * a.in.stride + x;
+        const vec3<R> colour = preparedColour<R>(a.in, o);
+        const R zero(Elem<R>(0)), luma = toYcocg(colour).x;
+        storeFirst<R>(a.in, x, y, colour, zero);
+        store(select(finite(luma), luma, zero), a.nextLuma + o);
+        if (a.debugLock) store(zero, a.debugDepthClip + o), store(zero, a.debugLock + o);
+    }
 }
 template <class R>
 __attribute__((flatten)) void fsr2nRows(const Fsr2nArgs& a, int y0, int y1) {
-    for (int y = y0; y < y1; y++)
-        for (int x = 0; x < a.in.width; x += N<R>) {
-            if (a.in.history) {
-                fsr2nPixel<R>(a, x, y);
-                continue;
-            }
-            const long o = long(y) * a.in.stride + x;
-            const vec3<R> colour = preparedColour<R>(a.in, o);
-            const R zero(Elem<R>(0)), luma = toYcocg(colour).x;
-            storeFirst<R>(a.in, x, y, colour, zero);
-            store(select(finite(luma), luma, zero), a.nextLuma + o);
-            if (a.debugLock) store(zero, a.debugDepthClip + o), store(zero, a.debugLock + o);
+    const TemporalIn& in = a.in;
+    Fsr2nRings<Elem<R>> rings;
+    RingMaker<Elem<R>> maker(a.scratch, in.stride, in.width, in.height + 2);
+    for (auto& channel : rings.c) maker.make(channel);
+    for (int y = y0 - 2; y < y1; y++) {
+        if (!in.history) {
+            if (y >= y0) firstFrameRow<R>(a, y);
+            continue;
         }
+        convertRow<R>(in, rings, y + 1);
+        if (y < y0) continue;
+        Fsr2nWindow<Elem<R>> window;
+        for (int j = 0; j < 3; j++)
+            for (int c = 0; c < 3; c++) window.c[j][c] = rings.c[c](y + j);
+        Fsr2n<R>{a, window, y}.row();
+    }
 }
 
 }  // namespace AA_ARCH

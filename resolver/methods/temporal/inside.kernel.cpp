@@ -6,16 +6,21 @@
 namespace AA_ARCH {
 
 // Four bilinear taps at (+-s, +-s); at(i, j) are the window's colours. s = 0.5 px under motion, up to 0.6666 at rest.
+template <class R>
+struct FourTaps {
+    Box<R> box;
+    vec3<R> mean;
+};
 template <class R, class At>
-AA_INLINE Box<R> fourTapBox(const At& at, R s, vec3<R>& mean) {
+AA_INLINE FourTaps<R> fourTaps(const At& at, R s) {
     const vec3<R> c = at(0, 0);
     const auto tap = [&](int i, int j) __attribute__((always_inline)) {
         const vec3<R> near = mix(c, at(i, 0), s), far = mix(at(0, j), at(i, j), s);
         return mix(near, far, s);
     };
     const vec3<R> a = tap(-1, -1), b = tap(1, -1), d = tap(-1, 1), e = tap(1, 1);
-    mean = a + ((b - a) + (d - a) + (e - a)) * R(Elem<R>(0.25));
-    return {min(min(a, b), min(d, e)), max(max(a, b), max(d, e))};
+    return {{min(min(a, b), min(d, e)), max(max(a, b), max(d, e))},
+            a + ((b - a) + (d - a) + (e - a)) * R(Elem<R>(0.25))};
 }
 
 // The current colours at p + (dx, dy), bilinear, held to the picture.
@@ -58,7 +63,6 @@ template <class R>
 AA_INLINE void insidePixel(const InsideArgs& a, bool ycocg, bool unjitterWindow, int x, int y) {
     using T = Elem<R>;
     const TemporalIn& in = a.in;
-    const R zero(T(0));
     const long o = long(y) * in.stride + x;
     const UniformFetch<R> unjittered(-in.jitterXPx, -in.jitterYPx);
     const auto fetch = [&](bool unjitter, int i, int j) __attribute__((always_inline)) {
@@ -77,27 +81,25 @@ AA_INLINE void insidePixel(const InsideArgs& a, bool ycocg, bool unjitterWindow,
     const Reprojection<R> q = reproject(in, motion, x, y);
     const vec3<R> past = fetchHistory(in, x, y, q), history = space(past);
 
-    const Window<R> at([&](int i, int j) __attribute__((always_inline)) { return space(fetch(unjitterWindow, i, j)); });
-    Box<R> box;
-    vec3<R> mean(zero);
-    if (a.neighbourhood == InsideNeighbourhood::fourTapVarying) {
+    const auto at = [&](int i, int j) __attribute__((always_inline)) { return space(fetch(unjitterWindow, i, j)); };
+    const bool varying = a.neighbourhood == InsideNeighbourhood::fourTapVarying;
+    const Neighbourhood kind = Neighbourhood(int(a.neighbourhood));  // unless varying
+    const auto taps = [&]() __attribute__((always_inline)) {
         const R speed = sqrt(motion.x * motion.x + motion.y * motion.y);
-        const R depth = dilatedDepth<R>(in, o);
         // 0 * 1e10 is 0, and a far surface at any speed counts as moving (conventions 11).
-        const R still = saturate(R(T(0.5)) / max(speed * depth, R(T(1e-6))));
-        box = fourTapBox<R>(at, R(T(0.5)) + still * R(T(0.1666)), mean);
-    } else {
-        const Neighbourhood kind = Neighbourhood(int(a.neighbourhood));
-        const Neighbours<R> window = neighbours<R>(at);
-        box = boxOf(window, kind);
-        mean = meanOf(window, kind);
-    }
+        const R still = saturate(R(T(0.5)) / max(speed * dilatedDepth<R>(in, o), R(T(1e-6))));
+        return fourTaps<R>(Window<R>(at), R(T(0.5)) + still * R(T(0.1666)));
+    };
+    Box<R> box = varying ? taps().box : neighbourBox<R>(at, kind);
     if (ycocg) {
         const R chroma = (box.hi.x - box.lo.x) * R(T(0.125));
         box.lo = {box.lo.x, current.y - chroma, current.z - chroma};
         box.hi = {box.hi.x, current.y + chroma, current.z + chroma};
-        mean = {mean.x, current.y, current.z};
     }
+    const auto mean = [&]() __attribute__((always_inline)) {
+        const vec3<R> m = varying ? taps().mean : meanOf(neighbourMeans<R>(at), kind);
+        return ycocg ? vec3<R>{m.x, current.y, current.z} : m;
+    };
     const vec3<R> held = constrain(box, a.clipTarget, mean, current, history);
     const R k = min(luminanceFeedback(luma(current), luma(held), a.kMin, a.kMax), R(T(in.feedbackCeiling)));
     const vec3<R> mixed = blend(current, held, k);

@@ -76,31 +76,35 @@ AA_INLINE void karisPixel(const KarisArgs& a, YCoCg ycocg, bool pq, const KarisW
     const vec3<R> centre = at(0, 0);
 
     // 1. filtered current colour and moments, as deviations from the centre: a constant stays exactly itself
-    const auto filterWeight = [&](int i, int j) __attribute__((always_inline)) {
-        return R(T(a.filter[(j + 1) * 3 + i + 1])) * loadOwn<R>(window.weight[j + 1] + x + i);
+    R weight[9], weights(zero);
+    const auto weigh = [&](int i, int j) __attribute__((always_inline)) {
+        const int n = (j + 1) * 3 + i + 1;
+        return weight[n] = R(T(a.filter[n])) * loadOwn<R>(window.weight[j + 1] + x + i);
     };
     vec3<R> sum(zero);
-    R weights(zero);
-    Moments<R> m{centre, centre};
-    const auto filter = [&](int i, int j, vec3<R> d) __attribute__((always_inline)) {
-        const R w = filterWeight(i, j);
-        sum = sum + d * w, weights = weights + w;
+    const auto filter = [&](auto channel, int i, int j, R, R d) __attribute__((always_inline)) {
+        part(sum, channel) = part(sum, channel) + d * weight[(j + 1) * 3 + i + 1];
     };
+    if (filtered) eachNeighbour([&](int i, int j) __attribute__((always_inline)) { weights = weights + weigh(i, j); });
+    Moments<R> m{centre, centre};
     if (spread && filtered)
         m = moments<R>(at, filter);
     else if (spread)
         m = moments<R>(at);
     else if (filtered)
-        for (int j = -1; j <= 1; j++)
-            for (int i = -1; i <= 1; i++)
-                if (i || j) filter(i, j, at(i, j) - centre);
-    const vec3<R> current = filtered ? centre + sum * (one / max(weights + filterWeight(0, 0), R(T(1e-20)))) : centre;
+        eachChannel([&](auto channel) __attribute__((always_inline)) {
+            eachNeighbour([&](int i, int j) __attribute__((always_inline)) {
+                const R v = part(at(i, j), channel);
+                filter(channel, i, j, v, v - part(centre, channel));
+            });
+        });
+    const vec3<R> current = filtered ? centre + sum * (one / max(weights + weigh(0, 0), R(T(1e-20)))) : centre;
 
     // 2. box
     Box<R> box;
     if (spread) box = varianceBox(m, a.gamma);
     if (!spread || a.box == BoxKind::intersection) {
-        const Box<R> bounds = boxOf(neighbours<R>(at), a.neighbourhood);
+        const Box<R> bounds = neighbourBox<R>(at, a.neighbourhood);
         box = spread ? Box<R>{max(box.lo, bounds.lo), min(box.hi, bounds.hi)} : bounds;
     }
     box.lo = min(box.lo, box.hi);

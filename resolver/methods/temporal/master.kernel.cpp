@@ -5,7 +5,8 @@
 #include "methods/temporal/temporal_sharpen.kernel.h"
 
 // All steps row by row, each as far ahead of the next one as that one's window reaches; what lies between them is a few
-// rows long and stays in the second-level cache.
+// rows long and stays in the second-level cache. What limits it is the number of instructions, a thousand for eight
+// pixels: neither memory nor, since a row's steps are loops of their own, waiting for what the step before computes.
 namespace AA_ARCH {
 
 template <class T>
@@ -106,13 +107,26 @@ AA_INLINE void pastRow(const MasterArgs& a, const MasterRings<Elem<R>>& rings, i
     const T* const sobel[3] = {rings.sobelAt(y), rings.sobelAt(y + 1), rings.sobelAt(y + 2)};
     T *const pastX = rings.past[0](y), *const pastY = rings.past[1](y), *const pastZ = rings.past[2](y),
              *const pastDepth = rings.pastDepth(y);
-    for (int x = 0; x < in.width; x += N<R>) {
+    Reprojection<R> from[kStepGroups];
+    Texel<R> pasts[kStepGroups];
+    const auto reprojected = [&](int i, int x) __attribute__((always_inline)) {
+        from[i] = reproject(in, dilatedMotion<R>(in, long(y) * in.stride + x), x, y);
+    };
+    const auto fetched = [&](int i, int x) __attribute__((always_inline)) {
         const long o = long(y) * in.stride + x;
-        const Motion<R> motion = dilatedMotion<R>(in, o);
-        const Reprojection<R> q = reproject(in, motion, x, y);
+        const Reprojection<R> q = from[i];
         const Texel<R> past = fetchBilinear<R>(in.history + 4 * o, in.stride, q);
-
-        const auto at = [&](int i, int j) __attribute__((always_inline)) { return loadOwn<R>(sobel[j + 1] + x + i); };
+        const Offsets<R> k = nearestOffsets(q, in.stride);
+        const R depth = a.samePixelDepth ? load<R>(a.previousDepth + o) : gather<R>(a.previousDepth + o, k);
+        store(select(q.inside, depth, R(T(__builtin_nanf("")))), pastDepth + x);
+        const vec3<R> color = in.filter == HistoryFilter::bilinear ? past.rgb : fetchHistory(in, x, y, q);
+        store(color.x, pastX + x), store(color.y, pastY + x), store(color.z, pastZ + x);
+        pasts[i] = past;
+    };
+    const auto filter = [&](int i, int x) __attribute__((always_inline)) {
+        const auto at = [&](int di, int dj) __attribute__((always_inline)) {
+            return loadOwn<R>(sobel[dj + 1] + x + di);
+        };
         const R now = at(0, 0);
         R filtered = now;
         if (a.temporalSobel) {
@@ -120,18 +134,13 @@ AA_INLINE void pastRow(const MasterArgs& a, const MasterRings<Elem<R>>& rings, i
             const R plusHigh = max(max(max(now, at(-1, 0)), max(at(1, 0), at(0, -1))), at(0, 1));
             const R low = min(plusLow, min(min(at(-1, -1), at(1, -1)), min(at(-1, 1), at(1, 1))));
             const R high = max(plusHigh, max(max(at(-1, -1), at(1, -1)), max(at(-1, 1), at(1, 1))));
-            const R half(T(0.5)), held = clamp(past.a, (low + plusLow) * half, (high + plusHigh) * half);
+            const R half(T(0.5)), held = clamp(pasts[i].a, (low + plusLow) * half, (high + plusHigh) * half);
             const R k = min(luminanceFeedback(now, held, a.kMin, a.kMax), R(T(in.feedbackCeiling)));
-            filtered = select(q.inside, held + (now - held) * (R(T(1)) - k), now);
+            filtered = select(from[i].inside, held + (now - held) * (R(T(1)) - k), now);
         }
         store(filtered, filteredRow + x);
-
-        const Offsets<R> k = nearestOffsets(q, in.stride);
-        const R depth = a.samePixelDepth ? load<R>(a.previousDepth + o) : gather<R>(a.previousDepth + o, k);
-        store(select(q.inside, depth, R(T(__builtin_nanf("")))), pastDepth + x);
-        const vec3<R> color = in.filter == HistoryFilter::bilinear ? past.rgb : fetchHistory(in, x, y, q);
-        store(color.x, pastX + x), store(color.y, pastY + x), store(color.z, pastZ + x);
-    }
+    };
+    inSteps<R>(in.width, reprojected, fetched, filter);
     rings.filtered.continueBeyond(y);
 }
 
@@ -150,40 +159,40 @@ struct MasterWindow {
         }
     }
 };
+// What one step hands to the next, for N pixels.
 template <class R>
-AA_INLINE void masterPixel(const MasterArgs& a, const MasterWindow<Elem<R>>& rows, int x, int y) {
+struct MasterPixels {
+    R aliased, model, sobel;
+    PseudoVariances<R> variance;
+    Box<R> box;
+    vec3<R> clipped;
+};
+// How aliased is a pixel?
+template <class R>
+AA_INLINE void findAliased(const MasterArgs& a, const MasterWindow<Elem<R>>& rows, MasterPixels<R>& p, int x, int y) {
     using T = Elem<R>;
-    const TemporalIn& in = a.in;
     const R zero(T(0)), one(T(1));
-    const long o = long(y) * in.stride + x;
-    const auto colour = [&](int i, int j) __attribute__((always_inline)) {
-        return loadOwn<R>(rows.current[j + 1], x + i);
-    };
-    const vec3<R> current = colour(0, 0);
-    const vec3<R> history = loadOwn<R>(rows.past, x);
-    const R pastDepth = loadOwn<R>(rows.pastDepth + x);
-    const auto inside = pastDepth == pastDepth;
-
-    // How aliased is this pixel?
+    const long o = long(y) * a.in.stride + x;
     R model(zero), sobel(zero);
     PseudoVariances<R> variance{zero, zero};
     if (a.useModel)
         model = modelAverage<R>([&](int i, int j) __attribute__((always_inline)) {
-            return idsDiffer<R>(a.objectId + o + long(j) * in.stride + i, a.objectId + o);
+            return idsDiffer<R>(a.objectId + o + long(j) * a.in.stride + i, a.objectId + o);
         });
     if (a.useDepth || a.useDepthTemporal) {
-        const R depth = loadOwn<R>(rows.depth[1] + x);
+        const R depth = loadOwn<R>(rows.depth[1] + x), pastDepth = loadOwn<R>(rows.pastDepth + x);
         const DepthWindow<R> window = depthWindow<R>([&](int i, int j) __attribute__((always_inline)) {
             return loadOwn<R>(rows.depth[j + 1] + x + i);
         });
         R past = pastDepth - depth;
         if (a.compensate)
-            past = pastDepth - inDepthUnit(a, expectedPreviousDepth(a.expected, load<R>(in.depthView + o), x, y));
+            past = pastDepth - inDepthUnit(a, expectedPreviousDepth(a.expected, load<R>(a.in.depthView + o), x, y));
         R threshold(T(a.depthThreshold));
         if (a.relativeThreshold) threshold = threshold * max(depth + window.mean, one);
         variance = pseudoVariances(window, past, threshold);
         if (!a.useDepth) variance.depth = zero;
-        variance.depthTemporal = a.useDepthTemporal ? select(inside, variance.depthTemporal, one) : zero;
+        variance.depthTemporal =
+            a.useDepthTemporal ? select(pastDepth == pastDepth, variance.depthTemporal, one) : zero;
     }
     if (a.useSobel) {
         const auto s = [&](int i, int j) __attribute__((always_inline)) {
@@ -193,33 +202,57 @@ AA_INLINE void masterPixel(const MasterArgs& a, const MasterWindow<Elem<R>>& row
         const R square = plus + ((s(-1, -1) + s(1, -1)) + (s(-1, 1) + s(1, 1)));
         sobel = mix(plus * R(T(1) / T(5)), square * R(T(1) / T(9)), saturate(model + s(0, 0)));  // eqs 4.12, 4.13
     }
-    const R aliased = max(saturate(sobel + variance.depth + variance.depthTemporal + model), R(T(a.minAlias)));
-
-    // The box: loose where aliased, the current colour alone where not (eqs 4.15, 4.16).
-    const Neighbours<R> window = neighbours<R>(colour);
-    const vec3<R> low = mix(window.plus.lo, window.square.lo, aliased),
-                  high = mix(window.plus.hi, window.square.hi, aliased),
-                  mean = mix(window.meanPlus, window.meanSquare, aliased);
-    const Box<R> box{mix(current, low, aliased), mix(current, high, aliased)};
-    const vec3<R> clipped = constrain(box, a.clipTarget, mean, current, history);
-
+    p.aliased = max(saturate(sobel + variance.depth + variance.depthTemporal + model), R(T(a.minAlias)));
+    p.model = model, p.sobel = sobel, p.variance = variance;
+}
+// Holds the past to the box: loose where aliased, the current colour alone where not (eqs 4.15, 4.16).
+template <class R>
+AA_INLINE void findBox(const MasterWindow<Elem<R>>& rows, MasterPixels<R>& p, int x) {
+    const R aliased = p.aliased;
+    p.box = windowBox<R>(
+        [&](int i, int j) __attribute__((always_inline)) { return loadOwn<R>(rows.current[j + 1], x + i); },
+        [&](auto channel, Range<R> plus, Range<R> square) __attribute__((always_inline)) {
+            const R low = mix(plus.lo, square.lo, aliased), high = mix(plus.hi, square.hi, aliased);
+            const R own = loadOwn<R>(rows.current[1][channel] + x);
+            return Range<R>{mix(own, low, aliased), mix(own, high, aliased)};
+        });
+}
+template <class R>
+AA_INLINE void clipPast(const MasterArgs& a, const MasterWindow<Elem<R>>& rows, MasterPixels<R>& p, int x) {
+    const auto mean = [&]() __attribute__((always_inline)) {
+        const NeighbourMeans<R> m = neighbourMeans<R>([&](int i, int j) __attribute__((always_inline)) {
+            return loadOwn<R>(rows.current[j + 1], x + i);
+        });
+        return mix(m.plus, m.square, p.aliased);
+    };
+    p.clipped = constrain(p.box, a.clipTarget, mean, loadOwn<R>(rows.current[1], x), loadOwn<R>(rows.past, x));
+}
+template <class R>
+AA_INLINE void blendAndStore(const MasterArgs& a, const MasterWindow<Elem<R>>& rows, const MasterPixels<R>& p, int x,
+                             int y) {
+    using T = Elem<R>;
+    const TemporalIn& in = a.in;
+    const long o = long(y) * in.stride + x;
+    const vec3<R> current = loadOwn<R>(rows.current[1], x), history = loadOwn<R>(rows.past, x), clipped = p.clipped;
+    const R pastDepth = loadOwn<R>(rows.pastDepth + x);
+    const auto inside = pastDepth == pastDepth;
     const R k = min(luminanceFeedback(luminance(current, a.luminance), luminance(clipped, a.luminance), a.kMin, a.kMax),
                     R(T(in.feedbackCeiling)));
     const vec3<R> mixed = select(inside, blend(current, clipped, k), current);
 
     storeBlend(in, x, y, sanitised(mixed, current, history), loadOwn<R>(rows.filtered[1] + x));
     if (!in.debug.feedback) {
-        storeDebug(in.debug, o, Motion<R>{k, k}, inside, box, history, k);
+        storeDebug(in.debug, o, Motion<R>{k, k}, inside, p.box, history, k);
     } else {
-        storeDebug(in.debug, o, dilatedMotion<R>(in, o), inside, box, clipped - history, k);
-        store(aliased, a.debugAliased + o), store(sobel, a.debugSobel + o), store(model, a.debugModel + o);
-        store(variance.depth, a.debugDepth + o), store(variance.depthTemporal, a.debugDepthTemporal + o);
+        storeDebug(in.debug, o, dilatedMotion<R>(in, o), inside, p.box, clipped - history, k);
+        store(p.aliased, a.debugAliased + o), store(p.sobel, a.debugSobel + o), store(p.model, a.debugModel + o);
+        store(p.variance.depth, a.debugDepth + o), store(p.variance.depthTemporal, a.debugDepthTemporal + o);
     }
 }
 // Brings in what the next row of each step will be the first to read or write, while this one computes.
 template <class R>
 AA_INLINE void prefetchNextRows(const MasterArgs& a, int x, int y) {
-    if constexpr (N<R> == 1) return;
+    if (N<R> == 1 || (N<R> < 16 && x % 16)) return;  // a line of the cache is fetched once
     const TemporalIn& in = a.in;
     const auto at = [&](int row) __attribute__((always_inline)) {
         return long(row < in.height ? row : in.height - 1) * in.stride + x;
@@ -237,8 +270,8 @@ AA_INLINE void prefetchNextRows(const MasterArgs& a, int x, int y) {
     __builtin_prefetch(a.previousDepth + past + in.stride, 0, 2);
     __builtin_prefetch(a.objectId + past, 0, 2);
     for (int i = 0; i < 4; i++) {
-        __builtin_prefetch(in.history + 4 * (past + in.stride) + i * N<R>, 0, 2);
-        __builtin_prefetch(in.next + 4 * own + i * N<R>, 0, 2);
+        __builtin_prefetch(in.history + 4 * (past + in.stride) + i * 16, 0, 2);
+        __builtin_prefetch(in.next + 4 * own + i * 16, 0, 2);
     }
     __builtin_prefetch(a.keptDepth + own, 0, 2);
 }
@@ -248,14 +281,21 @@ AA_INLINE void resolveRow(const MasterArgs& a, const MasterRings<Elem<R>>& rings
     const long o = long(y) * in.stride;
     const MasterWindow<Elem<R>> rows(a, rings, y);
     const Elem<R>* const sobel = rings.sobelAt(y + 1);
-    for (int x = 0; x < in.width; x += N<R>) {
-        if (in.history) {
-            prefetchNextRows<R>(a, x, y);
-            masterPixel<R>(a, rows, x, y);
-        } else
+    MasterPixels<R> pixels[kStepGroups];
+    if (in.history)
+        inSteps<R>(
+            in.width,
+            [&](int i, int x) __attribute__((always_inline)) {
+                prefetchNextRows<R>(a, x, y);
+                findAliased(a, rows, pixels[i], x, y);
+            },
+            [&](int i, int x) __attribute__((always_inline)) { findBox(rows, pixels[i], x); },
+            [&](int i, int x) __attribute__((always_inline)) { clipPast(a, rows, pixels[i], x); },
+            [&](int i, int x) __attribute__((always_inline)) { blendAndStore(a, rows, pixels[i], x, y); });
+    else
+        for (int x = 0; x < in.width; x += N<R>)
             storeFirst<R>(in, x, y, loadOwn<R>(rows.current[1], x), loadOwn<R>(sobel + x));
-        store(loadOwn<R>(rows.depth[1] + x), a.keptDepth + o + x);
-    }
+    for (int x = 0; x < in.width; x += N<R>) store(loadOwn<R>(rows.depth[1] + x), a.keptDepth + o + x);
     float* const row = in.next + 4 * o;
     for (int c = 0; c < 4; c++) row[c - 4] = row[c], row[4 * in.width + c] = row[4 * in.width - 4 + c];
 }

@@ -23,10 +23,10 @@ AA_INLINE void temporalSkeletonPixel(const TemporalSkeletonArgs& a, int x, int y
     const R samples = gather<R>(a.count + o, nearestOffsets(q, in.stride));
 
     // rectify
-    const Window<R> window([&](int i, int j) __attribute__((always_inline)) {
+    const auto at = [&](int i, int j) __attribute__((always_inline)) {
         return load3<R>(in.color.c, o + long(j) * in.stride + i);
-    });
-    const Box<R> box = neighbours<R>(window).square;
+    };
+    const Box<R> box = neighbourBox<R>(at, Neighbourhood::box3x3);
     const vec3<R> clamped = clamp3(history, box.lo, box.hi);
 
     // blend

@@ -80,38 +80,54 @@ struct Box {
     vec3<R> lo, hi;
 };
 template <class R>
-struct Neighbours {  // of the 3x3 window and of its plus-shaped part
-    Box<R> square, plus;
-    vec3<R> meanSquare, meanPlus;
+struct Range {  // of one channel
+    R lo, hi;
 };
-// `at(i, j)` is the colour of the neighbour (x + i, y + j).
-template <class R, class At>
-AA_INLINE Neighbours<R> neighbours(const At& at) {
-    using T = Elem<R>;
-    const vec3<R> c = at(0, 0), w = at(-1, 0), e = at(1, 0), n = at(0, -1), s = at(0, 1);
-    Neighbours<R> b;
-    b.plus = {min(min(min(c, w), min(e, n)), s), max(max(max(c, w), max(e, n)), s)};
-    // Means as deviations from the centre: a constant window has exactly its value.
-    const vec3<R> around = (w - c) + (e - c) + ((n - c) + (s - c));
-    const vec3<R> nw = at(-1, -1), ne = at(1, -1), sw = at(-1, 1), se = at(1, 1);
-    b.square = {min(b.plus.lo, min(min(nw, ne), min(sw, se))), max(b.plus.hi, max(max(nw, ne), max(sw, se)))};
-    b.meanPlus = c + around * R(T(1) / T(5));
-    b.meanSquare = c + (around + ((nw - c) + (ne - c) + ((sw - c) + (se - c)))) * R(T(1) / T(9));
-    return b;
+// `at(i, j)` is the colour of the neighbour (x + i, y + j); combine(channel, plus, square) makes the box's range from
+// those of the 3x3 window and of its plus-shaped part.
+template <class R, class At, class Combine>
+AA_INLINE Box<R> windowBox(const At& at, const Combine& combine) {
+    Box<R> box;
+    eachChannel([&](auto channel) __attribute__((always_inline)) {
+        const auto v = [&](int i, int j) __attribute__((always_inline)) { return part(at(i, j), channel); };
+        const R c = v(0, 0), w = v(-1, 0), e = v(1, 0), n = v(0, -1), s = v(0, 1);
+        const Range<R> plus{min(min(min(c, w), min(e, n)), s), max(max(max(c, w), max(e, n)), s)};
+        const R nw = v(-1, -1), ne = v(1, -1), sw = v(-1, 1), se = v(1, 1);
+        const Range<R> square{min(plus.lo, min(min(nw, ne), min(sw, se))), max(plus.hi, max(max(nw, ne), max(sw, se)))};
+        const Range<R> range = combine(channel, plus, square);
+        part(box.lo, channel) = range.lo, part(box.hi, channel) = range.hi;
+    });
+    return box;
 }
 // "Rounded": the mean of both windows' bounds [Pedersen 2016].
-template <class R>
-AA_INLINE Box<R> boxOf(const Neighbours<R>& b, Neighbourhood kind) {
-    const R half(Elem<R>(0.5));
-    if (kind == Neighbourhood::box3x3) return b.square;
-    if (kind == Neighbourhood::plus) return b.plus;
-    return {(b.square.lo + b.plus.lo) * half, (b.square.hi + b.plus.hi) * half};
+template <class R, class At>
+AA_INLINE Box<R> neighbourBox(const At& at, Neighbourhood kind) {
+    return windowBox<R>(
+        at, [&](auto, Range<R> plus, Range<R> square) __attribute__((always_inline)) {
+            const R half(Elem<R>(0.5));
+            if (kind == Neighbourhood::box3x3) return square;
+            if (kind == Neighbourhood::plus) return plus;
+            return Range<R>{(square.lo + plus.lo) * half, (square.hi + plus.hi) * half};
+        });
 }
 template <class R>
-AA_INLINE vec3<R> meanOf(const Neighbours<R>& b, Neighbourhood kind) {
-    if (kind == Neighbourhood::box3x3) return b.meanSquare;
-    if (kind == Neighbourhood::plus) return b.meanPlus;
-    return (b.meanSquare + b.meanPlus) * R(Elem<R>(0.5));
+struct NeighbourMeans {
+    vec3<R> square, plus;
+};
+// Means as deviations from the centre: a constant window has exactly its value.
+template <class R, class At>
+AA_INLINE NeighbourMeans<R> neighbourMeans(const At& at) {
+    using T = Elem<R>;
+    const vec3<R> c = at(0, 0);
+    const vec3<R> around = (at(-1, 0) - c) + (at(1, 0) - c) + ((at(0, -1) - c) + (at(0, 1) - c));
+    const vec3<R> corners = (at(-1, -1) - c) + (at(1, -1) - c) + ((at(-1, 1) - c) + (at(1, 1) - c));
+    return {c + (around + corners) * R(T(1) / T(9)), c + around * R(T(1) / T(5))};
+}
+template <class R>
+AA_INLINE vec3<R> meanOf(const NeighbourMeans<R>& m, Neighbourhood kind) {
+    if (kind == Neighbourhood::box3x3) return m.square;
+    if (kind == Neighbourhood::plus) return m.plus;
+    return (m.square + m.plus) * R(Elem<R>(0.5));
 }
 
 // ---- constraints (conventions 7.5, 7.6) -----------------------------------------------------------------------------
@@ -149,9 +165,10 @@ AA_INLINE vec3<R> clipToward(Box<R> box, vec3<R> r, vec3<R> h) {
     const R t = leastRatio(vec3<R>{allowed(room.x, way.x), allowed(room.y, way.y), allowed(room.z, way.z)}, abs(way));
     return select(t < one, r + way * t, h);
 }
-template <class R>
-AA_INLINE vec3<R> constrain(Box<R> box, ClipTarget target, vec3<R> mean, vec3<R> current, vec3<R> h) {
-    if (target == ClipTarget::mean) return clipToward(box, mean, h);
+// `mean()` is computed where it is the target only: it costs as much as the box.
+template <class R, class Mean>
+AA_INLINE vec3<R> constrain(Box<R> box, ClipTarget target, const Mean& mean, vec3<R> current, vec3<R> h) {
+    if (target == ClipTarget::mean) return clipToward(box, mean(), h);
     if (target == ClipTarget::current) return clipToward(box, current, h);
     if (target == ClipTarget::clamp) return clamp3(h, box.lo, box.hi);
     return clipToCentre(box, h);
@@ -162,28 +179,40 @@ template <class R>
 struct Moments {
     vec3<R> mean, sigma;
 };
+// Calls visit(i, j) for the eight neighbours of a pixel, in row-major order.
+template <class Visit>
+AA_INLINE void eachNeighbour(const Visit& visit) {
+#pragma GCC unroll 3
+    for (int j = -1; j <= 1; j++)
+#pragma GCC unroll 3
+        for (int i = -1; i <= 1; i++)
+            if (i || j) visit(i, j);
+}
 // Moments of the 3x3 window about its centre colour: E[x^2] - mean^2 loses all digits of bright windows
-// (conventions 9). `also(i, j, d)` sees every neighbour's deviation d from the centre on the way.
+// (conventions 9). `also(channel, i, j, v, d)` sees every neighbour's value v and its deviation d from the centre on
+// the way.
 template <class R, class At, class Also>
 AA_INLINE Moments<R> moments(const At& at, const Also& also) {
     using T = Elem<R>;
-    const vec3<R> c = at(0, 0);
-    vec3<R> m1(R(T(0))), m2(R(T(0)));
-    for (int j = -1; j <= 1; j++)
-        for (int i = -1; i <= 1; i++) {
-            if (i == 0 && j == 0) continue;
-            const vec3<R> d = at(i, j) - c;
+    Moments<R> m;
+    eachChannel([&](auto channel) __attribute__((always_inline)) {
+        const R c = part(at(0, 0), channel), ninth(T(1) / T(9));
+        R m1(T(0)), m2(T(0));
+        eachNeighbour([&](int i, int j) __attribute__((always_inline)) {
+            const R v = part(at(i, j), channel), d = v - c;
             m1 = m1 + d;
             m2 = m2 + d * d;
-            also(i, j, d);
-        }
-    const R ninth(T(1) / T(9));
-    const vec3<R> shift = m1 * ninth;
-    return {c + shift, sqrt(max(m2 * ninth - shift * shift, vec3<R>(R(T(0)))))};
+            also(channel, i, j, v, d);
+        });
+        const R shift = m1 * ninth;
+        part(m.mean, channel) = c + shift;
+        part(m.sigma, channel) = sqrt(max(m2 * ninth - shift * shift, R(T(0))));
+    });
+    return m;
 }
 template <class R, class At>
 AA_INLINE Moments<R> moments(const At& at) {
-    return moments<R>(at, [](int, int, vec3<R>) __attribute__((always_inline)){});
+    return moments<R>(at, [](auto, int, int, R, R) __attribute__((always_inline)){});
 }
 template <class R>
 AA_INLINE Box<R> varianceBox(const Moments<R>& m, float gamma) {

@@ -88,20 +88,17 @@ TEST(TemporalBlocks, VarianceOfABrightWindowKeepsItsDigits) {
 }
 TEST(TemporalBlocks, RoundedBoxVectors) {
     const auto roundedHigh = [](int oi, int oj) {
-        return boxOf(neighbours<double>([&](int i, int j) { return oneInWindow(i, j, oi, oj); }),
-                     Neighbourhood::rounded)
+        return neighbourBox<double>([&](int i, int j) { return oneInWindow(i, j, oi, oj); }, Neighbourhood::rounded)
             .hi.x;
     };
     EXPECT_EQ(roundedHigh(-1, 1), 0.5);
     EXPECT_EQ(roundedHigh(0, 0), 1.0);
     EXPECT_EQ(roundedHigh(0, -1), 1.0);
-    const auto corner =
-        boxOf(neighbours<double>([&](int i, int j) { return oneInWindow(i, j, 1, 1); }), Neighbourhood::rounded);
-    EXPECT_EQ(corner.lo.x, 0.0);
-    const auto window = neighbours<double>([](int i, int j) { return oneInWindow(i, j, 1, 1); });
-    EXPECT_EQ(window.plus.hi.x, 0.0);
-    EXPECT_NEAR(window.meanSquare.x, 1.0 / 9, 1e-12);
-    EXPECT_EQ(window.meanPlus.x, 0.0);
+    const auto cornerAlone = [](int i, int j) { return oneInWindow(i, j, 1, 1); };
+    EXPECT_EQ(neighbourBox<double>(cornerAlone, Neighbourhood::rounded).lo.x, 0.0);
+    EXPECT_EQ(neighbourBox<double>(cornerAlone, Neighbourhood::plus).hi.x, 0.0);
+    EXPECT_NEAR(neighbourMeans<double>(cornerAlone).square.x, 1.0 / 9, 1e-12);
+    EXPECT_EQ(neighbourMeans<double>(cornerAlone).plus.x, 0.0);
 }
 
 TEST(TemporalBlocks, BlendIsExactAtBothEnds) {

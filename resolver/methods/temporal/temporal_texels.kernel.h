@@ -15,6 +15,25 @@ template <class R>
 AA_INLINE void store3(vec3<R> v, float* const (&c)[3], long offset) {
     store(v.x, c[0] + offset), store(v.y, c[1] + offset), store(v.z, c[2] + offset);
 }
+// A window's channels are computed one after the other: sums and bounds of three at once do not fit into sixteen
+// registers, and one that lies in memory costs three times the latency of each addition. at(i, j) may give all three;
+// what is not used of it is not computed.
+template <int c>
+struct Channel {
+    AA_INLINE constexpr operator int() const { return c; }
+};
+template <class R, int c>
+AA_INLINE R& part(vec3<R>& v, Channel<c>) {
+    return c == 0 ? v.x : c == 1 ? v.y : v.z;
+}
+template <class R, int c>
+AA_INLINE R part(const vec3<R>& v, Channel<c>) {
+    return c == 0 ? v.x : c == 1 ? v.y : v.z;
+}
+template <class Run>
+AA_INLINE void eachChannel(const Run& run) {
+    run(Channel<0>{}), run(Channel<1>{}), run(Channel<2>{});
+}
 template <class R>
 AA_INLINE Mask<R> all(bool value) {
     return value ? R(Elem<R>(0)) == R(Elem<R>(0)) : R(Elem<R>(0)) != R(Elem<R>(0));

@@ -16,11 +16,12 @@ AA_INLINE void unchartedPixel(const UnchartedArgs& a, int x, int y) {
     const vec3<R> history = fetchHistory(in, x, y, q);
 
     // 2. rectify
-    const Neighbours<R> window = neighbours<R>([&](int i, int j) __attribute__((always_inline)) {
+    const auto at = [&](int i, int j) __attribute__((always_inline)) {
         return load3<R>(in.color.c, o + long(j) * in.stride + i);
-    });
-    const Box<R> box = boxOf(window, a.neighbourhood);
-    const vec3<R> clipped = constrain(box, a.clipTarget, meanOf(window, a.neighbourhood), current, history);
+    };
+    const auto mean = [&]() __attribute__((always_inline)) { return meanOf(neighbourMeans<R>(at), a.neighbourhood); };
+    const Box<R> box = neighbourBox<R>(at, a.neighbourhood);
+    const vec3<R> clipped = constrain(box, a.clipTarget, mean, current, history);
 
     // 3. blend
     const R k = min(luminanceFeedback(luminance(current, a.luminance), luminance(clipped, a.luminance), a.kMin, a.kMax),
