@@ -27,7 +27,7 @@ struct Error {  // against the double form, over all frames
 };
 struct Row {
     std::string text;
-    Isa isa = Isa::v2;
+    Isa isa = bestIsa();
     Spread ns{};  // processor time per pixel
     double wallNs = 0, nsPerEdgePixel = 0;
     size_t inputBytes = 0, targetBytes = 0, stateBytes = 0;
@@ -189,7 +189,7 @@ std::vector<Exec> execsOf(const Options& o) {
     std::vector<Exec> execs = {o.work.exec()};
     if (!o.everyIsa) return execs;
     execs.clear();
-    for (const Isa isa : {Isa::v2, Isa::v3, Isa::v4})
+    for (const Isa isa : kIsas)
         if (isaSupported(isa)) execs.push_back(o.work.exec()), execs.back().isa = isa;
     return execs;
 }

@@ -15,7 +15,7 @@ namespace aa {
 void addWorkOptions(Command& command, WorkOptions& work) {
     command.option("-j,--threads", work.threads, "threads; 0 = all processors").range(0, 1024);
     command.option("--isa", work.isa, "instruction set; every one gives the same bits")
-        .oneOf({"auto", "v2", "v3", "v4"});
+        .oneOf({"auto", "v2", "v3", "v4", "neon"});
     command.option("--precision", work.precision, "fast = float lanes, scalar = float, double = the oracle")
         .oneOf({"fast", "scalar", "double"});
 }
@@ -66,7 +66,8 @@ std::shared_ptr<gpu::Session> WorkOptions::session() const {
 
 Exec WorkOptions::exec() const {
     Exec e;
-    if (isa != "auto") e.isa = isa == "v4" ? Isa::v4 : isa == "v3" ? Isa::v3 : Isa::v2;
+    for (const Isa one : kIsas)
+        if (name(one).ends_with(isa)) e.isa = one;
     if (!isaSupported(e.isa))
         throw UsageError("--isa " + isa + ": this processor lacks " + std::string(name(e.isa)) + "; leave --isa out");
     e.precision = precision == "double"   ? Precision::oracle

@@ -53,13 +53,17 @@ void* Scratch::local() { return memory_->rows.local().data(); }
 
 bool isaSupported(Isa isa) {
 #ifdef AA_SANITIZED
-    if (isa != Isa::v2) return false;  // the only one that is instrumented (CMakeLists.txt)
+    if (isa == Isa::v3 || isa == Isa::v4)
+        return false;  // only the first of a processor's is instrumented (CMakeLists.txt)
 #endif
 #ifdef AA_ONE_ISA  // what else was built (CMakeLists.txt, AA_ISAS)
 #define AA_TEXT_OF(x) #x
 #define AA_TEXT(x) AA_TEXT_OF(x)
     if (!name(isa).ends_with(AA_TEXT(AA_ONE_ISA))) return false;
 #endif
+#ifdef __aarch64__
+    return isa == Isa::neon;  // part of every such processor
+#else
     switch (isa) {
         case Isa::v4:
             return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
@@ -69,15 +73,35 @@ bool isaSupported(Isa isa) {
             return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
         case Isa::v2:
             return __builtin_cpu_supports("sse4.2");
+        case Isa::neon:
+            break;
     }
     return false;
+#endif
 }
 
 Isa bestIsa() {
-    static const Isa best = isaSupported(Isa::v4) ? Isa::v4 : isaSupported(Isa::v3) ? Isa::v3 : Isa::v2;
+    static const Isa best = [] {
+        Isa widest = kIsas[0];
+        for (const Isa isa : kIsas)
+            if (isaSupported(isa)) widest = isa;
+        return widest;
+    }();
     return best;
 }
 
-std::string_view name(Isa isa) { return isa == Isa::v4 ? "x86-64-v4" : isa == Isa::v3 ? "x86-64-v3" : "x86-64-v2"; }
+std::string_view name(Isa isa) {
+    switch (isa) {
+        case Isa::v2:
+            return "x86-64-v2";
+        case Isa::v3:
+            return "x86-64-v3";
+        case Isa::v4:
+            return "x86-64-v4";
+        case Isa::neon:
+            return "neon";
+    }
+    return "";
+}
 
 }  // namespace aa

@@ -1,7 +1,8 @@
 // Which text of a kernel runs: instruction set and precision, chosen at run time, and the scheduling of its rows.
 //
-// NAME.kernel.cpp is compiled once per instruction set (-march=x86-64-v2|v3|v4, AA_ARCH=v2|v3|v4) and exports one table
-// of RowKernels (kernels/table.h). All three instruction sets and both float precisions give the same bits.
+// NAME.kernel.cpp is compiled once per instruction set (-march=x86-64-v2|v3|v4, AA_ARCH=v2|v3|v4; on Arm AA_ARCH=neon)
+// and exports one table of RowKernels (kernels/table.h). All instruction sets and both float precisions give the same
+// bits.
 #pragma once
 #include <functional>
 #include <memory>
@@ -11,7 +12,7 @@
 
 namespace aa {
 
-bool isaSupported(Isa isa);  // whether this processor runs it
+bool isaSupported(Isa isa);  // whether this build holds it and this processor runs it
 std::string_view name(Isa isa);
 
 // Processor time of the thread that makes it and, meanwhile, of the threads to which it gives rows by parallelRows():

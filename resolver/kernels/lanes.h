@@ -2,13 +2,20 @@
 //
 // Every algorithm is a template over R: Lanes<float, W> is the product, float the portable form, double the oracle.
 // On purpose there is no include guard against a second instruction set: each kernel translation unit defines AA_ARCH
-// (v2, v3, v4) and everything here lives in that namespace, so that the linker can never merge a function compiled for
-// one instruction set into code that runs on another (tests/nm_test guards it).
+// (v2, v3, v4, neon) and everything here lives in that namespace, so that the linker can never merge a function
+// compiled for one instruction set into code that runs on another (tests/nm_test guards it).
 //
 // Same input, same bits: only +, -, *, /, sqrt, floor and comparisons are used, all exactly rounded; contraction into
 // FMA is off for the whole build; roots and powers are our own polynomials because libm differs between machines.
+//
+// Where a processor's own instruction is named, it is for speed: the text without it gives the same bits, and Arm runs
+// that wherever its compiler finds the instruction by itself.
 #pragma once
+#if defined(__x86_64__)
 #include <immintrin.h>
+#elif defined(__ARM_NEON)
+#include <arm_neon.h>
+#endif
 
 #include <cmath>
 #include <cstdint>
@@ -47,10 +54,13 @@ template <class T, int W>
 inline constexpr bool kZmm = std::is_same_v<T, float>&& W == 16;
 #endif
 
-// a < b ? a : b and a > b ? a : b: one instruction, which GCC 12 misses where an operand is constant.
+// a < b ? a : b and a > b ? a : b: one instruction, which GCC 12 misses where an operand is constant. Arm's own minimum
+// is another function: of a number and NaN it is NaN, and -0 is less than 0.
 template <class T, int W, class V = typename VecOf<T, W>::type>
 AA_INLINE V least(V a, V b) {
+#ifdef __SSE__
     if constexpr (std::is_same_v<T, float> && W == 4) return (V)_mm_min_ps((__m128)a, (__m128)b);
+#endif
 #ifdef __AVX2__
     if constexpr (std::is_same_v<T, float> && W == 8) return (V)_mm256_min_ps((__m256)a, (__m256)b);
 #endif
@@ -61,7 +71,9 @@ AA_INLINE V least(V a, V b) {
 }
 template <class T, int W, class V = typename VecOf<T, W>::type>
 AA_INLINE V greatest(V a, V b) {
+#ifdef __SSE__
     if constexpr (std::is_same_v<T, float> && W == 4) return (V)_mm_max_ps((__m128)a, (__m128)b);
+#endif
 #ifdef __AVX2__
     if constexpr (std::is_same_v<T, float> && W == 8) return (V)_mm256_max_ps((__m256)a, (__m256)b);
 #endif
@@ -179,16 +191,28 @@ requires(!std::is_same_v<M, bool>) AA_INLINE M negate(M a) { return ~a; }
 template <class R>
 AA_INLINE unsigned maskBits(Mask<R> m) {
     if constexpr (N<R> == 1) return m ? 1u : 0u;
+#ifdef __SSE__
+    else if constexpr (std::is_same_v<R, Lanes<float, 4>>)
+        return unsigned(_mm_movemask_ps((__m128)m));
+    else if constexpr (std::is_same_v<R, Lanes<double, 2>>)
+        return unsigned(_mm_movemask_pd((__m128d)m));
+#endif
 #ifdef __AVX2__
     else if constexpr (std::is_same_v<R, Lanes<float, 8>>)
         return unsigned(_mm256_movemask_ps((__m256)m));
+    else if constexpr (std::is_same_v<R, Lanes<double, 4>>)
+        return unsigned(_mm256_movemask_pd((__m256d)m));
 #endif
-#ifdef __AVX512F__
+#ifdef __AVX512DQ__
     else if constexpr (std::is_same_v<R, Lanes<float, 16>>)
         return unsigned(_mm512_movepi32_mask((__m512i)m));
+    else if constexpr (std::is_same_v<R, Lanes<double, 8>>)
+        return unsigned(_mm512_movepi64_mask((__m512i)m));
 #endif
+#ifdef __ARM_NEON
     else if constexpr (std::is_same_v<R, Lanes<float, 4>>)
-        return unsigned(_mm_movemask_ps((__m128)m));
+        return vaddvq_u32(vandq_u32((uint32x4_t)m, (uint32x4_t){1, 2, 4, 8}));
+#endif
     else {
         unsigned b = 0;
         for (int i = 0; i < N<R>; i++) b |= unsigned(m[i] & 1) << i;

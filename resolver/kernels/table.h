@@ -13,10 +13,11 @@ struct RgbOut {
     float* c[3];
 };
 
-enum class Isa { v2, v3, v4 };                  // x86-64-v2, -v3, -v4
+enum class Isa { v2, v3, v4, neon };  // x86-64-v2, -v3, -v4; 64-bit Arm's
+inline constexpr Isa kIsas[] = {Isa::v2, Isa::v3, Isa::v4, Isa::neon};
 enum class Precision { fast, scalar, oracle };  // float lanes, float, double arithmetic on float storage
 
-Isa bestIsa();  // the widest set that this processor runs
+Isa bestIsa();  // the widest set that this build holds and this processor runs
 
 // How work is executed; passed to every method, never global. The number of threads is the caller's TBB arena.
 struct Exec {
@@ -42,7 +43,7 @@ inline constexpr int kRingMargin = 16;
 
 // In a method's header: AA_KERNEL_TABLE(FxaaKernels, fxaaKernels) declares v2::, v3:: and v4::fxaaKernels and
 // aa::fxaaKernelsFor(exec). In its .kernel.cpp: AA_DEFINE_TABLE(FxaaKernels, fxaaKernels) = {AA_ROWS(fxaaRows), ...};
-// Where the build holds one instruction set alone (AA_ONE_ISA), every isa means that one.
+// Where the build holds one instruction set alone (AA_ONE_ISA), as every build for Arm does, every isa means that one.
 #ifdef AA_ONE_ISA
 #define AA_KERNEL_TABLE(Type, table)                                           \
     namespace AA_ONE_ISA {                                                     \

@@ -10,6 +10,18 @@ struct Texel {
     R a;
 };
 
+// Four pixels' worth of one channel, or one texel.
+using Four = VecOf<float, 4>::type;
+AA_INLINE Four loadFour(const float* p) { return *(const VecOf<float, 4>::unaligned*)p; }
+AA_INLINE void storeFour(Four v, float* p) { *(VecOf<float, 4>::unaligned*)p = v; }
+// Rows become columns.
+AA_INLINE void transpose(Four& a, Four& b, Four& c, Four& d) {
+    const Four ab01 = __builtin_shufflevector(a, b, 0, 4, 1, 5), ab23 = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+    const Four cd01 = __builtin_shufflevector(c, d, 0, 4, 1, 5), cd23 = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+    a = __builtin_shufflevector(ab01, cd01, 0, 1, 4, 5), b = __builtin_shufflevector(ab01, cd01, 2, 3, 6, 7);
+    c = __builtin_shufflevector(ab23, cd23, 0, 1, 4, 5), d = __builtin_shufflevector(ab23, cd23, 2, 3, 6, 7);
+}
+
 // W texels of an RGBA image at pixel offsets k[i]. One 128-bit load per texel and 4x4 transposes is four times faster
 // than planar gathers and costs the same whatever the motion.
 template <class R>
@@ -52,13 +64,10 @@ AA_INLINE Texel<R> fetchRgba(const float* p, const int* k) {
     }
 #endif
     else if constexpr (std::is_same_v<R, Lanes<float, 4>>) {
-        const __m128 t0 = _mm_loadu_ps(p + 4l * k[0]), t1 = _mm_loadu_ps(p + 4l * k[1]),
-                     t2 = _mm_loadu_ps(p + 4l * k[2]), t3 = _mm_loadu_ps(p + 4l * k[3]);
-        const __m128 xy01 = _mm_unpacklo_ps(t0, t1), xy23 = _mm_unpacklo_ps(t2, t3), zw01 = _mm_unpackhi_ps(t0, t1),
-                     zw23 = _mm_unpackhi_ps(t2, t3);
-        using V = typename R::V;
-        return {{(V)_mm_movelh_ps(xy01, xy23), (V)_mm_movehl_ps(xy23, xy01), (V)_mm_movelh_ps(zw01, zw23)},
-                (V)_mm_movehl_ps(zw23, zw01)};
+        Four x = loadFour(p + 4l * k[0]), y = loadFour(p + 4l * k[1]), z = loadFour(p + 4l * k[2]),
+             w = loadFour(p + 4l * k[3]);
+        transpose(x, y, z, w);
+        return {{x, y, z}, w};
     } else {
         Texel<R> r;
         for (int i = 0; i < N<R>; i++) {
@@ -154,13 +163,9 @@ AA_INLINE void storeRgba(vec3<R> c, R a, float* p) {
     }
 #endif
     else if constexpr (std::is_same_v<R, Lanes<float, 4>>) {
-        const __m128 x = (__m128)c.x.v, y = (__m128)c.y.v, z = (__m128)c.z.v, w = (__m128)a.v;
-        const __m128 xyl = _mm_unpacklo_ps(x, y), xyh = _mm_unpackhi_ps(x, y), zwl = _mm_unpacklo_ps(z, w),
-                     zwh = _mm_unpackhi_ps(z, w);
-        _mm_storeu_ps(p, _mm_movelh_ps(xyl, zwl));
-        _mm_storeu_ps(p + 4, _mm_movehl_ps(zwl, xyl));
-        _mm_storeu_ps(p + 8, _mm_movelh_ps(xyh, zwh));
-        _mm_storeu_ps(p + 12, _mm_movehl_ps(zwh, xyh));
+        Four t0 = c.x.v, t1 = c.y.v, t2 = c.z.v, t3 = a.v;
+        transpose(t0, t1, t2, t3);
+        storeFour(t0, p), storeFour(t1, p + 4), storeFour(t2, p + 8), storeFour(t3, p + 12);
     } else
         for (int i = 0; i < N<R>; i++) {
             p[4 * i] = float(c.x.v[i]), p[4 * i + 1] = float(c.y.v[i]), p[4 * i + 2] = float(c.z.v[i]);

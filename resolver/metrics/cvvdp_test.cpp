@@ -157,8 +157,8 @@ TEST(Cvvdp, TimeAndDistanceCount) {
 TEST(Cvvdp, SameBitsEverywhere) {
     const Formula f{301, 43, "shift", 1};  // more than one strip
     const SequenceSetting setting{.withMaps = true};
-    const Judged first = judge(f, setting, 3, {Isa::v2, Precision::scalar, false});
-    for (const Isa isa : {Isa::v2, Isa::v3, Isa::v4})
+    const Judged first = judge(f, setting, 3, {bestIsa(), Precision::scalar, false});
+    for (const Isa isa : kIsas)
         for (const bool parallel : {false, true}) {
             if (!isaSupported(isa)) continue;
             const Judged found = judge(f, setting, 3, {isa, Precision::fast, parallel});

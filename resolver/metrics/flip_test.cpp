@@ -175,8 +175,8 @@ TEST(Flip, ExtremesStayInRange) {
 TEST(Flip, SameBitsEverywhere) {
     const Rgb t = scene(203, 150, 1, 0.2f), r = scene(203, 150, 2, 0.2f);
     PlaneF first, map;
-    const double mean = flip(t, r, {Isa::v2, Precision::scalar, false}, &first);
-    for (const Isa isa : {Isa::v2, Isa::v3, Isa::v4})
+    const double mean = flip(t, r, {bestIsa(), Precision::scalar, false}, &first);
+    for (const Isa isa : kIsas)
         for (const bool parallel : {false, true}) {
             if (!isaSupported(isa)) continue;
             EXPECT_EQ(flip(t, r, {isa, Precision::fast, parallel}, &map), mean);

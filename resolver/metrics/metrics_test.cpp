@@ -195,11 +195,11 @@ TEST(Ssim, StructureCountsNotOnlyLevel) {  // the same histogram, mirrored struc
 
 TEST(Metrics, SameBitsEverywhere) {
     const Rgb t = waves(201, 150, 1, 0.1f), r = waves(201, 150, 2, 0.1f);
-    const Exec first{Isa::v2, Precision::scalar, false};
+    const Exec first{bestIsa(), Precision::scalar, false};
     PlaneF firstMap, map;
     const SquaredError e = squaredError(t, r, first);
     const double rel = relMse(t, r, first), s = ssimLuma(t, r, first, &firstMap), s3 = ssimMatlab3D(t, r, first);
-    for (const Isa isa : {Isa::v2, Isa::v3, Isa::v4})
+    for (const Isa isa : kIsas)
         for (const auto precision : {Precision::fast, Precision::scalar})
             for (const bool parallel : {false, true}) {
                 if (!isaSupported(isa)) continue;

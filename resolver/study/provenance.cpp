@@ -81,7 +81,7 @@ Machine thisMachine() {
     Machine m;
     m.processor = processorName();
     m.cores = usableCores();
-    for (const Isa isa : {Isa::v2, Isa::v3, Isa::v4})
+    for (const Isa isa : kIsas)
         if (isaSupported(isa)) m.instructionSets.emplace_back(name(isa));
     utsname system{};
     if (uname(&system) == 0) m.system = std::string(system.sysname) + " " + system.release + " " + system.machine;

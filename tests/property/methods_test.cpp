@@ -126,10 +126,9 @@ TEST_P(EveryMethod, SameBitsForThreadsInstructionSetsAndScalar) {
     for (int n = 1; n <= 4; n++) {
         frames.push_back(renderFrame(n == 3 ? noise(5) : shapes({1.3 * n, 0.4 * n}), 67, 43, n, halton(n), {1.3, 0.4},
                                      reference.samples));
-        expected.push_back(
-            step(reference, frames.back(), {.isa = Isa::v2, .precision = Precision::scalar, .parallel = false}));
+        expected.push_back(step(reference, frames.back(), {.precision = Precision::scalar, .parallel = false}));
     }
-    for (const Isa isa : {Isa::v2, Isa::v3, Isa::v4}) {
+    for (const Isa isa : kIsas) {
         if (!isaSupported(isa)) continue;
         for (const Precision precision : {Precision::fast, Precision::scalar})
             for (const bool parallel : {false, true}) {

@@ -86,7 +86,7 @@ TEST(Ssaa, FireflyIsNotClampedAndNonFiniteSamplesAreLeftOut) {
 TEST(Ssaa, EveryInstructionSetAndPrecisionGivesTheSameBits) {
     const Frame f = frameOf(37, 11, 8, noise);
     const Rgb expected = resolved(f);
-    for (const auto isa : {Isa::v2, Isa::v3, Isa::v4})
+    for (const Isa isa : kIsas)
         for (const auto precision : {Precision::fast, Precision::scalar, Precision::oracle}) {
             if (!isaSupported(isa)) continue;
             EXPECT_TRUE(resolved(f, {isa, precision, false}).samePixels(expected)) << name(isa);

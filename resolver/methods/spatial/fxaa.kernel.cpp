@@ -1,3 +1,4 @@
+#include "kernels/texels.h"
 #include "methods/spatial/fxaa_common.kernel.h"
 
 namespace AA_ARCH {
@@ -30,14 +31,12 @@ void fxaaTransposeBlocks(const FxaaTransposeArgs& a, int b0, int b1) {
         for (int y = 0; y < a.height; y += 4)
             for (int x = x0; x < x0 + 16; x += 4) {
                 const float* const p = a.from + long(y) * a.fromStride + x;
-                __m128 r0 = _mm_loadu_ps(p), r1 = _mm_loadu_ps(p + a.fromStride),
-                       r2 = _mm_loadu_ps(p + 2l * a.fromStride), r3 = _mm_loadu_ps(p + 3l * a.fromStride);
-                _MM_TRANSPOSE4_PS(r0, r1, r2, r3);
+                Four r0 = loadFour(p), r1 = loadFour(p + a.fromStride), r2 = loadFour(p + 2l * a.fromStride),
+                     r3 = loadFour(p + 3l * a.fromStride);
+                transpose(r0, r1, r2, r3);
                 float* const q = a.to + long(x) * a.toStride + y;
-                _mm_storeu_ps(q, r0);
-                _mm_storeu_ps(q + a.toStride, r1);
-                _mm_storeu_ps(q + 2l * a.toStride, r2);
-                _mm_storeu_ps(q + 3l * a.toStride, r3);
+                storeFour(r0, q), storeFour(r1, q + a.toStride);
+                storeFour(r2, q + 2l * a.toStride), storeFour(r3, q + 3l * a.toStride);
             }
 }
 }  // namespace AA_ARCH

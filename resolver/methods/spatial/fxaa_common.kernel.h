@@ -11,13 +11,10 @@ using namespace aa;
 
 #ifdef __AVX512DQ__
 inline constexpr int kWide = 8;
-AA_INLINE unsigned signBits(Lanes<double, kWide>::V v) { return _mm512_movepi64_mask((__m512i)v); }
 #elif defined(__AVX2__)
 inline constexpr int kWide = 4;
-AA_INLINE unsigned signBits(Lanes<double, kWide>::V v) { return unsigned(_mm256_movemask_pd((__m256d)v)); }
 #else
 inline constexpr int kWide = 2;
-AA_INLINE unsigned signBits(Lanes<double, kWide>::V v) { return unsigned(_mm_movemask_pd((__m128d)v)); }
 #endif
 using Wide = Lanes<double, kWide>;  // one register of doubles
 AA_INLINE Wide loadWide(const float* p) {
@@ -29,7 +26,6 @@ AA_INLINE Wide loadWide(const float* p) {
     __builtin_memcpy(&f, p, sizeof f);
     return __builtin_convertvector(f, Wide::V);
 }
-AA_INLINE unsigned maskOf(Mask<Wide> m) { return signBits((Wide::V)m); }
 
 struct Neighbourhood {
     double m, n, s, w, e, nw, ne, sw, se;
@@ -72,7 +68,7 @@ AA_INLINE void classify(const float* l, long s, Classes& to, int at) {
                    nw = loadWide(p - s - 1), ne = loadWide(p - s + 1), sw = loadWide(p + s - 1),
                    se = loadWide(p + s + 1);
         const auto horizontal = runsHorizontally(m, n, so, w, e, nw, ne, sw, se);
-        to.horizontal |= uint64_t(maskOf(horizontal)) << (at + i);
+        to.horizontal |= uint64_t(maskBits<Wide>(horizontal)) << (at + i);
         store(abs(select(horizontal, n, w) - m), to.negativeStep + at + i);
         store(abs(select(horizontal, so, e) - m), to.positiveStep + at + i);
         const Wide range = max(max(max(n, so), max(w, e)), m) - min(min(min(n, so), min(w, e)), m);
@@ -110,8 +106,8 @@ AA_INLINE unsigned ended(const EdgeLine& line, const float* own, const float* si
         Mask<Wide> lane;
         for (int k = 0; k < kWide; k++) lane[k] = 1ll << (i + k);
         const Wide e = select((lane & (long long)half) != 0, far, near) + near - middle;
-        bits |= maskOf(abs(e) >= threshold) << i;
-        below |= maskOf(e < Wide(0.0)) << i;
+        bits |= maskBits<Wide>(abs(e) >= threshold) << i;
+        below |= maskBits<Wide>(e < Wide(0.0)) << i;
 #endif
     }
     return bits;

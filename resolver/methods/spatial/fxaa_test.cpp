@@ -71,7 +71,7 @@ TEST(Fxaa311, ConformsToTheReferenceControlFlow) {
 TEST(Fxaa311, PrecisionsAndInstructionSetsAgree) {
     const Frame frame = frameOf(randomShapes(133, 77, 3));
     const Rgb fast = resolveOnce("fxaa311:preset=39", frame);
-    for (const Isa isa : {Isa::v2, Isa::v3, Isa::v4}) {
+    for (const Isa isa : kIsas) {
         if (!isaSupported(isa)) continue;
         EXPECT_TRUE(fast.samePixels(resolveOnce("fxaa311:preset=39", frame, execOf(Precision::fast, isa))));
         EXPECT_TRUE(fast.samePixels(resolveOnce("fxaa311:preset=39", frame, execOf(Precision::scalar, isa))));

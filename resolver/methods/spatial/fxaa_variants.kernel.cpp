@@ -85,7 +85,8 @@ __attribute__((flatten)) void fxaa1Rows(const Fxaa1Args& a, int y0, int y1) {
 
 AA_INLINE void fxaaCsPixel(const FxaaCsArgs& a, int x, int y, int i, const Classes& classes) {
     const double contrast = smooth(classes.contrast[i]);
-    const int code = int(floor(254 * saturate(contrast * contrast * a.subpix * 2))) & ~1;  // 7 bits in the queue
+    const double share = min(max(0.0, contrast * contrast * a.subpix * 2), 1.0);  // NaN: 0
+    const int code = int(floor(254 * share)) & ~1;                                // 7 bits in the queue
     const double subShift = code * (0.5 / 254);
     const bool horizontal = classes.horizontal >> i & 1;
     const double negativeStep = classes.negativeStep[i], positiveStep = classes.positiveStep[i];

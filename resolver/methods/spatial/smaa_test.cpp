@@ -191,7 +191,7 @@ TEST(Smaa1x, PrecisionsAndInstructionSetsAgree) {
     const Frame frame = frameOf(randomShapes(133, 77, 3));
     for (const std::string spec : {"smaa1x:preset=ULTRA", "smaa1x:preset=ULTRA,edges=colour,areas=table"}) {
         const Rgb fast = resolveOnce(spec, frame);
-        for (const Isa isa : {Isa::v2, Isa::v3, Isa::v4}) {
+        for (const Isa isa : kIsas) {
             if (!isaSupported(isa)) continue;
             EXPECT_TRUE(fast.samePixels(resolveOnce(spec, frame, execOf(Precision::fast, isa))));
             EXPECT_TRUE(fast.samePixels(resolveOnce(spec, frame, execOf(Precision::scalar, isa))));

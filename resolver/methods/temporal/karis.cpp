@@ -58,7 +58,7 @@ class Karis : public Method {
     static const PqTables& pqTables() {
         static const auto tables = [] {
             auto t = std::make_unique<PqTables>();
-            karisKernelsFor(Exec{.isa = Isa::v2}).fillPqTables(*t);
+            karisKernelsFor(Exec{.precision = Precision::oracle}).fillPqTables(*t);
             return t;
         }();
         return *tables;
