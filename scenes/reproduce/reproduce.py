@@ -362,6 +362,8 @@ def write_pages(
     if speed:
         speed.write(docs / "speed.md")
         index.append("[speed.md](speed.md): ns per pixel, memory, and the fast form against double")
+    if (docs / "whole-run.md").exists():  # of tests/bench/whole_run.py
+        index.append("[whole-run.md](whole-run.md): what a run of 20 methods costs")
     if (docs / "stability.md").exists():  # of `make docs`
         index.append(
             "[stability.md](stability.md): the accuracy that speed costs, of every method at its defaults"
