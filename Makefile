@@ -15,7 +15,7 @@ space := $() $()
 # A compiler cache is used where there is one.
 LAUNCHER := $(if $(shell command -v ccache 2>/dev/null),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache,)
 
-.PHONY: help deps configure build program install demo test test-addon test-blenders blender-facts blenders-clean fuzz sanitize bench asserts addon bundle deb test-bundle docs bits reproduce farm test-farm format clean
+.PHONY: help deps configure build program install demo test test-addon test-blenders blender-facts blenders-clean fuzz sanitize bench asserts addon bundle deb test-bundle docs bits reproduce speed farm test-farm format clean
 help:
 	@echo "make demo       build, render two scenes in Blender, run the methods, make contact sheets and reports"
 	@echo "make test       build and run every test"
@@ -25,6 +25,8 @@ help:
 	@echo "make bundle     the program with its libraries, build/aaresolve-*.tar.gz, and the add-on with it, build/aa_resolve-linux-x64.zip"
 	@echo "make deb        Debian packages of the program; docs/install.md says who takes which file"
 	@echo "make bench      speed of every method, ns per pixel, and of the exporter, CPU seconds"
+	@echo "make speed      every method in every instruction set of this machine: docs/results/speed.json and .md"
+	@echo "                wants a quiet machine, keeps what is measured, PIECES=4: so many measurements now"
 	@echo "make reproduce  render the study's scenes, run every method on each, hold them against the published"
 	@echo "                tables, write docs/results; QUICK=1: a short form, FULL=1: published sizes, ONLY=oliveros-5.8: one table, ONLY=list"
 	@echo "make farm       a small study of scenes x frames x methods as a Snakemake workflow, two jobs at once, to"
@@ -95,6 +97,7 @@ bench: build
 	@$(BUILD)/tests/benchmarks --benchmark_min_time=0.2
 	@$(BLENDER) -b --factory-startup --python-exit-code 9 -P tests/bench/exporter_bench.py
 	@$(BLENDER) -b --factory-startup --python-exit-code 9 -P tests/bench/exporter_bench.py -- --animated
+	@$(BLENDER) -b --factory-startup --python-exit-code 9 -P tests/bench/exporter_stages.py
 
 # For every system; and for Linux with the program in it, where `make bundle` has made that.
 BUNDLES = $(wildcard $(BUILD)/bundle/aaresolve-*)
@@ -118,14 +121,17 @@ test-bundle: bundle
 	@CI_PACKAGES=mmdebstrap .ci/bootstrap || true
 	@python3 tests/bundle/run.py $(BUILD)
 
-# Generated: the page of methods and the add-on's copy of the registry, the tables of precision, memory and stability.
+# Generated: the page of methods and the add-on's copy of the registry, the tables of precision, memory and stability; and
+# the pages of what was measured, from their files.
 docs: program
+	@python3 scenes/reproduce/speed.py --page-only docs/results
 	@python3 blender_addon/write_scenes_page.py
 	@$(BUILD)/aaresolve list --markdown > docs/methods.md
 	@python3 resolver/metrics/write_page.py $(BUILD)/aaresolve docs/metrics.md
 	@$(BUILD)/aaresolve list --json > blender_addon/aa_resolve/methods.json
 	@$(BUILD)/aaresolve bench -m temporal --markdown --size 480x270 --frames 8 --repeats 1 --threads 1 > docs/precision.md
-	@$(BUILD)/aaresolve stability -q --markdown > docs/results/stability.md
+	@$(BUILD)/aaresolve stability -q --markdown >$(BUILD)/stability.md
+	@python3 tests/gpu/keep_columns.py docs/results/stability.md <$(BUILD)/stability.md
 
 # After a change of a method's pixels that was meant: what every build must give from now on.
 bits: program
@@ -135,6 +141,11 @@ bits: program
 # ONLY=list shows the names and what is missing.
 reproduce: program
 	@python3 scenes/reproduce/reproduce.py $(BUILD)/aaresolve build/reproduce docs/results $(if $(QUICK),--quick) $(if $(FULL),--full) $(if $(filter list,$(ONLY)),--list,$(if $(ONLY),--only $(ONLY)))
+
+# What is measured is kept until the program changes.
+PIECES ?=
+speed: program
+	@python3 scenes/reproduce/speed.py $(BUILD)/aaresolve $(BUILD)/speed docs/results $(if $(PIECES),--pieces $(PIECES))
 
 # Only these need Snakemake and Slurm. What is finished is kept.
 STUDY ?=

@@ -107,12 +107,6 @@ SHOTS = _shots(
     Shot("wires", "wires", frames=24, quick_frames=12, **MOVING),
     Shot("synth_moving", "synth:moving", f"{SPATIAL} {TEMPORAL}", frames=40, quick_frames=24),
     Shot("synth_thin_motion", "synth:thin_motion", f"{SPATIAL} {TEMPORAL}", frames=40, quick_frames=24),
-    # For timing alone.
-    Shot(
-        "moving_sphere_1080p", "moving_sphere",
-        f"{SPATIAL} {EDGES} {SUBSAMPLES} rsaa {TEMPORAL} asaa t2msaa smaaT2x", pattern="d3d8", frames=3, quick_frames=2,
-        passes="normal,object", size=(1920, 1080), truth=False,
-    ),
 )  # fmt: skip
 
 # What each step of the protocol of [Oliveros 2018] (scenes/experiments/protocols.toml) does to these methods on hard_edges.

@@ -29,7 +29,6 @@ from catalogue import (
 )  # fmt: skip
 from figures import Run, number
 from page import Page
-from runs import bench as times
 from runs import run_methods
 from shots import ROOT, Shot, Workshop, is_ready, make, spent_before
 
@@ -186,17 +185,6 @@ save(small, sys.argv[2])
 """
 
 
-def bench(shop: Workshop, runs: dict[str, Run]) -> Page:
-    """Times on one thread: at 1080p on a scene that moves, in the short form on small frames that are there anyway."""
-    shot = SHOTS["hard_edges" if shop.form == "quick" else "moving_sphere_1080p"]
-    rows = times(make(SHOTS, shot, shop), methods_of(shot, shop), shop)
-    where = f"{shot.size[0]} × {shot.size[1]}, rendered frames of {shot.scene}"
-    if runs:
-        made = next(iter(runs.values())).data["run"]
-        where += f", {made['machine']} ({made['instructionSet']})"
-    return studies.speed_page(list(rows.values()), where, shot.size)
-
-
 def angles(shop: Workshop) -> Page | None:
     """Half-planes of every direction, where the program has the command for it."""
     if "angles" not in shop.run("help", [shop.program, "--help"]):
@@ -339,9 +327,7 @@ def write_tables(
     return index
 
 
-def write_pages(
-    study: studies.Study, speed: Page | None, by_angle: Page | None, docs: Path
-) -> list[str]:
+def write_pages(study: studies.Study, by_angle: Page | None, docs: Path) -> list[str]:
     """Every page whose runs are there; returns the index's lines."""
     runs = study.runs
     wanted = [
@@ -359,9 +345,10 @@ def write_pages(
     if by_angle:
         by_angle.write(docs / "angles.md")
         index.append("[angles.md](angles.md): gain on straight edges by their direction")
-    if speed:
-        speed.write(docs / "speed.md")
-        index.append("[speed.md](speed.md): ns per pixel, memory, and the fast form against double")
+    if (docs / "speed.md").exists():  # of `make speed`
+        index.append(
+            "[speed.md](speed.md): ns per pixel in every instruction set, memory, and the fast form against double"
+        )
     if (docs / "whole-run.md").exists():  # of tests/bench/whole_run.py
         index.append("[whole-run.md](whole-run.md): what a run of 20 methods costs")
     if (docs / "stability.md").exists():  # of `make docs`
@@ -398,7 +385,6 @@ def main(argv: list[str]) -> int:
         "--list", action="store_true", help="the names that --only takes, and what is missing"
     )
     parser.add_argument("--blender", default=os.environ.get("BLENDER", "blender"))
-    parser.add_argument("--no-bench", action="store_true", help="leave the timing out")
     a = parser.parse_args(argv)
     started = time.monotonic()
     try:
@@ -448,8 +434,7 @@ def main(argv: list[str]) -> int:
         for file in sorted(docs.glob("*.md")):
             print(file)
         return 0
-    speed = None if a.no_bench else bench(shop, runs)
-    index += write_pages(study, speed, angles(shop), docs)
+    index += write_pages(study, angles(shop), docs)
     write_index(study, index, a.form, docs)
     print(f"{docs / 'README.md'}: {len(index)} pages, {time.monotonic() - started:.0f} s")
     return 0

@@ -533,7 +533,7 @@ def _against_the_talk(run: Run, by_s: dict[int, Run], talk: dict[str, float]) ->
     return answers
 
 
-# --- 4 to 6: angles, speed, published -------------------------------------------------------------------------------
+# --- 4, 5: angles, published -------------------------------------------------------------------------------------
 
 
 def angles_page(study: dict) -> Page:
@@ -558,28 +558,6 @@ def angles_page(study: dict) -> Page:
     page.table(
         ["method", "gain, dB", "least", "most", "mirrored, dB", "turned, dB", "sub-samples"], rows
     )
-    return page
-
-
-def speed_page(rows: list[dict], where: str, size: tuple[int, int]) -> Page:
-    page = Page("Speed, memory, and the error of the fast form")
-    page.say(
-        f"One thread, {where}. ns per pixel: median and minimum over the frames. Kept: history and working memory at this",
-        "size. Error: the fast form (float lanes) against the same method in double, over all pixels and frames.",
-    )
-    shares = [number(r["edgeShare"]) for r in rows if r.get("edgeShare") is not None]
-    by_edge = bool(shares)
-    if by_edge:
-        page.say(
-            f"{100 * max(shares):.0f} % of the pixels lie at an edge; ns per edge pixel spreads a method's time over these alone."
-        )
-    page.table(
-        ["method", "ns/px", "min", *(["per edge pixel"] if by_edge else []), "ms per frame", "kept, MB", "max error", "rms error"],
-        [[code(r["method"]), f"{r['nsPerPixel']:.1f}", f"{r['nsPerPixelMin']:.1f}",
-          *([_figure(number(r.get("nsPerEdgePixel")))] if by_edge else []), f"{r['nsPerPixel'] * size[0] * size[1] * 1e-6:.1f}",
-          f"{r['stateBytes'] / 2**20:.1f}", f"{r['maxError']:.2g}", f"{r['rmsError']:.2g}"]
-         for r in sorted(rows, key=lambda r: r["nsPerPixel"])],
-    )  # fmt: skip
     return page
 
 

@@ -52,7 +52,9 @@ def main() -> None:
     words = ["--out", "unused", "--frames", "2-3", "--passes", PASSES, "--subsamples", "d3d8"]
     words += ["--resolution", options.resolution, "--truth-frames", "none"]
     scene, progress = bpy.context.scene, Progress(False)
-    exporter = Exporter(scene, settings_from(build_parser().parse_args(words), scene), progress, "bench")
+    exporter = Exporter(
+        scene, settings_from(build_parser().parse_args(words), scene), progress, "bench"
+    )
     exporter.prepare()
     exposure.time = types.SimpleNamespace(perf_counter=time.process_time)
     file = os.path.join(bpy.app.tempdir, "frame.exr")
@@ -82,7 +84,10 @@ def main() -> None:
             back()
     base = medians(spent["as it is"])
     whole = sum(base.values())
-    progress.say("bench", f"{triangles} triangles, {options.resolution}, {options.rounds} rounds, median CPU s of a frame")
+    progress.say(
+        "bench",
+        f"{triangles} triangles, {options.resolution}, {options.rounds} rounds, median CPU s of a frame",
+    )
     for stage, seconds in sorted(base.items(), key=lambda s: -s[1]):
         progress.say("bench", f"{stage:16s} {seconds:7.3f} s {100 * seconds / whole:5.1f} %")
     for name, rounds in spent.items():
