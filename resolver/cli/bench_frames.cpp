@@ -53,6 +53,7 @@ Frames synthFrames(const BenchFrames& o, const std::vector<MethodSpec>& methods,
 double edgeShare(const std::vector<Frame>& frames) {
     double edges = 0, pixels = 0;
     for (const auto& f : frames) {
+        if (f.colorEncoded.empty()) continue;  // of a shot of sub-samples alone
         const auto luma = [&](int x, int y) {
             const auto& c = f.colorEncoded.c;
             return 0.2126f * c[0].at(x, y) + 0.7152f * c[1].at(x, y) + 0.0722f * c[2].at(x, y);

@@ -78,6 +78,10 @@ class Choosing(ProgramTest):
         timed = json.loads(self.aaresolve("bench", "-m", "noaa,fxaa311", *size, "--json").stdout)
         self.assertEqual([r["method"] for r in timed["methods"]], ["noaa", "fxaa311"])
         self.aaresolve("bench", "-m", "runnable:spatial", "--shot", shot, "--repeats", "1")
+        samples = self.folder / "samples"  # without a colour of whole pixels
+        pattern = ("--subsamples", "d3d4", "--subsample-color")
+        self.synth("moving", samples, (48, 32), 2, *pattern, "--for", "smaa4x")
+        self.aaresolve("bench", "-m", "smaa4x", "--shot", samples, "--repeats", "1")
         small = ("--size", "24x24", "--angles", "4", "--offsets", "1", "--json")
         study = json.loads(self.aaresolve("angles", "-m", "noaa,mlaa", *small).stdout)
         self.assertEqual([m["text"] for m in study["methods"]], ["noaa", "mlaa"])
