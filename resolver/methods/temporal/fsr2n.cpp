@@ -10,7 +10,7 @@
 namespace aa {
 namespace {
 
-constexpr int kRowsPerCall = 32;  // each converts two rows of its neighbours again
+constexpr int kFsr2nRowsPerCall = 32;  // each converts two rows of its neighbours again
 
 double lanczos2(double x) {
     if (x >= 2) return 0;
@@ -65,7 +65,7 @@ class Fsr2n : public Method {
             args.debugDepthClip = fitted(depthClip_, frame.width, frame.height).row(0);
             args.debugLock = fitted(lock_, frame.width, frame.height).row(0);
         }
-        temporal::runTemporal(kernels.resolve, exec, args, kRowsPerCall, kFsr2nScratchRows);
+        temporal::runTemporal(kernels.resolve, exec, args, kFsr2nRowsPerCall, kFsr2nScratchRows);
         history_.end({}, exec);
     }
     size_t stateBytes() const override { return history_.bytes() + nearest_.bytes(); }
