@@ -1,6 +1,7 @@
 """Lets clang read every source of the program, as CMake would compile it: a second compiler's errors and warnings.
 
-python3 .ci/clang.py build [-j N]      after `make configure`; nothing is compiled
+python3 .ci/clang.py build/apart [-j N]      after `cmake --preset release -B build/apart -DAA_TOGETHER=OFF`; nothing
+                                             is compiled
 
 Kernels are read for the widest instruction set, the texts of the others being the same. Tests are not read.
 """

@@ -12,7 +12,7 @@
 namespace aa {
 namespace {
 constexpr int kLeastSizePx = 16, kMostSizePx = 4096;
-struct Options {
+struct AnglesArguments {
     std::vector<std::string> methods;
     std::string out;
     AngleStudyOptions study;
@@ -42,7 +42,7 @@ void printTable(const AngleStudy& s) {
         "mirrored, turned: largest difference of the gain between an edge and its mirror image or quarter turn\n");
 }
 
-void execute(Options& o) {
+void execute(AnglesArguments& o) {
     o.study.methods = chosen(o.methods);
     const auto [width, height] = sizeOf("--size", o.size);
     if (width != height || width < kLeastSizePx || width > kMostSizePx)
@@ -67,7 +67,7 @@ void execute(Options& o) {
 }  // namespace
 
 void addAngles(CommandLine& line, Context&) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<AnglesArguments>();
     Command c = line.command("angles", "What methods gain on a straight edge, by its direction");
     addMethodOption(c, o->methods, "a method", false).required();
     c.option("-o,--out", o->out,

@@ -14,28 +14,28 @@ namespace {
 
 constexpr int kWarmUp = 12;  // frames: pipelines are made, clocks rise
 
-struct Pass {
+struct PassCost {
     std::string shader;
     std::vector<double> seconds;
     size_t bytesRead = 0, bytesWritten = 0;
 };
-struct Row {
+struct DeviceRow {
     std::string text;
     int width = 0, height = 0;
-    std::vector<Pass> passes;
+    std::vector<PassCost> passes;
     Spread total;  // s per frame
     size_t stateBytes = 0;
     double pixels() const { return double(width) * height; }
     double bytes() const {
         double sum = 0;
-        for (const Pass& p : passes) sum += double(p.bytesRead + p.bytesWritten);
+        for (const PassCost& p : passes) sum += double(p.bytesRead + p.bytesWritten);
         return sum;
     }
     double bytesPerSecond() const { return bytes() / total.median; }
 };
 
-Row time(const MethodSpec& spec, const Frames& all, gpu::Session& session, int runs) {
-    Row row;
+DeviceRow time(const MethodSpec& spec, const Frames& all, gpu::Session& session, int runs) {
+    DeviceRow row;
     row.text = spec.text, row.width = all.info.width, row.height = all.info.height;
     const std::vector<Frame>& frames = all.of(spec);
     const auto method = gpu::create(session, spec, all.info);
@@ -51,7 +51,7 @@ Row time(const MethodSpec& spec, const Frames& all, gpu::Session& session, int r
         double total = 0;
         row.passes.resize(std::max(row.passes.size(), times.size()));
         for (size_t i = 0; i < times.size(); i++) {
-            Pass& p = row.passes[i];
+            PassCost& p = row.passes[i];
             p.shader = times[i].shader, p.bytesRead = times[i].bytesRead, p.bytesWritten = times[i].bytesWritten;
             p.seconds.push_back(times[i].seconds);
             total += times[i].seconds;
@@ -71,16 +71,16 @@ void printHead(const gpu::Session& session, const BenchOptions& o) {
     std::printf("%-28s %10s %9s %17s %9s %9s %7s %9s  %s\n", "method", "size", "ms", "quartiles", "B/px read",
                 "written", "GB/s", "of copy", "state MB");
 }
-void print(const Row& r, double copyRate) {
+void print(const DeviceRow& r, double copyRate) {
     double read = 0, written = 0;
-    for (const Pass& p : r.passes) read += double(p.bytesRead), written += double(p.bytesWritten);
+    for (const PassCost& p : r.passes) read += double(p.bytesRead), written += double(p.bytesWritten);
     char size[32];
     std::snprintf(size, sizeof size, "%dx%d", r.width, r.height);
     std::printf("%-28s %10s %9.4f %8.4f %8.4f %9.1f %9.1f %7.0f %8.0f%%  %.1f\n", r.text.c_str(), size,
                 1e3 * r.total.median, 1e3 * r.total.low, 1e3 * r.total.high, read / r.pixels(), written / r.pixels(),
                 1e-9 * r.bytesPerSecond(), 100 * r.bytesPerSecond() / copyRate, double(r.stateBytes) / (1 << 20));
     if (r.passes.size() > 1)
-        for (const Pass& p : r.passes)
+        for (const PassCost& p : r.passes)
             std::printf("    %-35s %9.4f\n", p.shader.c_str(), 1e3 * spreadOf(p.seconds).median);
     std::fflush(stdout);
 }
@@ -90,9 +90,9 @@ nlohmann::ordered_json json(const Spread& s) {
             {"highQuartileMs", 1e3 * s.high},
             {"minMs", 1e3 * s.least}};
 }
-nlohmann::ordered_json json(const Row& r, double copyRate) {
+nlohmann::ordered_json json(const DeviceRow& r, double copyRate) {
     nlohmann::ordered_json j = {{"method", r.text}, {"size", {r.width, r.height}}, {"time", json(r.total)}};
-    for (const Pass& p : r.passes)
+    for (const PassCost& p : r.passes)
         j["passes"].push_back({{"shader", p.shader},
                                {"time", json(spreadOf(p.seconds))},
                                {"bytesReadPerPixel", double(p.bytesRead) / r.pixels()},
@@ -127,7 +127,7 @@ void benchDevice(const BenchOptions& o, const std::vector<MethodSpec>& methods) 
         };
         copyRate = run(copy).bytesPerSecond();
         for (const MethodSpec& spec : methods) {
-            const Row row = run(spec);
+            const DeviceRow row = run(spec);
             if (!o.json) print(row, copyRate);
             all["rows"].push_back(json(row, copyRate));
         }

@@ -25,7 +25,7 @@ namespace aa {
 namespace {
 namespace fs = std::filesystem;
 
-struct Options {
+struct CompareArguments {
     std::string a, b, pair = "auto", map, mapOf, region, layer, display = "srgb", nonFinite = "sanitise";
     std::vector<std::string> metrics = {"mse", "psnr", "ssimLuma"}, thresholds;
     double exposure = 0;
@@ -38,7 +38,7 @@ struct Threshold {
     const Figure* figure;
     double limit;
 };
-std::vector<Threshold> thresholdsOf(const Options& o) {
+std::vector<Threshold> thresholdsOf(const CompareArguments& o) {
     std::vector<Threshold> all;
     for (const auto& text : o.thresholds) {
         const size_t equals = text.find('=');
@@ -83,7 +83,7 @@ uint64_t alphaDiffers(const LoadedImage& a, const LoadedImage& b) {
         for (int x = 0; x < a.rgb.width(); x++) count += at(a, x, y) != at(b, x, y);
     return count;
 }
-LoadedImage load(const fs::path& file, const Options& o) {
+LoadedImage load(const fs::path& file, const CompareArguments& o) {
     const InputPolicy policy = inputPolicyByName(o.nonFinite);
     // Replaced values would have to be told from others below, where they count as the largest difference.
     LoadedImage image =
@@ -91,7 +91,7 @@ LoadedImage load(const fs::path& file, const Options& o) {
     showDisplayWindow(image, file);
     return image;
 }
-Both loadBoth(const FramePair& pair, const Options& o, const Exec& exec) {
+Both loadBoth(const FramePair& pair, const CompareArguments& o, const Exec& exec) {
     LoadedImage a = load(pair.a, o), b = load(pair.b, o);
     if (!o.layer.empty() && !isExr(pair.a) && !isExr(pair.b))
         throw UsageError("--layer: neither " + pair.a.string() + " nor " + pair.b.string() + " is an EXR");
@@ -227,7 +227,7 @@ nlohmann::ordered_json numbers(const FrameMetrics& m, const std::vector<const Fi
     return j;
 }
 
-void compare(const Options& o, Context& context) {
+void compare(const CompareArguments& o, Context& context) {
     const Exec exec = o.work.exec();
     const auto thresholds = thresholdsOf(o);
     std::vector<const Figure*> figures;
@@ -374,7 +374,7 @@ void compare(const Options& o, Context& context) {
 }  // namespace
 
 void addCompare(CommandLine& line, Context& context) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<CompareArguments>();
     Command c = line.command("compare", "Metrics of two images or of two folders of frames; B is the reference");
     c.option("A", o->a, "PNG (sRGB codes), EXR (linear), or a folder of frames").required();
     c.option("B", o->b, "the reference, of the same size or with the same frames").required();

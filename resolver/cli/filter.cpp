@@ -11,7 +11,7 @@
 
 namespace aa {
 namespace {
-struct Options {
+struct FilterArguments {
     std::string method, in, out, debugLayers, layer, display = "srgb", nonFinite = "sanitise";
     bool dither = false;
     WorkOptions work;
@@ -38,7 +38,7 @@ Frame frameOf(const LoadedImage& image, const DisplayChain& display, const Exec&
 
 // A PNG's colours are straight, an EXR's multiplied by alpha: what goes from one to the other would need colours that
 // a clear pixel has not.
-void requireAlphaKept(const Options& o, const LoadedImage& image, bool toPng) {
+void requireAlphaKept(const FilterArguments& o, const LoadedImage& image, bool toPng) {
     if (toPng == (image.space == FileSpace::encoded) || image.isOpaque()) return;
     throw InputError(o.in + ": has alpha that is not 1 everywhere, which " +
                      (toPng
@@ -48,7 +48,7 @@ void requireAlphaKept(const Options& o, const LoadedImage& image, bool toPng) {
                             "picture over a background first"));
 }
 // Layer, what the policy met, and what a method of displayed colours cuts off. On stdout, each a line.
-void sayWhatWasRead(const Options& o, const MethodSpec& spec, const LoadedImage& image, const Frame& frame,
+void sayWhatWasRead(const FilterArguments& o, const MethodSpec& spec, const LoadedImage& image, const Frame& frame,
                     const RunningMethod& running) {
     if (!image.layer.empty()) std::printf("layer '%s' of %s\n", image.layer.c_str(), o.in.c_str());
     if (const std::string found = inWords(image.counts); !found.empty())
@@ -63,7 +63,7 @@ void sayWhatWasRead(const Options& o, const MethodSpec& spec, const LoadedImage&
                     std::string(spec.method->id).c_str(), clipped);
 }
 
-void filter(const Options& o) {
+void filter(const FilterArguments& o) {
     if (splitMethods(o.method).size() > 1 || isMethodSet(o.method))
         throw UsageError("filter: expected one method, found '" + o.method + "'");
     const MethodSpec spec = parseMethod(o.method);
@@ -118,7 +118,7 @@ void filter(const Options& o) {
 }  // namespace
 
 void addFilter(CommandLine& line, Context&) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<FilterArguments>();
     Command c = line.command("filter", "One image through one spatial method; PNG = 8-bit sRGB codes, EXR = linear");
     c.option("METHOD", o->method, "for example smaa1x:preset=HIGH").required().typeName("METHOD");
     c.option("IN", o->in, "PNG or EXR").required().typeName("FILE");

@@ -12,7 +12,7 @@
 
 namespace aa {
 namespace {
-struct Options {
+struct GateArguments {
     std::string base, now, junit;
     std::vector<std::string> tolerances;
     bool allowMissing = false, json = false, all = false;
@@ -43,7 +43,7 @@ void print(const GateReport& report, bool all) {
                 report.count(Verdict::added));
 }
 
-void execute(const Options& o, Context& context) {
+void execute(const GateArguments& o, Context& context) {
     GateOptions options;
     options.allowMissing = o.allowMissing;
     for (const auto& text : o.tolerances) addTolerance(options, text);
@@ -58,7 +58,7 @@ void execute(const Options& o, Context& context) {
 }  // namespace
 
 void addGate(CommandLine& line, Context& context) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<GateArguments>();
     Command c = line.command("gate", "Exit 1 when a run is worse than an earlier one of the same methods and frames");
     c.option("BASE", o->base, "the earlier run: its folder, or its results.json under any name")
         .required()

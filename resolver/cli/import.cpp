@@ -17,7 +17,7 @@
 
 namespace aa {
 namespace {
-struct Options {
+struct ImportArguments {
     ImportOptions import;
     std::string from, out, layout, jitter = "none", camera;
     std::vector<std::string> truth;
@@ -42,7 +42,7 @@ std::string familiesThatNeed(Pass pass) {
     return s;
 }
 
-void print(const ImportReport& r, const Options& o) {
+void print(const ImportReport& r, const ImportArguments& o) {
     for (const auto& m : r.missing) {
         const std::string families = familiesThatNeed(m.pass);
         std::printf("no %s (%s): %s\n", std::string(name(m.pass)).c_str(), m.advice.c_str(),
@@ -67,7 +67,7 @@ nlohmann::ordered_json toJson(const ImportReport& r) {
     return j;
 }
 
-int import(Options& o) {
+int import(ImportArguments& o) {
     o.import.from = o.from;
     o.import.out = o.out;
     o.import.jitter = o.jitter == "none" ? "" : o.jitter;
@@ -105,7 +105,7 @@ int import(Options& o) {
 }  // namespace
 
 void addImport(CommandLine& line, Context& context) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<ImportArguments>();
     Command c =
         line.command("import", "A folder of Blender's own multilayer EXRs, or of an engine's frames, to a shot");
     c.option("DIR", o->from,

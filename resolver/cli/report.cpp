@@ -11,7 +11,7 @@
 namespace aa {
 namespace {
 namespace fs = std::filesystem;
-struct Options {
+struct ReportArguments {
     std::vector<std::string> runs;
     std::string out, embed = "full";
     double limitMb = double(EmbedOptions().limitBytes) / 1e6;
@@ -25,8 +25,8 @@ std::string framesInWords(const std::vector<int>& frames) {
 }
 
 // Of several runs: methods over scenes.
-void writeSummary(const Options& o) {
-    if (const Options none; o.embed != none.embed || o.limitMb != none.limitMb || o.hdr)
+void writeSummary(const ReportArguments& o) {
+    if (const ReportArguments none; o.embed != none.embed || o.limitMb != none.limitMb || o.hdr)
         throw UsageError(
             "report: --embed, --embed-limit and --hdr have no effect on several runs, whose page has no "
             "pictures");
@@ -43,7 +43,7 @@ void writeSummary(const Options& o) {
     std::printf("%s\n", out.c_str());
 }
 
-void writeReport(const Options& o) {
+void writeReport(const ReportArguments& o) {
     const Exec exec = o.work.exec();
     const std::string& given = o.runs[0];
     if (const fs::path folder = given; !fs::exists(folder / "results.json") && fs::exists(folder / "angles.json"))
@@ -76,7 +76,7 @@ void writeReport(const Options& o) {
 }  // namespace
 
 void addReport(CommandLine& line, Context&) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<ReportArguments>();
     Command c =
         line.command("report",
                      "A run as one HTML file: pictures, figures, charts; several runs: methods over scenes, and "

@@ -14,7 +14,7 @@
 namespace aa {
 namespace {
 
-struct Options {
+struct RunCommandArguments {
     RunArguments run;
     std::vector<std::string> methods;
     bool resume = false, add = false;
@@ -229,7 +229,7 @@ void printOverFrames(const RunResults& r) {
 }
 
 // Gains are measured against no anti-aliasing.
-void addBaseline(std::vector<MethodSpec>& methods, const Options& o) {
+void addBaseline(std::vector<MethodSpec>& methods, const RunCommandArguments& o) {
     const auto isPlain = [](const MethodSpec& m) { return m.text == kBaseline; };
     if (o.withoutBaseline || std::any_of(methods.begin(), methods.end(), isPlain)) return;
     methods.insert(methods.begin(), parseMethod(kBaseline));
@@ -242,7 +242,7 @@ void printAdvice(const RunResults& r) {
     for (const std::string& s : advice) std::printf("  %s\n", s.c_str());
 }
 
-void execute(const Options& o, Context& context) {
+void execute(const RunCommandArguments& o, Context& context) {
     RunOptions run;
     if (o.methods.empty() && o.run.externals.empty())
         throw UsageError("run: no method; give one by -m (`aaresolve list` shows them), or pictures by --external");
@@ -278,7 +278,7 @@ void execute(const Options& o, Context& context) {
 }  // namespace
 
 void addRun(CommandLine& line, Context& context) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<RunCommandArguments>();
     Command c = line.command("run", "Run methods on a shot and measure them against its ground truth");
     addMethodOption(c, o->methods, "a method", true);
     c.flag("--no-noaa", o->withoutBaseline, "do not add noaa where it is not named; then there are no gains");

@@ -10,7 +10,7 @@
 
 namespace aa {
 namespace {
-struct Options {
+struct SheetArguments {
     std::string run, out, frames, arrangement = "rows", page = "free", loop;
     std::vector<std::string> methods, crops, columns;
     int frame = 0, zoom = 0;
@@ -20,7 +20,7 @@ struct Options {
 };
 
 // Of those that there are, "1-16,20" or "1..16".
-std::vector<int> framesOf(const Options& o, const std::vector<int>& there) {
+std::vector<int> framesOf(const SheetArguments& o, const std::vector<int>& there) {
     std::string has = " (it has pictures of " + std::to_string(there.front());
     has += (there.size() > 1 ? " to " + std::to_string(there.back()) : "") + ")";
     std::vector<int> chosen;
@@ -38,7 +38,7 @@ std::vector<int> framesOf(const Options& o, const std::vector<int>& there) {
     return chosen;
 }
 
-SheetOptions sheetOptions(const Options& o, const RunResults& run) {
+SheetOptions sheetOptions(const SheetArguments& o, const RunResults& run) {
     SheetOptions s;
     s.page = pageSizeByName(o.page);
     for (const auto& text : o.crops) s.crops.push_back(cropFrom(text, run));
@@ -50,7 +50,7 @@ SheetOptions sheetOptions(const Options& o, const RunResults& run) {
     return s;
 }
 
-void draw(const Options& o) {
+void draw(const SheetArguments& o) {
     const Exec exec = o.work.exec();
     const RunResults run = readResults(o.run);
     const std::filesystem::path out =
@@ -90,7 +90,7 @@ void draw(const Options& o) {
 }  // namespace
 
 void addSheet(CommandLine& line, Context&) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<SheetArguments>();
     std::string maps;
     for (const MapKind& kind : mapKinds()) maps += ", " + std::string(kind.name);
     Command c =

@@ -13,7 +13,7 @@
 namespace aa {
 namespace {
 
-struct Options {
+struct StabilityArguments {
     StabilityOptions study;
     std::string size = std::to_string(study.width) + "x" + std::to_string(study.height);
     std::string shot, out, device = "auto", nonFinite = "sanitise";
@@ -33,7 +33,7 @@ Sessions sessionsOn(const std::string& device) {
     return {session(gpu::Precision::exact), session(gpu::Precision::fast)};
 }
 // auto: whatever device there is, software too; without one the study says so and goes on.
-Sessions sessionsFor(const Options& o, std::string& whyNone) {
+Sessions sessionsFor(const StabilityArguments& o, std::string& whyNone) {
     if (o.device == "cpu") {
         whyNone = "--device cpu";
         return {};
@@ -47,13 +47,13 @@ Sessions sessionsFor(const Options& o, std::string& whyNone) {
     }
 }
 
-void execute(Options& o, Context& context) {
+void execute(StabilityArguments& o, Context& context) {
     if (o.json && o.markdown) throw UsageError("--json and --markdown: only one of them");
     StabilityOptions& s = o.study;
     s.shot = o.shot;
     s.policy = inputPolicyByName(o.nonFinite);
     // `all` of a shot means all that it serves.
-    if (!o.shot.empty() && o.methods == Options{}.methods) o.methods = {"runnable"};
+    if (!o.shot.empty() && o.methods == StabilityArguments{}.methods) o.methods = {"runnable"};
     s.methods = o.shot.empty() ? chosen(o.methods) : chosenFor(o.shot, o.methods);
     std::tie(s.width, s.height) = sizeOf("--size", o.size);
     s.exec.parallel = o.threads != 1;
@@ -80,7 +80,7 @@ void execute(Options& o, Context& context) {
 }  // namespace
 
 void addStability(CommandLine& line, Context& context) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<StabilityArguments>();
     Command c = line.command("stability",
                              "The accuracy that speed costs: float, narrow histories and shaders against double, "
                              "small changes, long sequences, bright pixels");

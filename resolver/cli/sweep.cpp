@@ -13,12 +13,12 @@
 
 namespace aa {
 namespace {
-struct Options {
+struct SweepArguments {
     RunArguments run;
     SweepOptions sweep;
 };
 
-void execute(const Options& o, Context& context) {
+void execute(const SweepArguments& o, Context& context) {
     RunOptions run;
     SweepOptions sweeping = o.sweep;
     const auto textsOf = [](const std::vector<MethodSpec>& methods) {
@@ -60,7 +60,7 @@ void execute(const Options& o, Context& context) {
 }  // namespace
 
 void addSweep(CommandLine& line, Context& context) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<SweepArguments>();
     Command c = line.command(
         "sweep", "Run every combination of some parameters' values: the best in words, curves and heat maps");
     addMethodOption(c, o->sweep.methods, "the method, with what stays the same", true).required();

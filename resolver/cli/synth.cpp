@@ -16,7 +16,7 @@
 
 namespace aa {
 namespace {
-struct Options {
+struct SynthArguments {
     SynthOptions synth;
     std::string out;
     std::vector<std::string> methods;
@@ -64,7 +64,7 @@ void planFor(const std::vector<std::string>& methods, SynthOptions& o) {
     o.subsampleColor = o.subsampleColor || colour;
 }
 
-int synth(Options& o) {
+int synth(SynthArguments& o) {
     if (o.list) return printScenes(), 0;
     if (o.synth.scene.empty() || o.out.empty())
         throw UsageError("synth: expected NAME -o SHOT; `aaresolve synth --list` shows the names");
@@ -92,7 +92,7 @@ int synth(Options& o) {
 }  // namespace
 
 void addSynth(CommandLine& line, Context& context) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<SynthArguments>();
     o->synth.scene.clear();
     Command c = line.command("synth", "Analytic shots with exact truth, without Blender");
     c.option("NAME", o->synth.scene, "scene; --list shows them").typeName("SCENE");

@@ -15,7 +15,7 @@
 namespace aa {
 namespace {
 
-struct Options {
+struct VerifyArguments {
     std::string shot, frames;
     std::vector<std::string> methods;
     double limit = 0;
@@ -55,7 +55,7 @@ nlohmann::ordered_json json(const std::vector<VerifyResult>& results, const gpu:
     return all;
 }
 
-void execute(const Options& o, Context& context) {
+void execute(const VerifyArguments& o, Context& context) {
     VerifyOptions options;
     if (o.work.device == "cpu") throw UsageError("verify: --device: expected a graphics device, found 'cpu'");
     const auto session = o.work.session();
@@ -83,7 +83,7 @@ void execute(const Options& o, Context& context) {
 }  // namespace
 
 void addVerify(CommandLine& line, Context& context) {
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<VerifyArguments>();
     o->work.device = "vulkan";
     Command c = line.command("verify", "Compare the methods' shaders with their kernels on a shot, frame by frame");
     c.option("SHOT", o->shot, "the shot's folder").required().typeName("SHOT");

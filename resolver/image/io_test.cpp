@@ -32,7 +32,7 @@ using ::testing::MatchesRegex;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-constexpr int kWidth = 37, kHeight = 23;
+constexpr int kPictureWidth = 37, kPictureHeight = 23;
 
 class ImageFiles : public testing::Test {
   protected:
@@ -62,10 +62,10 @@ class ImageFiles : public testing::Test {
 // Values in [0,1] that no two channels or pixels share.
 float valueAt(int x, int y, int c) { return float((x * 7 + y * 131 + c * 977) % 4001) / 4000.0f; }
 Rgb ramp() {
-    Rgb image(kWidth, kHeight);
+    Rgb image(kPictureWidth, kPictureHeight);
     for (size_t c = 0; c < 3; c++)
-        for (int y = 0; y < kHeight; y++)
-            for (int x = 0; x < kWidth; x++) image.c[c].at(x, y) = valueAt(x, y, int(c));
+        for (int y = 0; y < kPictureHeight; y++)
+            for (int x = 0; x < kPictureWidth; x++) image.c[c].at(x, y) = valueAt(x, y, int(c));
     return image;
 }
 // Written by OpenImageIO.
@@ -106,7 +106,7 @@ TEST_F(ImageFiles, ExrOfEveryCompressionTypeAndLayout) {
     const fs::path file = folder / "a.exr";
     for (const char* compression : {"none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"})
         for (const auto type : {TypeDesc::HALF, TypeDesc::FLOAT}) {
-            ImageSpec spec(kWidth, kHeight, 3, type);
+            ImageSpec spec(kPictureWidth, kPictureHeight, 3, type);
             spec.attribute("compression", compression);
             writeByOther(file, spec);
             expectAsOther(file);
@@ -117,18 +117,18 @@ TEST_F(ImageFiles, ExrOfEveryCompressionTypeAndLayout) {
                                                                    {"zeta", "b", "A", "Z", "R"},
                                                                    {"N.X", "N.Y", "N.Z", "L.R", "L.G", "L.B"},
                                                                    {"Depth", "green", "Red", "U"}}) {
-        ImageSpec spec(kWidth, kHeight, int(names.size()), TypeDesc::FLOAT);
+        ImageSpec spec(kPictureWidth, kPictureHeight, int(names.size()), TypeDesc::FLOAT);
         spec.channelnames = names;
         writeByOther(file, spec);
         expectAsOther(file);
     }
-    ImageSpec spec(kWidth, kHeight, 3, TypeDesc::UINT);
+    ImageSpec spec(kPictureWidth, kPictureHeight, 3, TypeDesc::UINT);
     writeByOther(file, spec);
     expectAsOther(file);
     spec.format = TypeDesc::FLOAT;
     writeByOther(file, spec, {TypeDesc::UINT, TypeDesc::FLOAT, TypeDesc::HALF});
     expectAsOther(file);
-    spec = ImageSpec(kWidth, kHeight, 3, TypeDesc::HALF);
+    spec = ImageSpec(kPictureWidth, kPictureHeight, 3, TypeDesc::HALF);
     spec.tile_width = spec.tile_height = 16;
     writeByOther(file, spec);
     expectAsOther(file);
@@ -140,11 +140,11 @@ TEST_F(ImageFiles, ExrOfEveryCompressionTypeAndLayout) {
 
 TEST_F(ImageFiles, ExrThatHasNotOneValuePerPixelIsRefused) {
     const fs::path file = folder / "yc.exr";
-    Imf::Array2D<Imf::Rgba> pixels(kHeight + 1, kWidth + 1);
+    Imf::Array2D<Imf::Rgba> pixels(kPictureHeight + 1, kPictureWidth + 1);
     {
-        Imf::RgbaOutputFile out(file.c_str(), kWidth + 1, kHeight + 1, Imf::WRITE_YC);
-        out.setFrameBuffer(&pixels[0][0], 1, kWidth + 1);
-        out.writePixels(kHeight + 1);
+        Imf::RgbaOutputFile out(file.c_str(), kPictureWidth + 1, kPictureHeight + 1, Imf::WRITE_YC);
+        out.setFrameBuffer(&pixels[0][0], 1, kPictureWidth + 1);
+        out.writePixels(kPictureHeight + 1);
     }
     EXPECT_THAT(errorOf(file), AllOf(HasSubstr("yc.exr"), HasSubstr("sub-sampled"), Not(HasSubstr("damaged"))));
     const fs::path deep = folder / "deep.exr";
@@ -201,8 +201,8 @@ void writeCodes(const fs::path& file, int bits, int type, const std::vector<unsi
     std::unique_ptr<FILE, int (*)(FILE*)> out(std::fopen(file.c_str(), "wb"), std::fclose);
     png_init_io(png, out.get());
     const int height = int(rows.size() / rowBytes);
-    png_set_IHDR(png, info, kWidth, png_uint_32(height), bits, type, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-                 PNG_FILTER_TYPE_DEFAULT);
+    png_set_IHDR(png, info, kPictureWidth, png_uint_32(height), bits, type, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     if (gamma > 0) png_set_gAMA(png, info, gamma);
     std::vector<png_color> palette;
     for (int i = 0; i < 1 << std::min(bits, 8); i++)
@@ -225,21 +225,21 @@ TEST_F(ImageFiles, PngOfEveryDepthAndType) {
          {std::pair{PNG_COLOR_TYPE_GRAY, 1}, {PNG_COLOR_TYPE_PALETTE, 1}, {PNG_COLOR_TYPE_RGB, 3}})
         for (const int bits : {1, 2, 4, 8, 16}) {
             if ((channels == 3 && bits < 8) || (type == PNG_COLOR_TYPE_PALETTE && bits > 8)) continue;
-            const size_t rowBytes = size_t((kWidth * channels * bits + 7) / 8);
-            writeCodes(file, bits, type, bytes(rowBytes * kHeight), rowBytes);
+            const size_t rowBytes = size_t((kPictureWidth * channels * bits + 7) / 8);
+            writeCodes(file, bits, type, bytes(rowBytes * kPictureHeight), rowBytes);
             expectAsOther(file);
         }
 }
 
 TEST_F(ImageFiles, AlphaChangesNoColourAndIsKept) {
     const fs::path file = folder / "a.png";
-    const auto codes = bytes(size_t(kWidth) * kHeight * 4);
+    const auto codes = bytes(size_t(kPictureWidth) * kPictureHeight * 4);
     for (const double gamma : {0.0, 1.0, 1 / 2.2}) {
-        writeCodes(file, 8, PNG_COLOR_TYPE_RGB_ALPHA, codes, size_t(kWidth) * 4, gamma);
+        writeCodes(file, 8, PNG_COLOR_TYPE_RGB_ALPHA, codes, size_t(kPictureWidth) * 4, gamma);
         const LoadedImage image = readImage(file);
-        for (int y = 0; y < kHeight; y++)
-            for (int x = 0; x < kWidth; x++) {
-                const unsigned char* p = codes.data() + (size_t(y) * kWidth + size_t(x)) * 4;
+        for (int y = 0; y < kPictureHeight; y++)
+            for (int x = 0; x < kPictureWidth; x++) {
+                const unsigned char* p = codes.data() + (size_t(y) * kPictureWidth + size_t(x)) * 4;
                 for (size_t c = 0; c < 3; c++) ASSERT_FLOAT_EQ(image.rgb.c[c].at(x, y), p[c] / 255.0f);
                 ASSERT_FLOAT_EQ(image.alpha.at(x, y), p[3] / 255.0f);
             }
@@ -249,7 +249,7 @@ TEST_F(ImageFiles, AlphaChangesNoColourAndIsKept) {
         EXPECT_TRUE(again.rgb.samePixels(image.rgb));
         EXPECT_TRUE(again.alpha.samePixels(image.alpha));
     }
-    writeCodes(file, 16, PNG_COLOR_TYPE_GRAY_ALPHA, codes, size_t(kWidth) * 4);
+    writeCodes(file, 16, PNG_COLOR_TYPE_GRAY_ALPHA, codes, size_t(kPictureWidth) * 4);
     const LoadedImage grey = readImage(file);
     EXPECT_NEAR(grey.rgb.c[0].at(0, 0) * 65535, uint32_t(codes[0]) << 8 | codes[1], 0.01);
     EXPECT_NEAR(grey.alpha.at(0, 0) * 65535, uint32_t(codes[2]) << 8 | codes[3], 0.01);
@@ -346,7 +346,7 @@ TEST_F(ImageFiles, ThePictureAmongLayersAndPartsIsChosenByName) {
 TEST_F(ImageFiles, DisplayWindowDecidesWhatIsShown) {
     const fs::path file = folder / "a.exr";
     const auto write = [&](int x, int y) {
-        ImageSpec spec(kWidth, kHeight, 4, TypeDesc::FLOAT);
+        ImageSpec spec(kPictureWidth, kPictureHeight, 4, TypeDesc::FLOAT);
         spec.x = x, spec.y = y, spec.full_x = 2, spec.full_y = 1, spec.full_width = 64, spec.full_height = 48;
         writeByOther(file, spec);
         LoadedImage image = readImage(file);
@@ -385,15 +385,15 @@ TEST_F(ImageFiles, TurnedPicturesAreUpright) {
         for (int orientation = 1; orientation <= 8; orientation++) {
             const Side& side = sides[orientation - 1];
             const bool rowsStand = side.row == 'l' || side.row == 'r';
-            ImageSpec spec(kWidth, kHeight, 3, TypeDesc::UINT8);
+            ImageSpec spec(kPictureWidth, kPictureHeight, 3, TypeDesc::UINT8);
             spec.attribute("Orientation", orientation);
             writeByOther(folder / name, spec);
             const LoadedImage image = readImage(folder / name);
-            ASSERT_EQ(image.rgb.width(), rowsStand ? kHeight : kWidth) << name << orientation;
-            ASSERT_EQ(image.rgb.height(), rowsStand ? kWidth : kHeight) << name << orientation;
-            for (int j = 0; j < kHeight && std::string(name) == "a.tif"; j++)
-                for (int i = 0; i < kWidth; i++) {
-                    const int row = from(side.row, j, kHeight), column = from(side.column, i, kWidth);
+            ASSERT_EQ(image.rgb.width(), rowsStand ? kPictureHeight : kPictureWidth) << name << orientation;
+            ASSERT_EQ(image.rgb.height(), rowsStand ? kPictureWidth : kPictureHeight) << name << orientation;
+            for (int j = 0; j < kPictureHeight && std::string(name) == "a.tif"; j++)
+                for (int i = 0; i < kPictureWidth; i++) {
+                    const int row = from(side.row, j, kPictureHeight), column = from(side.column, i, kPictureWidth);
                     const float found = rowsStand ? image.rgb.c[1].at(row, column) : image.rgb.c[1].at(column, row);
                     ASSERT_NEAR(found, valueAt(i, j, 1), 3e-3) << orientation;
                 }
@@ -464,13 +464,13 @@ TEST_F(ImageFiles, WrittenPngIsWhatOthersExpect) {
     EXPECT_EQ(back.c[0].at(1, 0), 1);
     EXPECT_EQ(back.c[0].at(2, 0), 0);
     for (size_t c = 0; c < 3; c++)
-        for (int x = 3; x < kWidth; x++)
+        for (int x = 3; x < kPictureWidth; x++)
             EXPECT_EQ(std::lround(255 * back.c[c].at(x, 0)), std::floor(255 * image.c[c].at(x, 0) + 0.5f));
     const ImageSpec spec = ImageInput::open(file.string())->spec();
     EXPECT_THAT(std::string(spec.get_string_attribute("oiio:ColorSpace")), AnyOf("sRGB", StartsWith("srgb")));
     EXPECT_EQ(spec.format, TypeDesc::UINT8);
-    EXPECT_LT(pngBytes(codesOf(image), kWidth, kHeight, {.compressionLevel = 9}).size(),
-              pngBytes(codesOf(image), kWidth, kHeight, {.compressionLevel = 0}).size());
+    EXPECT_LT(pngBytes(codesOf(image), kPictureWidth, kPictureHeight, {.compressionLevel = 9}).size(),
+              pngBytes(codesOf(image), kPictureWidth, kPictureHeight, {.compressionLevel = 0}).size());
 }
 
 TEST_F(ImageFiles, ContentDecidesAndNotTheName) {

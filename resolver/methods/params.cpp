@@ -109,7 +109,7 @@ Params::Params(std::string_view method, const std::vector<ParamSpec>& table,
 
 // ---- errors of programming ------------------------------------------------------------------------------------------
 namespace {
-std::string_view name(ParamSpec::Type type) {
+std::string_view nameOfType(ParamSpec::Type type) {
     constexpr std::string_view names[] = {"real", "integer", "choice", "flag"};
     return names[size_t(type)];
 }
@@ -169,7 +169,7 @@ const ParamSpec& Params::spec(std::string_view name, ParamSpec::Type type, CodeP
     const ParamSpec& p = spec(name, at);
     if (p.type != type)
         wrong(method_, name, at,
-              "read here as " + std::string(aa::name(type)) + ", declared as " + std::string(aa::name(p.type)));
+              "read here as " + std::string(nameOfType(type)) + ", declared as " + std::string(nameOfType(p.type)));
     return p;
 }
 void Params::noSuchChoice(std::string_view name, const std::string& text, CodePlace at) const {

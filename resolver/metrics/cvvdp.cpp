@@ -389,9 +389,9 @@ PlaneF Test::latestMap(const Exec&) const {
     return sum;
 }
 
-class Reference : public SequenceReference {
+class CvvdpReference : public SequenceReference {
   public:
-    explicit Reference(const SequenceSetting& s) : shared_(s), picture_(shared_.model) {}
+    explicit CvvdpReference(const SequenceSetting& s) : shared_(s), picture_(shared_.model) {}
     void add(const SequencePicture& frame, const Exec& exec) override {
         const Model& m = shared_.model;
         picture_.add(frame, exec, shared_.work);
@@ -412,7 +412,7 @@ class Reference : public SequenceReference {
 }  // namespace
 
 std::unique_ptr<SequenceReference> cvvdp(const SequenceSetting& setting) {
-    return std::make_unique<Reference>(setting);
+    return std::make_unique<CvvdpReference>(setting);
 }
 double cvvdpOfStill(const Rgb& test, const Rgb& reference, const DisplayModel& display, const Exec& exec, PlaneF* map) {
     SequenceSetting setting{.width = test.width(), .height = test.height(), .viewing = {.display = &display}};

@@ -11,8 +11,8 @@
 
 namespace aa {
 namespace {
-constexpr double kPi = std::numbers::pi;
-const double kPpd = 0.7 * (3840 / 0.7) * kPi / 180;
+using std::numbers::pi;
+const double kPpd = 0.7 * (3840 / 0.7) * pi / 180;
 
 // [Andersson 2020] once more, in double: two-dimensional kernels, pow and cbrt of the library, no separation.
 using V3 = std::array<double, 3>;
@@ -63,11 +63,11 @@ V3 huntLab(const V3& o) {
 double hyab(const V3& a, const V3& b) { return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]); }
 double csf(size_t channel, int x, int y) {
     const double d = (x * x + y * y) / (kPpd * kPpd);
-    const auto g = [&](double a, double b) { return a * std::sqrt(kPi / b) * std::exp(-kPi * kPi * d / b); };
+    const auto g = [&](double a, double b) { return a * std::sqrt(pi / b) * std::exp(-pi * pi * d / b); };
     return channel == 0 ? g(1, 0.0047) : channel == 1 ? g(1, 0.0053) : g(34.1, 0.04) + g(13.5, 0.025);
 }
 V3 seenAt(const Image& image, int x, int y) {
-    const int r = int(std::ceil(3 * std::sqrt(0.04 / (2 * kPi * kPi)) * kPpd));
+    const int r = int(std::ceil(3 * std::sqrt(0.04 / (2 * pi * pi)) * kPpd));
     V3 sum{}, weights{};
     for (int j = -r; j <= r; j++)
         for (int i = -r; i <= r; i++)
@@ -185,7 +185,7 @@ TEST(Flip, SameBitsEverywhere) {
 }
 TEST(Flip, ConstantsAgreeWithTheirFormulas) {
     using namespace flip_constants;
-    const auto gaussian = [](double b, int i) { return std::exp(-kPi * kPi * i * i / (kPpd * kPpd * b)); };
+    const auto gaussian = [](double b, int i) { return std::exp(-pi * pi * i * i / (kPpd * kPpd * b)); };
     const auto check = [&](const double* taps, int count, double b) {
         double sum = 0;
         for (int i = -kCsfReach; i <= kCsfReach; i++) sum += gaussian(b, i);
@@ -195,7 +195,7 @@ TEST(Flip, ConstantsAgreeWithTheirFormulas) {
     check(kCsfY, kNarrowReach + 1, 0.0047);
     check(kCsfCx, kNarrowReach + 1, 0.0053);
     const double wide = check(kCsfCzWide, kCsfReach + 1, 0.04), narrow = check(kCsfCzNarrow, kCsfReach + 1, 0.025);
-    const double a = 34.1 * std::sqrt(kPi / 0.04) * wide * wide, b = 13.5 * std::sqrt(kPi / 0.025) * narrow * narrow;
+    const double a = 34.1 * std::sqrt(pi / 0.04) * wide * wide, b = 13.5 * std::sqrt(pi / 0.025) * narrow * narrow;
     EXPECT_NEAR(kCzWideShare, a / (a + b), 1e-15);
     EXPECT_NEAR(kMaxColour, std::pow(hyab(huntLab(ycxcz({0, 1, 0})), huntLab(ycxcz({0, 0, 1}))), 0.7), 1e-6);
     for (size_t i = 0; i < 3; i++)

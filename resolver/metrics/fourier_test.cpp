@@ -11,7 +11,7 @@
 
 namespace aa {
 namespace {
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 Rgb noise(int w, int h, unsigned seed) {
     std::mt19937 random(seed);
@@ -25,7 +25,7 @@ Rgb noise(int w, int h, unsigned seed) {
 Rgb withWave(Rgb image, double a, double fx, double fy) {
     for (auto& p : image.c)
         for (int y = 0; y < p.height(); y++)
-            for (int x = 0; x < p.width(); x++) p.at(x, y) += float(a * std::cos(2 * kPi * (fx * x + fy * y)));
+            for (int x = 0; x < p.width(); x++) p.at(x, y) += float(a * std::cos(2 * pi * (fx * x + fy * y)));
     return image;
 }
 
@@ -37,7 +37,7 @@ TEST(Fourier, AnyLengthAgreesWithTheDefinition) {
         Fft(n).transform(x, fast);
         for (size_t k = 0; k < n; k++) {
             std::complex<double> sum = 0;
-            for (size_t i = 0; i < n; i++) sum += x[i] * std::polar(1.0, -2 * kPi * double(k * i % n) / double(n));
+            for (size_t i = 0; i < n; i++) sum += x[i] * std::polar(1.0, -2 * pi * double(k * i % n) / double(n));
             EXPECT_LT(std::abs(sum - fast[k]), 1e-11 * double(n)) << n << " " << k;
         }
     }

@@ -12,7 +12,7 @@ using Align = Canvas::Align;
 constexpr int kInset = 14, kValueEnd = 168, kUnitStart = 176, kNamePx = 14;
 constexpr const char* kStar = "\u2605";
 
-struct Shown {
+struct ShownFigure {
     std::string name, key, value, unit;
     bool higherIsBetter;
     double number;
@@ -32,8 +32,8 @@ std::optional<double> flickerOf(const RunResults& run, const MethodResult& m) {
     return flicker && (*flicker > 0 || !run.isStatic) ? flicker : std::nullopt;
 }
 // Figures in the order of rows, but the gain, which is PSNR once more.
-std::vector<Shown> figuresOf(const RunResults& run, const MethodResult& m) {
-    std::vector<Shown> all;
+std::vector<ShownFigure> figuresOf(const RunResults& run, const MethodResult& m) {
+    std::vector<ShownFigure> all;
     if (m.pooled && !run.isReference(m)) {
         const double psnr = m.pooled->mean.psnr;
         all.push_back({"PSNR", "psnr", decibelNumber(psnr), "dB", true, psnr});
@@ -78,7 +78,7 @@ SheetMethods sheetMethods(const RunResults& run, const std::vector<size_t>& orde
     for (const size_t i : order) {
         const MethodResult& m = run.methods[i];
         methods.overTime = methods.overTime || m.temporal.has_value();
-        for (const Shown& s : figuresOf(run, m)) {
+        for (const ShownFigure& s : figuresOf(run, m)) {
             if (!competes(m, s.key) || s.number != s.number) continue;
             auto [top, isNew] = tops.try_emplace(s.key, Top{s.number, s.value, 0});
             top->second.count++;
@@ -128,7 +128,7 @@ SheetLabel SheetLabel::full(const SheetMethods& methods, size_t place, int width
     label.text(m.title, 13, theme.quiet);
     label.lines_.back().stepPx += 8;
     if (methods.run.isReference(m)) label.text("the reference of the others", 14, theme.note);
-    for (const Shown& s : figuresOf(methods.run, m)) {
+    for (const ShownFigure& s : figuresOf(methods.run, m)) {
         const auto best = methods.best.find(s.key);
         const bool isBest = best != methods.best.end() && best->second == s.value && competes(m, s.key);
         const Colour colour = s.key == "ghosts" ? (s.number <= 1 ? theme.better : theme.worse) : theme.ink;

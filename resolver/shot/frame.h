@@ -12,8 +12,8 @@
 
 namespace aa {
 
-// Depth where no surface is; methods test z >= 1e9.
-inline constexpr float kBackgroundDepth = 1e10f;
+// Depth where no surface is; from kBackgroundFrom on others' depths, and what methods test, mean that too.
+inline constexpr float kBackgroundDepth = 1e10f, kBackgroundFrom = 1e9f;
 // Motion of a pixel without a previous position: outside of any picture, as the exporter writes it.
 inline constexpr float kInvalidMotionPx = 1e6f;
 

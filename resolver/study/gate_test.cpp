@@ -20,7 +20,7 @@ const std::vector<std::string> kMethods = {"noaa", "karis"};
 
 fs::path workFolder() { return fs::temp_directory_path() / ("aaresolve_gate_" + std::to_string(::getpid())); }
 // A shot with everything that these methods and the figures over time read; made once.
-fs::path shot(const std::string& scene) {
+fs::path shotFolder(const std::string& scene) {
     const fs::path folder = workFolder() / scene;
     if (fs::exists(folder)) return folder;
     SynthOptions o;
@@ -43,12 +43,12 @@ RunResults runOf(const fs::path& folder, const std::vector<std::string>& methods
 }
 const RunResults& base(const std::string& scene = "moving") {
     static std::map<std::string, RunResults> made;
-    if (!made.contains(scene)) made[scene] = runOf(shot(scene), kMethods);
+    if (!made.contains(scene)) made[scene] = runOf(shotFolder(scene), kMethods);
     return made[scene];
 }
 // As if the program's own method had changed.
 RunResults regressed(const std::string& scene, const std::string& parameters) {
-    RunResults r = runOf(shot(scene), {"noaa", "karis:" + parameters});
+    RunResults r = runOf(shotFolder(scene), {"noaa", "karis:" + parameters});
     r.methods[1].text = "karis";
     return r;
 }
@@ -57,7 +57,7 @@ template <class Change>
 fs::path rewritten(const std::string& scene, const std::string& name, const Change& change) {
     const fs::path to = workFolder() / name;
     fs::remove_all(to);
-    fs::copy(shot(scene), to, fs::copy_options::recursive);
+    fs::copy(shotFolder(scene), to, fs::copy_options::recursive);
     Manifest m = readManifest(to);
     change(m);
     writeManifest(m);
@@ -84,7 +84,7 @@ std::string refusal(const RunResults& before, const RunResults& now) {
 
 TEST(Gate, AnUnchangedRunIsTheSameToTheLastBit) {
     for (int k = 0; k < 20; k++) {
-        const RunResults again = runOf(shot("moving"), kMethods, k % 2);
+        const RunResults again = runOf(shotFolder("moving"), kMethods, k % 2);
         const GateReport report = gate(base(), again, {});
         EXPECT_TRUE(report.passed());
         EXPECT_EQ(report.count(Verdict::same), report.rows.size()) << "run " << k;
@@ -107,7 +107,7 @@ TEST(Gate, ClampOffIsWorse) {
 }
 TEST(Gate, MotionOfTheWrongSignIsWorse) {
     const fs::path turned = rewritten("moving", "motion", [](Manifest& m) {
-        const ShotReader reader(shot("moving"), InputPolicy::raw);
+        const ShotReader reader(shotFolder("moving"), InputPolicy::raw);
         for (size_t i = 0; i < m.frames.size(); i++) {
             Frame f = reader.read(i, reader.offered());
             for (PlaneF* plane : {&f.motionXPx, &f.motionYPx})

@@ -60,17 +60,17 @@ json toJson(const MethodStability& m) {
 
 // ---- tables ----
 const char* const kNone = "–";
-std::string number(double v) {
+std::string inTable(double v) {
     if (const char* word = nonFinite(v)) return word;
     return v == 0 ? "0" : formatted(v >= 1000 ? "%.0f" : "%.2g", v);
 }
 std::string cell(const std::optional<Deviation>& d) {
     if (!d) return kNone;
-    return number(d->max) + " · " + number(d->rms) + " · " + number(d->ulp) +
+    return inTable(d->max) + " · " + inTable(d->rms) + " · " + inTable(d->ulp) +
            (d->notFinite ? formatted(", %zu not finite", d->notFinite) : "");
 }
 std::string wideLightCell(const MethodStability& m) {
-    return writtenFloatBound(m.id) ? number(m.wideLight.ofLargest) + " of the largest" : number(m.wideLight.ofValue);
+    return writtenFloatBound(m.id) ? inTable(m.wideLight.ofLargest) + " of the largest" : inTable(m.wideLight.ofValue);
 }
 std::string codes(const std::optional<Settling>& s, double Settling::*figure) {
     return s ? formatted("%.2f", (*s).*figure) : kNone;
@@ -105,8 +105,8 @@ std::vector<Table> tablesOf(const StabilityResults& r) {
         accuracy.rows.push_back(std::move(row));
         const Amplification& a = m.amplification;
         const size_t worst = size_t(std::max_element(a.most.begin(), a.most.end()) - a.most.begin());
-        changes.rows.push_back({m.text, number(a.largest()), std::to_string(worst + 1), number(a.rms.front()),
-                                number(a.rms.back()), ties(m)});
+        changes.rows.push_back({m.text, inTable(a.largest()), std::to_string(worst + 1), inTable(a.rms.front()),
+                                inTable(a.rms.back()), ties(m)});
         if (!m.settling) continue;
         history.rows.push_back({m.text});
         for (const auto figure : {&Settling::stallCodes, &Settling::bandingCodes})
@@ -219,12 +219,12 @@ std::string toMarkdown(const StabilityResults& r) {
     for (size_t k = 0; k < tables.size(); k++)
         text += "\n## " + tables[k].title + "\n\n" + notes[k] + "\n\n" + asMarkdown(tables[k]);
     text +=
-        "\n## Written bounds\n\nFloat keeps to double within " + number(kFloatBound) +
+        "\n## Written bounds\n\nFloat keeps to double within " + inTable(kFloatBound) +
         " of every value (no value less than 1e-6) where light spans 1e-6 to 1e6 by chance from pixel to\npixel, but "
         "in these methods, which keep to a share of the largest value in 7x7 pixels around. A test holds every "
         "method to it.\n\n| method | of the largest around | why |\n|---|---:|---|\n";
     for (const FloatBound& b : writtenFloatBounds())
-        text += "| `" + std::string(b.method) + "` | " + number(b.ofLargest) + " | " + std::string(b.reason) + " |\n";
+        text += "| `" + std::string(b.method) + "` | " + inTable(b.ofLargest) + " | " + std::string(b.reason) + " |\n";
     return text;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ inline constexpr int kMostRanked = 5;  // of [Stejmar n.d., 4.5.2]: nine were to
 inline constexpr int kBestRating = 5;
 
 using Figures = std::map<std::string, double, std::less<>>;  // by name
+nlohmann::ordered_json toJson(const Figures& figures);       // as files of a survey hold them
 
 struct SurveyPicture {
     std::string code;    // what page and answers call it

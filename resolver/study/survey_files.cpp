@@ -84,11 +84,6 @@ void checkFormat(const Place& top, const char* format, const std::string& what) 
     top.at("version").whole(kVersion, kVersion);
 }
 
-json toJson(const Figures& figures) {
-    json j = json::object();
-    for (const auto& [name, value] : figures) j[name] = jsonNumber(value);
-    return j;
-}
 Figures figuresOf(const Place& place) {
     Figures figures;
     for (const auto& [name, value] : place.members()) figures[name] = value.number();
@@ -163,6 +158,12 @@ std::vector<size_t> shownIn(const Place& answer, const SurveyQuestion& q) {
     return shown;
 }
 }  // namespace
+
+json toJson(const Figures& figures) {
+    json j = json::object();
+    for (const auto& [name, value] : figures) j[name] = jsonNumber(value);
+    return j;
+}
 
 const char* name(QuestionKind kind) {
     return kind == QuestionKind::rank ? "rank" : kind == QuestionKind::pair ? "pair" : "rating";

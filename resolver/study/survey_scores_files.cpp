@@ -27,11 +27,6 @@ json toJson(const std::vector<Agreement>& all) {
                             {"spearmanRho", toJson(a.spearman)}});
     return list;
 }
-json toJson(const Figures& figures) {
-    json j = json::object();
-    for (const auto& [name, value] : figures) j[name] = jsonNumber(value);
-    return j;
-}
 json toJson(const ScoredSet& set, size_t participants) {
     const SurveyQuestion& q = *set.questions[0];
     json j = {{"questions", json::array()},
@@ -66,7 +61,7 @@ json toJson(const ScoredSet& set, size_t participants) {
         }
         picture["toNextBetter"] = toJson(p.toNext);
         if (p.toNext) picture["resolved"] = p.resolved;
-        picture["shown"] = toJson(p.picture->shown), picture["run"] = toJson(p.picture->run);
+        picture["shown"] = aa::toJson(p.picture->shown), picture["run"] = aa::toJson(p.picture->run);
         j["pictures"].push_back(std::move(picture));
     }
     for (const ScoredPair& pair : set.pairs)

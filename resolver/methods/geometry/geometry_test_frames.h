@@ -111,6 +111,7 @@ struct Line {
         return area(t);
     }
 };
+inline const Line kLine{std::cos(0.4), std::sin(0.4), 22.3};  // in no special place
 inline std::vector<Line> randomLines(int count, int w, int h) {
     std::vector<Line> lines;
     for (int i = 1; i <= count; i++) {  // 0 would pass exactly through pixel centres

@@ -18,7 +18,7 @@ void putSegment(Frame& f, const Line& line, float depthView = 4) {
     f.segments = {{float(x - line.ny * reach), float(y + line.nx * reach), depthView, float(x + line.ny * reach),
                    float(y - line.nx * reach), depthView}};
 }
-double gainDb(const std::string& method, double leastSlope = 0, double mostSlope = 1) {
+double gpaaGainDb(const std::string& method, double leastSlope = 0, double mostSlope = 1) {
     const auto slope = [](const Line& l) {
         const double a = std::abs(l.nx), b = std::abs(l.ny);
         return std::min(a, b) / std::max(a, b);
@@ -31,10 +31,10 @@ double gainDb(const std::string& method, double leastSlope = 0, double mostSlope
 // The blend of gbaa with an edge known on both sides, so its figures: 19.0 dB, 35 and 13.6 dB for small and large
 // slopes (conventions 14).
 TEST(Gpaa, GainOnHalfPlanes) {
-    EXPECT_GE(gainDb("gpaa"), 17.0);
-    EXPECT_NEAR(gainDb("gpaa"), 19.0, 1.0);
-    EXPECT_GE(gainDb("gpaa", 0, 0.25), 32.0);
-    EXPECT_NEAR(gainDb("gpaa", 0.75, 1), 13.6, 1.0);
+    EXPECT_GE(gpaaGainDb("gpaa"), 17.0);
+    EXPECT_NEAR(gpaaGainDb("gpaa"), 19.0, 1.0);
+    EXPECT_GE(gpaaGainDb("gpaa", 0, 0.25), 32.0);
+    EXPECT_NEAR(gpaaGainDb("gpaa", 0.75, 1), 13.6, 1.0);
 }
 TEST(Gpaa, WrongSignsAreSeen) {
     const auto gainWith = [](const auto& wrong) {

@@ -12,8 +12,6 @@ namespace aa {
 namespace {
 using namespace testing;
 
-const Line kLine{std::cos(0.4), std::sin(0.4), 22.3};
-
 // conventions 14: coverage of ideal samples gains 8.6 / 12.7 / 15.0 dB on half-planes.
 TEST(Msaa, GainOnHalfPlanesIsThatOfCoverage) {
     EXPECT_NEAR(halfPlaneGainDb("msaa", d3dPattern(4)), 8.6, 0.5);

@@ -12,8 +12,6 @@ namespace aa {
 namespace {
 using namespace testing;
 
-const Line kLine{std::cos(0.4), std::sin(0.4), 22.3};
-
 std::string geometryOnly(const std::string& more = "") { return "rsaa:ids=off" + (more.empty() ? "" : "," + more); }
 
 // --- Quality --------------------------------------------------------------------------------------------------------

@@ -9,8 +9,6 @@ namespace aa {
 namespace {
 using namespace testing;
 
-const Line kLine{std::cos(0.4), std::sin(0.4), 22.3};
-
 TEST(Sbaa, GainOnHalfPlanesIsThatOfCoverage) {
     EXPECT_NEAR(halfPlaneGainDb("sbaa", d3dPattern(4)), 8.6, 0.5);
     EXPECT_NEAR(halfPlaneGainDb("sbaa", d3dPattern(8)), 12.7, 0.5);

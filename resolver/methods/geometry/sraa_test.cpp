@@ -9,8 +9,6 @@ namespace aa {
 namespace {
 using namespace testing;
 
-const Line kLine{std::cos(0.4), std::sin(0.4), 22.3};
-
 // With telling geometry and constant colours it is coverage MSAA (conventions 14): 8.6 / 12.7 / 15.0 dB.
 TEST(Sraa, GainOnHalfPlanesIsThatOfCoverage) {
     for (const char* method :

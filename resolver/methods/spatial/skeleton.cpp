@@ -7,13 +7,15 @@ namespace aa {
 namespace {
 
 // A choice is one table: the texts of the command line and what they stand for.
-constexpr Choice<LumaKind> kLumas[] = {{"rec601", LumaKind::rec601}, {"green", LumaKind::green}};
+constexpr Choice<LumaKind> kSpatialSkeletonLumas[] = {{"rec601", LumaKind::rec601}, {"green", LumaKind::green}};
 
 class SpatialSkeleton : public Method {
   public:
     // Parameters are read once, here. A name that the table below does not hold throws at the first run.
     explicit SpatialSkeleton(const Params& p)
-        : luma_(p.chosen("luma", kLumas)), threshold_(p.realf("threshold")), strength_(p.realf("strength")) {}
+        : luma_(p.chosen("luma", kSpatialSkeletonLumas)),
+          threshold_(p.realf("threshold")),
+          strength_(p.realf("strength")) {}
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         const Rgb& in = frame.colorEncoded;  // filled because .input below says encoded
@@ -56,7 +58,8 @@ MethodDescriptor spatialSkeletonDescriptor() {
             .input = Space::encoded,
             .output = Space::encoded,
             // One table makes help, JSON, the add-on's panel, the docs and sweeps. A default has a source, too.
-            .params = {choiceParam("luma", "rec601", kLumas, "luma that decides where edges are", "an example"),
+            .params = {choiceParam("luma", "rec601", kSpatialSkeletonLumas, "luma that decides where edges are",
+                                   "an example"),
                        realParam("threshold", "0.1", 0.0009765625, 1, "least difference of luma that is filtered",
                                  "an example"),
                        realParam("strength", "1", 0, 1, "0: nothing, 1: the mean of the five", "an example")},

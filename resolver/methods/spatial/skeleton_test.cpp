@@ -10,7 +10,7 @@ namespace {
 using namespace aa::testing;
 
 // The definition once more, written plainly, in double. Lanes may differ by rounding, the double form hardly.
-double expected(const Rgb& image, size_t c, int x, int y, double threshold, double strength) {
+double expectedSpatialSkeleton(const Rgb& image, size_t c, int x, int y, double threshold, double strength) {
     const int cross[5][2] = {{0, 0}, {-1, 0}, {1, 0}, {0, -1}, {0, 1}};
     double least = 2, most = -1, mean = 0;
     for (const auto& [dx, dy] : cross) {
@@ -30,7 +30,8 @@ TEST(SpatialSkeleton, ConformsToTheDefinition) {
         for (size_t c = 0; c < 3; c++)
             for (int y = 0; y < image.height(); y++)
                 for (int x = 0; x < image.width(); x++)
-                    worst = std::max(worst, std::abs(out.c[c].at(x, y) - expected(image, c, x, y, 0.123, 0.75)));
+                    worst = std::max(
+                        worst, std::abs(out.c[c].at(x, y) - expectedSpatialSkeleton(image, c, x, y, 0.123, 0.75)));
         EXPECT_LT(worst, precision == Precision::fast ? 1e-6 : 1e-7);
     }
 }

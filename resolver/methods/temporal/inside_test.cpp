@@ -9,14 +9,14 @@ namespace aa {
 namespace {
 using namespace testing;
 
-constexpr int kW = 27, kH = 19;
+constexpr int kInsideWidth = 27, kInsideHeight = 19;
 
 // Depths and motions for which the distance of the four taps varies: 0.5 / (speed * depth) lies about 1.
 Frame randomFrame(int n) {
     const Picture colours = noisePicture(unsigned(60 + n)), surfaces = noisePicture(unsigned(80 + n));
-    Frame f = temporalFrame(n, kW, kH, colours);
-    for (int y = 0; y < kH; y++)
-        for (int x = 0; x < kW; x++) {
+    Frame f = temporalFrame(n, kInsideWidth, kInsideHeight, colours);
+    for (int y = 0; y < kInsideHeight; y++)
+        for (int x = 0; x < kInsideWidth; x++) {
             f.depthView.at(x, y) = 0.2f + 2 * surfaces(x, y, 0);
             f.motionXPx.at(x, y) = 2 * surfaces(x, y, 1) - 1;
             f.motionYPx.at(x, y) = 2 * surfaces(x, y, 2) - 1;
@@ -29,7 +29,7 @@ Frame randomFrame(int n) {
 // surface in 3x3, 0: the pixel's own; `ownDepth`: the depth of the pixel itself in either case.
 double fourTap(const Frame& f, const Rgb& past, int reach, bool ownDepth, size_t c, int x, int y) {
     const auto at = [&](const PlaneF& p, int i, int j) {
-        return double(p.at(std::clamp(i, 0, kW - 1), std::clamp(j, 0, kH - 1)));
+        return double(p.at(std::clamp(i, 0, kInsideWidth - 1), std::clamp(j, 0, kInsideHeight - 1)));
     };
     const auto bilinear = [&](const PlaneF& p, double px, double py) {
         const double fx = px - 0.5 - std::floor(px - 0.5), fy = py - 0.5 - std::floor(py - 0.5);
@@ -45,7 +45,7 @@ double fourTap(const Frame& f, const Rgb& past, int reach, bool ownDepth, size_t
     const double depth = ownDepth ? at(f.depthView, x, y) : at(f.depthView, nearX, nearY);
     const double qx = x + 0.5 - mx, qy = y + 0.5 - my;
     const Rgb& now = f.colorEncoded;
-    if (qx < 0 || qx > kW || qy < 0 || qy > kH) return at(now.c[c], x, y);
+    if (qx < 0 || qx > kInsideWidth || qy < 0 || qy > kInsideHeight) return at(now.c[c], x, y);
     const double s = 0.5 + 0.1666 * std::min(0.5 / (1e-8 + std::hypot(mx, my) * depth), 1.0);
     double current[3], held[3];
     for (size_t k = 0; k < 3; k++) {
@@ -70,14 +70,14 @@ TEST(Inside, FourTapsVaryWithTheDilatedDepth) {
         RunningMethod m = running(std::string("inside:neighbourhood=4tapVarying,unjitterColor=off,clipTarget=clamp,"
                                               "dilation=") +
                                       (reach ? "closest3x3" : "none"),
-                                  kW, kH);
+                                  kInsideWidth, kInsideHeight);
         const Frame first = randomFrame(0), second = randomFrame(1);
         m.resolve(first, {}, {});
         m.resolve(second, {}, {});
         double wrong = 0;
         for (size_t c = 0; c < 3; c++)
-            for (int y = 0; y < kH; y++)
-                for (int x = 0; x < kW; x++) {
+            for (int y = 0; y < kInsideHeight; y++)
+                for (int x = 0; x < kInsideWidth; x++) {
                     const double found = double(m.out.c[c].at(x, y));
                     EXPECT_NEAR(found, fourTap(second, first.colorEncoded, reach, false, c, x, y), 2e-6)
                         << reach << ": " << x << "," << y;

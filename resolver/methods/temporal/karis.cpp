@@ -9,13 +9,13 @@
 namespace aa {
 namespace {
 
-constexpr int kRowsPerCall = 32;  // each converts two rows of its neighbours again
+constexpr int kKarisRowsPerCall = 32;  // each converts two rows of its neighbours again
 
 constexpr Choice<BoxKind> kBoxes[] = {
     {"minmax", BoxKind::minmax}, {"variance", BoxKind::variance}, {"intersection", BoxKind::intersection}};
-constexpr Choice<HistoryConstraint> kConstraints[] = {{"clipFiltered", HistoryConstraint::clipFiltered},
-                                                      {"clipMean", HistoryConstraint::clipMean},
-                                                      {"clamp", HistoryConstraint::clamp}};
+constexpr Choice<HistoryConstraint> kKarisConstraints[] = {{"clipFiltered", HistoryConstraint::clipFiltered},
+                                                           {"clipMean", HistoryConstraint::clipMean},
+                                                           {"clamp", HistoryConstraint::clamp}};
 constexpr Choice<AntiFlicker> kAntiFlickers[] = {
     {"none", AntiFlicker::none}, {"karis", AntiFlicker::karis}, {"falcor", AntiFlicker::falcor}};
 
@@ -41,13 +41,13 @@ class Karis : public Method {
         args.ycocg = p.flag("ycocg");
         args.inverseLuminance = p.flag("inverseLuminance");
         args.box = p.chosen("box", kBoxes);
-        args.constraint = p.chosen("constraint", kConstraints);
+        args.constraint = p.chosen("constraint", kKarisConstraints);
         args.neighbourhood = temporal::neighbourhood(p);
         args.gamma = p.realf("gamma");
         args.antiFlicker = p.chosen("antiFlicker", kAntiFlickers);
         karisFilter(args.in.jitterXPx, args.in.jitterYPx, args.filter);
         args.in.debug = debug_.begin(*this, frame.width, frame.height);
-        temporal::runTemporal(karisKernelsFor(exec).resolve, exec, args, kRowsPerCall, kKarisScratchRows);
+        temporal::runTemporal(karisKernelsFor(exec).resolve, exec, args, kKarisRowsPerCall, kKarisScratchRows);
         history_.end(temporal::historyStorage(p), exec);
     }
     size_t stateBytes() const override { return history_.bytes(); }
@@ -101,7 +101,7 @@ MethodDescriptor descriptor(const Preset& d) {
                        realParam("gamma", "1", 0, 8, "half width of the variance box in standard deviations",
                                  "[Salvi 2016]: 0.75 to 1.25", "box=variance|intersection"),
                        neighbourhood,
-                       choiceParam("constraint", d.constraint, kConstraints,
+                       choiceParam("constraint", d.constraint, kKarisConstraints,
                                    "history to the box: clipped toward the current colour or the mean, or clamped",
                                    d.source),
                        choiceParam("antiFlicker", d.antiFlicker, kAntiFlickers, "rule that adapts alpha",

@@ -9,7 +9,7 @@
 namespace aa {
 namespace {
 
-constexpr int kRowsPerCall = 64;  // each computes nine rows of its neighbours again, partly
+constexpr int kMasterRowsPerCall = 64;  // each computes nine rows of its neighbours again, partly
 
 constexpr Choice<DepthUnit> kDepthUnits[] = {
     {"normalised", DepthUnit::normalised}, {"zfar", DepthUnit::zfar}, {"world", DepthUnit::world}};
@@ -94,7 +94,7 @@ class Master : public Method {
                 if (y0 > 0) seam[size_t(y0)] = 1;
                 if (y1 < height) seam[size_t(y1 - 1)] = 1;
             },
-            kRowsPerCall);
+            kMasterRowsPerCall);
         std::vector<int> rows;
         for (int y = 0; y < height; y++)
             if (seam[size_t(y)]) rows.push_back(y);

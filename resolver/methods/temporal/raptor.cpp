@@ -23,11 +23,11 @@ double blackmanHarris(double x) {
     const double t = std::numbers::pi * x;
     return 0.35875 + 0.48829 * std::cos(t) + 0.14128 * std::cos(2 * t) + 0.01168 * std::cos(3 * t);
 }
-constexpr Choice<RaptorConstraint> kConstraints[] = {{"none", RaptorConstraint::none},
-                                                     {"clamp", RaptorConstraint::clamp},
-                                                     {"clip", RaptorConstraint::clip},
-                                                     {"varianceClip", RaptorConstraint::varianceClip},
-                                                     {"varianceClipClamp", RaptorConstraint::varianceClipClamp}};
+constexpr Choice<RaptorConstraint> kRaptorConstraints[] = {{"none", RaptorConstraint::none},
+                                                           {"clamp", RaptorConstraint::clamp},
+                                                           {"clip", RaptorConstraint::clip},
+                                                           {"varianceClip", RaptorConstraint::varianceClip},
+                                                           {"varianceClipClamp", RaptorConstraint::varianceClipClamp}};
 constexpr Choice<LuminanceDifference> kLuminanceDifferences[] = {{"off", LuminanceDifference::off},
                                                                  {"corrected", LuminanceDifference::corrected},
                                                                  {"printed", LuminanceDifference::printed}};
@@ -71,7 +71,7 @@ class Raptor : public Method {
         args.in.filter = temporal::historyFilter(p);
         const auto filter = raptorFilter(p, args.in.jitterXPx, args.in.jitterYPx);
         std::copy(filter.begin(), filter.end(), args.filter);
-        args.constraint = p.chosen("constraint", kConstraints);
+        args.constraint = p.chosen("constraint", kRaptorConstraints);
         args.luminanceDifference = p.chosen("lumaDiff", kLuminanceDifferences);
         args.temporalFiltering = p.flag("temporalFiltering");
         args.luminanceWeights = p.flag(p.choice("lumaDiff") == "off" ? "inverseLuminance" : "lumaDiffWeights");
@@ -124,7 +124,7 @@ MethodDescriptor raptorDescriptor() {
                    temporal::dilationParam("closest3x3", "[Castorina 2023]"),
                    temporal::historyFilterParam("catmullRom", "[Castorina 2023]"),
                    temporal::historyClampParam(),
-                   choiceParam("constraint", "varianceClipClamp", kConstraints,
+                   choiceParam("constraint", "varianceClipClamp", kRaptorConstraints,
                                "how history is held to the 3x3 window's colours", "[Castorina 2023]"),
                    realParam("gamma", "1", 0, 8, "half width of the variance box in standard deviations",
                              "[Castorina 2023]", "constraint=varianceClip|varianceClipClamp"),

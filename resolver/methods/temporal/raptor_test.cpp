@@ -13,7 +13,7 @@ namespace aa {
 namespace {
 using namespace testing;
 
-constexpr int kW = 29, kH = 17;
+constexpr int kRaptorWidth = 29, kRaptorHeight = 17;
 using Colour = std::array<double, 3>;
 using Image = std::vector<Colour>;
 
@@ -25,12 +25,13 @@ double saturated(double x) { return std::min(std::max(x, 0.0), 1.0); }
 double luma(const Colour& c) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
 double largest(const Colour& c) { return std::max({c[0], c[1], c[2]}); }
 const Colour& at(const Image& image, int x, int y) {
-    return image[size_t(std::clamp(y, 0, kH - 1) * kW + std::clamp(x, 0, kW - 1))];
+    return image[size_t(std::clamp(y, 0, kRaptorHeight - 1) * kRaptorWidth + std::clamp(x, 0, kRaptorWidth - 1))];
 }
 Image imageOf(const Rgb& rgb) {
     Image image;
-    for (int y = 0; y < kH; y++)
-        for (int x = 0; x < kW; x++) image.push_back(each([&](size_t c) { return double(rgb.c[c].at(x, y)); }));
+    for (int y = 0; y < kRaptorHeight; y++)
+        for (int x = 0; x < kRaptorWidth; x++)
+            image.push_back(each([&](size_t c) { return double(rgb.c[c].at(x, y)); }));
     return image;
 }
 
@@ -84,7 +85,7 @@ Colour printedPixel(const Frame& f, const Image& now, const Image& past, const P
     if (p.choice("dilation") == "closest3x3")
         for (int i = -1; i <= 1; i++)
             for (int j = -1; j <= 1; j++) {
-                const int nx = std::clamp(x + i, 0, kW - 1), ny = std::clamp(y + j, 0, kH - 1);
+                const int nx = std::clamp(x + i, 0, kRaptorWidth - 1), ny = std::clamp(y + j, 0, kRaptorHeight - 1);
                 if (f.depthView.at(nx, ny) < f.depthView.at(closestX, closestY)) closestX = nx, closestY = ny;
             }
     const double qx = x + 0.5 - double(f.motionXPx.at(closestX, closestY)),
@@ -111,7 +112,7 @@ Colour printedPixel(const Frame& f, const Image& now, const Image& past, const P
         const Colour rgb = ycocg ? toRgb(c) : c;
         return each([&](size_t k) { return std::max(rgb[k], 0.0); });
     };
-    if (!(qx >= 0 && qx <= kW && qy >= 0 && qy <= kH)) return result(current);
+    if (!(qx >= 0 && qx <= kRaptorWidth && qy >= 0 && qy <= kRaptorHeight)) return result(current);
     if (ycocg)
         for (size_t k = 1; k < 3; k++) {
             const double chroma = 0.125 * (hi[0] - lo[0]);
@@ -156,13 +157,13 @@ Colour printedPixel(const Frame& f, const Image& now, const Image& past, const P
 }
 Image sharpened(const Image& image, double amount) {
     Image out = image;
-    for (int y = 0; y < kH; y++)
-        for (int x = 0; x < kW; x++) {
+    for (int y = 0; y < kRaptorHeight; y++)
+        for (int x = 0; x < kRaptorWidth; x++) {
             double average = 0;
             for (int i = -1; i <= 1; i++)
                 for (int j = -1; j <= 1; j++) average += luma(at(image, x + i, y + j)) / 9;
             const double own = luma(at(image, x, y)), final = std::max(own + (own - average) * amount, 0.0);
-            for (double& c : out[size_t(y * kW + x)]) c *= final / own;
+            for (double& c : out[size_t(y * kRaptorWidth + x)]) c *= final / own;
         }
     return out;
 }
@@ -170,10 +171,11 @@ Image sharpened(const Image& image, double amount) {
 // Random colours in (0, 1), depths and motions up to 2.5 px.
 Frame randomFrame(int n, glm::dvec2 jitterPx) {
     const Picture colours = noisePicture(unsigned(20 + n)), depths = noisePicture(unsigned(40 + n));
-    Frame f = temporalFrame(n, kW, kH, [&](int x, int y, int c) { return 0.02f + 0.9f * colours(x, y, c); });
+    Frame f = temporalFrame(n, kRaptorWidth, kRaptorHeight,
+                            [&](int x, int y, int c) { return 0.02f + 0.9f * colours(x, y, c); });
     f.jitterPx = jitterPx;
-    for (int y = 0; y < kH; y++)
-        for (int x = 0; x < kW; x++) {
+    for (int y = 0; y < kRaptorHeight; y++)
+        for (int x = 0; x < kRaptorWidth; x++) {
             f.depthView.at(x, y) = 1 + 9 * depths(x, y, 0);
             f.motionXPx.at(x, y) = 5 * depths(x, y, 1) - 2.5f;
             f.motionYPx.at(x, y) = 5 * depths(x, y, 2) - 2.5f;
@@ -184,14 +186,14 @@ Frame randomFrame(int n, glm::dvec2 jitterPx) {
 // Largest difference between `options` of raptor and the listings with the options `printed`.
 double differenceFromBook(const std::string& options, const std::string& printed) {
     const Params p = parseMethod("raptor:" + printed).params();
-    RunningMethod m = running("raptor:" + options, kW, kH);
+    RunningMethod m = running("raptor:" + options, kRaptorWidth, kRaptorHeight);
     const Frame first = randomFrame(0, {}), second = randomFrame(1, {0.3, -0.2});
     m.resolve(first, {}, {});
     m.resolve(second, {}, {});
     const Image now = imageOf(second.colorLinear), past = imageOf(first.colorLinear);
     Image expected;
-    for (int y = 0; y < kH; y++)
-        for (int x = 0; x < kW; x++) expected.push_back(printedPixel(second, now, past, p, x, y));
+    for (int y = 0; y < kRaptorHeight; y++)
+        for (int x = 0; x < kRaptorWidth; x++) expected.push_back(printedPixel(second, now, past, p, x, y));
     if (p.real("sharpen") > 0) expected = sharpened(expected, p.real("sharpen"));
     double most = 0;
     const Image found = imageOf(m.out);

@@ -12,9 +12,9 @@ namespace {
 using namespace aa::testing;
 
 // A shallow edge y = y0 + slope x (or its transpose), black below, sampled at `samplePx` from the pixel centres.
-constexpr int kW = 96, kH = 40;
+constexpr int kSmaaWidth = 96, kSmaaHeight = 40;
 Rgb shallowEdge(double y0, double slope, bool vertical, glm::dvec2 samplePx) {
-    const int w = vertical ? kH : kW, h = vertical ? kW : kH;
+    const int w = vertical ? kSmaaHeight : kSmaaWidth, h = vertical ? kSmaaWidth : kSmaaHeight;
     Rgb image(w, h);
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++) {
@@ -26,7 +26,7 @@ Rgb shallowEdge(double y0, double slope, bool vertical, glm::dvec2 samplePx) {
     return image;
 }
 Rgb coverage(double y0, double slope, bool vertical) {
-    const int w = vertical ? kH : kW, h = vertical ? kW : kH;
+    const int w = vertical ? kSmaaHeight : kSmaaWidth, h = vertical ? kSmaaWidth : kSmaaHeight;
     Rgb sum(w, h);
     for (int i = 0; i < 16; i++)
         for (int j = 0; j < 16; j++) {
@@ -80,8 +80,8 @@ TEST(SmaaT2x, MovesJitteredEdgesBack) {
 TEST(SmaaT2x, StaticSceneAveragesBothFrames) {
     const Frame even = jitteredFrame(shallowEdge(17.3, 0.07, false, {.25, .25}), 0, {.25, .25});
     const Frame odd = jitteredFrame(shallowEdge(17.3, 0.07, false, {-.25, -.25}), 1, {-.25, -.25});
-    const auto method = parseMethod("smaaT2x").create({.width = kW, .height = kH});
-    Rgb first(kW, kH), second(kW, kH), third(kW, kH);
+    const auto method = parseMethod("smaaT2x").create({.width = kSmaaWidth, .height = kSmaaHeight});
+    Rgb first(kSmaaWidth, kSmaaHeight), second(kSmaaWidth, kSmaaHeight), third(kSmaaWidth, kSmaaHeight);
     method->resolve(even, {}, first);
     method->resolve(odd, {}, second);
     Frame again = even;
@@ -93,8 +93,8 @@ TEST(SmaaT2x, StaticSceneAveragesBothFrames) {
         f.reset = true;
         return f;
     }());
-    for (int y = 0; y < kH; y++)
-        for (int x = 0; x < kW; x++) {
+    for (int y = 0; y < kSmaaHeight; y++)
+        for (int x = 0; x < kSmaaWidth; x++) {
             EXPECT_NEAR(second.c[0].at(x, y), 0.5f * (first.c[0].at(x, y) + oddAlone.c[0].at(x, y)), 1e-6f);
             EXPECT_NEAR(third.c[0].at(x, y), second.c[0].at(x, y), 1e-6f);  // the mean is symmetric: stable
         }
@@ -102,24 +102,25 @@ TEST(SmaaT2x, StaticSceneAveragesBothFrames) {
 TEST(SmaaT2x, VelocityWeight) {
     // K = 30 on |v| in UV: equal speed 1/2, a difference of 1/3600 gives 1/4, 1/900 and more gives 0.
     for (const auto& [uv, weight] : {std::pair{0.0, 0.5}, {1.0 / 3600, 0.25}, {1.0 / 900, 0.0}, {1.0 / 100, 0.0}}) {
-        Rgb white(kW, kH, 1.0f), black(kW, kH, 0.0f);
-        const auto method = parseMethod("smaaT2x").create({.width = kW, .height = kH});
-        Rgb out(kW, kH);
+        Rgb white(kSmaaWidth, kSmaaHeight, 1.0f), black(kSmaaWidth, kSmaaHeight, 0.0f);
+        const auto method = parseMethod("smaaT2x").create({.width = kSmaaWidth, .height = kSmaaHeight});
+        Rgb out(kSmaaWidth, kSmaaHeight);
         method->resolve(jitteredFrame(white, 0, {0, 0}, {0, 0}), {}, out);
-        method->resolve(jitteredFrame(black, 1, {0, 0}, {uv * kW, 0}), {}, out);
-        EXPECT_NEAR(out.c[0].at(kW / 2, kH / 2), weight, 2e-3) << uv;
+        method->resolve(jitteredFrame(black, 1, {0, 0}, {uv * kSmaaWidth, 0}), {}, out);
+        EXPECT_NEAR(out.c[0].at(kSmaaWidth / 2, kSmaaHeight / 2), weight, 2e-3) << uv;
         // In units of 1080 px, whatever the resolution.
-        const auto pixels = parseMethod("smaaT2x:velocityUnit=px1080").create({.width = kW, .height = kH});
+        const auto pixels =
+            parseMethod("smaaT2x:velocityUnit=px1080").create({.width = kSmaaWidth, .height = kSmaaHeight});
         pixels->resolve(jitteredFrame(white, 0, {0, 0}, {0, 0}), {}, out);
         pixels->resolve(jitteredFrame(black, 1, {0, 0}, {0, uv * 1080}), {}, out);
-        EXPECT_NEAR(out.c[0].at(kW / 2, kH / 2), weight, 2e-3) << uv;
+        EXPECT_NEAR(out.c[0].at(kSmaaWidth / 2, kSmaaHeight / 2), weight, 2e-3) << uv;
     }
 }
 TEST(SmaaT2x, TakesNothingFromOutsideThePreviousFrame) {
-    const auto method = parseMethod("smaaT2x").create({.width = kW, .height = kH});
-    Rgb out(kW, kH);
-    method->resolve(jitteredFrame(Rgb(kW, kH, 1.0f), 0, {0, 0}, {8, 0}), {}, out);
-    method->resolve(jitteredFrame(Rgb(kW, kH, 0.0f), 1, {0, 0}, {8, 0}), {}, out);
+    const auto method = parseMethod("smaaT2x").create({.width = kSmaaWidth, .height = kSmaaHeight});
+    Rgb out(kSmaaWidth, kSmaaHeight);
+    method->resolve(jitteredFrame(Rgb(kSmaaWidth, kSmaaHeight, 1.0f), 0, {0, 0}, {8, 0}), {}, out);
+    method->resolve(jitteredFrame(Rgb(kSmaaWidth, kSmaaHeight, 0.0f), 1, {0, 0}, {8, 0}), {}, out);
     EXPECT_EQ(out.c[0].at(4, 5), 0.0f);   // came from x = -4
     EXPECT_EQ(out.c[0].at(20, 5), 0.5f);  // current - previous: came from x = 12
 }
@@ -128,21 +129,21 @@ TEST(SmaaT2x, TakesNothingFromOutsideThePreviousFrame) {
 // velocities themselves are the same in both precisions.
 TEST(SmaaT2x, NearlyEqualSpeedsLoseNothing) {
     const auto frame = [](int number, float grey, float spread) {
-        Frame f = jitteredFrame(Rgb(kW, kH, grey), number, {0, 0}, {3, -2});
-        for (int y = 0; y < kH; y++)
-            for (int x = 0; x < kW; x++) f.motionXPx.at(x, y) += spread * float((x * 7 + y * 13) % 11);
+        Frame f = jitteredFrame(Rgb(kSmaaWidth, kSmaaHeight, grey), number, {0, 0}, {3, -2});
+        for (int y = 0; y < kSmaaHeight; y++)
+            for (int x = 0; x < kSmaaWidth; x++) f.motionXPx.at(x, y) += spread * float((x * 7 + y * 13) % 11);
         return f;
     };
-    Rgb results[2] = {Rgb(kW, kH), Rgb(kW, kH)};
+    Rgb results[2] = {Rgb(kSmaaWidth, kSmaaHeight), Rgb(kSmaaWidth, kSmaaHeight)};
     for (size_t i = 0; i < 2; i++) {
         Exec exec;
         exec.precision = i == 0 ? Precision::fast : Precision::oracle;
-        const auto method = parseMethod("smaaT2x").create({.width = kW, .height = kH});
+        const auto method = parseMethod("smaaT2x").create({.width = kSmaaWidth, .height = kSmaaHeight});
         method->resolve(frame(0, 1, 0), exec, results[i]);
         method->resolve(frame(1, 0, 1e-6f), exec, results[i]);
     }
-    for (int y = 0; y < kH; y++)
-        for (int x = 0; x < kW; x++)
+    for (int y = 0; y < kSmaaHeight; y++)
+        for (int x = 0; x < kSmaaWidth; x++)
             EXPECT_NEAR(results[0].c[0].at(x, y), results[1].c[0].at(x, y), 5e-7) << x << " " << y;
 }
 
@@ -163,17 +164,17 @@ TEST(SmaaMulti, ComeNearerToTheCoverageThanTheirSamples) {
     for (int k = 0; k < 12; k++) {
         const double y0 = 14.13 + 0.37 * k, slope = 0.08 + 0.021 * k;
         const Rgb truth = coverage(y0, slope, false);
-        Rgb out(kW, kH);
+        Rgb out(kSmaaWidth, kSmaaHeight);
         parseMethod("ssaa")
-            .create({.width = kW, .height = kH, .subSamplePositionsPx = p2})
+            .create({.width = kSmaaWidth, .height = kSmaaHeight, .subSamplePositionsPx = p2})
             ->resolve(withSubSamples(y0, slope, p2, 0), {}, out);
         box += squaredError(out, truth);
         parseMethod("smaaS2x:blendSpace=encoded")
-            .create({.width = kW, .height = kH, .subSamplePositionsPx = p2})
+            .create({.width = kSmaaWidth, .height = kSmaaHeight, .subSamplePositionsPx = p2})
             ->resolve(withSubSamples(y0, slope, p2, 0), {}, out);
         two += squaredError(out, truth);
-        const auto method =
-            parseMethod("smaa4x:blendSpace=encoded").create({.width = kW, .height = kH, .subSamplePositionsPx = p4});
+        const auto method = parseMethod("smaa4x:blendSpace=encoded")
+                                .create({.width = kSmaaWidth, .height = kSmaaHeight, .subSamplePositionsPx = p4});
         for (int n = 0; n < 2; n++) method->resolve(withSubSamples(y0, slope, p4, n), {}, out);
         four += squaredError(out, truth);
     }
@@ -191,9 +192,10 @@ TEST(SmaaMulti, JitterAndPositionsAddUp) {
         const double y0 = 14.13 + 0.37 * k, slope = 0.08 + 0.021 * k;
         const Rgb truth = coverage(y0, slope, false);
         auto error = [&](const std::vector<glm::dvec2>& positions, bool jitter, bool say) {
-            const auto method = parseMethod("smaa4x:blendSpace=encoded")
-                                    .create({.width = kW, .height = kH, .subSamplePositionsPx = positions});
-            Rgb out(kW, kH);
+            const auto method =
+                parseMethod("smaa4x:blendSpace=encoded")
+                    .create({.width = kSmaaWidth, .height = kSmaaHeight, .subSamplePositionsPx = positions});
+            Rgb out(kSmaaWidth, kSmaaHeight);
             for (int n = 0; n < 2; n++) {
                 const double d = !jitter ? 0 : n == 0 ? 0.125 : -0.125;
                 Frame f = withSubSamples(y0, slope, positions, n);

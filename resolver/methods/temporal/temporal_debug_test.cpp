@@ -10,17 +10,17 @@ namespace aa {
 namespace {
 using namespace testing;
 
-constexpr int kW = 32, kH = 18;
+constexpr int kDebugWidth = 32, kDebugHeight = 18;
 const std::vector<glm::dvec2> kPair = patternPositionsPx("d3d2");
 
 Frame movingFrame(int n) {
-    Frame f = temporalFrame(n, kW, kH, noisePicture(unsigned(n)), {3, 0});
-    for (int y = 0; y < kH; y++)
-        for (int x = 0; x < kW; x++)
+    Frame f = temporalFrame(n, kDebugWidth, kDebugHeight, noisePicture(unsigned(n)), {3, 0});
+    for (int y = 0; y < kDebugHeight; y++)
+        for (int x = 0; x < kDebugWidth; x++)
             if (x > 10 && x < 16) f.depthView.at(x, y) = 2, f.objectId.at(x, y) = 2, f.motionXPx.at(x, y) = 5;
     f.depthView.fillBorder(), f.objectId.fillBorder(), f.motionXPx.fillBorder();
     f.subSamplePositionsPx = kPair;
-    f.subSamples.assign(2, {f.depthView, Rgb(kW, kH), f.objectId, f.colorLinear});
+    f.subSamples.assign(2, {f.depthView, Rgb(kDebugWidth, kDebugHeight), f.objectId, f.colorLinear});
     return f;
 }
 std::map<std::string, DebugLayer> layersOf(RunningMethod& m, int frames) {
@@ -35,7 +35,7 @@ TEST(TemporalDebug, EveryMethodShowsItsIntermediates) {
     int seen = 0;
     for (const auto& d : methodsUnderTest()) {
         if (d.family != "temporal" || d.id.starts_with("smaa")) continue;  // those keep no constrained history
-        RunningMethod m = running(std::string(d.id), kW, kH);
+        RunningMethod m = running(std::string(d.id), kDebugWidth, kDebugHeight);
         const auto layers = layersOf(m, 3);
         std::vector<std::string> wanted = {"motionDilatedX", "motionDilatedY", "rejection", "boxLow",
                                            "boxHigh",        "clipAmount",     "feedback"};
@@ -48,9 +48,10 @@ TEST(TemporalDebug, EveryMethodShowsItsIntermediates) {
         for (const auto& name : wanted) {
             ASSERT_TRUE(layers.contains(name)) << d.id << " " << name;
             for (const auto& plane : layers.at(name).planes) {
-                ASSERT_EQ(plane.width(), kW) << d.id;
-                for (int y = 0; y < kH; y++)
-                    for (int x = 0; x < kW; x++) ASSERT_TRUE(std::isfinite(plane.at(x, y))) << d.id << " " << name;
+                ASSERT_EQ(plane.width(), kDebugWidth) << d.id;
+                for (int y = 0; y < kDebugHeight; y++)
+                    for (int x = 0; x < kDebugWidth; x++)
+                        ASSERT_TRUE(std::isfinite(plane.at(x, y))) << d.id << " " << name;
             }
         }
         // Left of x = 3 the surface came from outside: history was not used, and the layer says why.
@@ -70,10 +71,10 @@ TEST(TemporalDebug, RampHoldsTheFeedbackOfEveryMethod) {
         const bool offered =
             std::any_of(d.params.begin(), d.params.end(), [](const auto& p) { return p.name == "warmup"; });
         if (!offered) continue;
-        RunningMethod m = running(std::string(d.id) + ":warmup=ramp", kW, kH);
+        RunningMethod m = running(std::string(d.id) + ":warmup=ramp", kDebugWidth, kDebugHeight);
         m.method->keepDebugLayers = true;
         for (int n = 0; n < 6; n++) {
-            m.resolve(temporalFrame(n, kW, kH, [](int, int, int) { return 0.5f; }), {}, {});
+            m.resolve(temporalFrame(n, kDebugWidth, kDebugHeight, [](int, int, int) { return 0.5f; }), {}, {});
             if (n == 0) continue;
             for (const auto& layer : m.method->debugLayers()) {
                 if (layer.name != "feedback") continue;

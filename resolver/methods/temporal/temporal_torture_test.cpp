@@ -8,24 +8,25 @@ namespace aa {
 namespace {
 using namespace testing;
 
-constexpr int kW = 21, kH = 13;
+constexpr int kTortureWidth = 21, kTortureHeight = 13;
 
 class Torture : public ::testing::TestWithParam<std::string> {
   protected:
     std::vector<glm::dvec2> positionsPx = patternPositionsPx(GetParam() == "smaa4x" ? "d3d4" : "d3d2");
 
     RunningMethod method(const std::string& options = "") const {
-        return RunningMethod(specUnderTest(GetParam() + options), {.width = kW,
-                                                                   .height = kH,
+        return RunningMethod(specUnderTest(GetParam() + options), {.width = kTortureWidth,
+                                                                   .height = kTortureHeight,
                                                                    .jitterPeriod = 16,
                                                                    .isStatic = false,
                                                                    .frameCount = 16,
                                                                    .subSamplePositionsPx = positionsPx});
     }
     Frame frame(int n, const Picture& picture, glm::dvec2 motionPx = {0, 0}) const {
-        Frame f = temporalFrame(n, kW, kH, picture, motionPx);
+        Frame f = temporalFrame(n, kTortureWidth, kTortureHeight, picture, motionPx);
         f.subSamplePositionsPx = positionsPx;
-        f.subSamples.assign(positionsPx.size(), {f.depthView, Rgb(kW, kH), f.objectId, f.colorLinear});
+        f.subSamples.assign(positionsPx.size(),
+                            {f.depthView, Rgb(kTortureWidth, kTortureHeight), f.objectId, f.colorLinear});
         return f;
     }
     bool encoded() const { return specUnderTest(GetParam()).outputSpace() == Space::encoded; }
@@ -33,17 +34,17 @@ class Torture : public ::testing::TestWithParam<std::string> {
 
 bool allFinite(const Rgb& image) {
     for (const auto& p : image.c)
-        for (int y = 0; y < kH; y++)
-            for (int x = 0; x < kW; x++)
+        for (int y = 0; y < kTortureHeight; y++)
+            for (int x = 0; x < kTortureWidth; x++)
                 if (!std::isfinite(p.at(x, y))) return false;
     return true;
 }
 double meanOf(const Rgb& image) {
     double sum = 0;
     for (const auto& p : image.c)
-        for (int y = 0; y < kH; y++)
-            for (int x = 0; x < kW; x++) sum += double(p.at(x, y));
-    return sum / (3 * kW * kH);
+        for (int y = 0; y < kTortureHeight; y++)
+            for (int x = 0; x < kTortureWidth; x++) sum += double(p.at(x, y));
+    return sum / (3 * kTortureWidth * kTortureHeight);
 }
 
 TEST_P(Torture, ConstantsStayConstant) {  // T1 to T3
@@ -52,13 +53,14 @@ TEST_P(Torture, ConstantsStayConstant) {  // T1 to T3
         RunningMethod m = method();
         for (int n = 0; n < 12; n++) m.resolve(frame(n, [&](int, int, int) { return v; }, {0.3, -0.4}), {}, {});
         Rgb expected;
-        encode(Rgb(kW, kH, v), {}, {}, expected);
+        encode(Rgb(kTortureWidth, kTortureHeight, v), {}, {}, expected);
         const float want = encoded() ? expected.c[0].at(0, 0) : v;
         // PQ loses a few units more than a blend (kernels/pq.h).
         const float tolerance = (GetParam() == "donut" ? 2e-5f : 2e-6f) * std::max(want, 0.01f);
         for (const auto& p : m.out.c)
-            for (int y = 0; y < kH; y++)
-                for (int x = 0; x < kW; x++) ASSERT_NEAR(p.at(x, y), want, tolerance) << v << " " << x << "," << y;
+            for (int y = 0; y < kTortureHeight; y++)
+                for (int x = 0; x < kTortureWidth; x++)
+                    ASSERT_NEAR(p.at(x, y), want, tolerance) << v << " " << x << "," << y;
     }
 }
 
@@ -80,7 +82,7 @@ TEST_P(Torture, ExtremeColoursStayFinite) {  // T4, T5, T7, T8
         // It leaves no trace for ever: without constraint a firefly of 1e6 falls below 1 in 140 frames of k = 0.9.
         for (int n = 0; n < 400; n++) m.resolve(frame(n + 10, [](int, int, int) { return 0.25f; }), {}, {});
         Rgb flat;
-        encode(Rgb(kW, kH, 0.25f), {}, {}, flat);
+        encode(Rgb(kTortureWidth, kTortureHeight, 0.25f), {}, {}, flat);
         // A running mean keeps the share 1/N of what it saw.
         if (GetParam() == "accumReject" || GetParam() == "asaa" || GetParam() == "t2msaa") continue;
         ASSERT_NEAR(m.out.c[0].at(9, 6), encoded() ? flat.c[0].at(0, 0) : 0.25f, 1e-3);
@@ -93,11 +95,11 @@ TEST_P(Torture, ExtremeDepthAndMotionStayFinite) {  // T9 to T11
         for (int n = 0; n < 8; n++) {
             const glm::dvec2 motion = kind == 2   ? glm::dvec2(double(NAN), 0)
                                       : kind == 3 ? glm::dvec2(n % 2 ? 1e30 : -1e30, 1e30)
-                                      : kind == 4 ? glm::dvec2(kW, -kH)
+                                      : kind == 4 ? glm::dvec2(kTortureWidth, -kTortureHeight)
                                                   : glm::dvec2(0.4, 0.4);
             Frame f = frame(n, noisePicture(unsigned(n)), motion);
-            for (int y = 0; y < kH; y++)
-                for (int x = 0; x < kW; x++) {
+            for (int y = 0; y < kTortureHeight; y++)
+                for (int x = 0; x < kTortureWidth; x++) {
                     const float z = kind == 0 ? kBackgroundDepth : (x + y + n) % 2 ? 5.0f : kBackgroundDepth;
                     f.depthView.at(x, y) = z;
                     f.objectId.at(x, y) = z < 1e9f;

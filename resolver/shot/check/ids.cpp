@@ -7,9 +7,9 @@ namespace aa {
 using glm::dvec2;
 
 namespace {
-constexpr uint64_t kFewestPixels = 30;  // of an object, away from its outline
-constexpr double kMostOfThem = 0.8;     // must land on one other id
-constexpr double kSameDepth = 0.05;     // relative: what a surface moves along the view axis in a frame
+constexpr uint64_t kFewestLandings = 30;  // of an object, away from its outline
+constexpr double kMostOfThem = 0.8;       // must land on one other id
+constexpr double kSameDepth = 0.05;       // relative: what a surface moves along the view axis in a frame
 struct Landing {
     std::map<uint32_t, uint64_t> on;  // id in the frame before -> pixels
     uint64_t pixels = 0;
@@ -50,7 +50,7 @@ bool IdCheck::add(const Frame& previous, const Frame& frame, CheckReport& report
     std::map<uint32_t, uint32_t> renamed, renamedTo;  // id now -> id before, and back
     for (const auto& [id, landing] : landings)
         for (const auto& [before, pixels] : landing.on)
-            if (before != id && landing.pixels >= kFewestPixels &&
+            if (before != id && landing.pixels >= kFewestLandings &&
                 double(pixels) >= kMostOfThem * double(landing.pixels))
                 renamed[id] = before, renamedTo[before] = id;
     std::erase_if(renamed, [&, all = renamed](const auto& pair) {

@@ -15,7 +15,7 @@ namespace aa {
 using glm::dvec2;
 
 namespace {
-constexpr size_t kFewestPixels = 60;     // below, the standard error of a fit exceeds 0.1 px
+constexpr size_t kFewestFitted = 60;     // below, the standard error of a fit exceeds 0.1 px
 constexpr double kLeastContrast = 0.02;  // linear; weaker edges drown in shading
 constexpr double kTolerancePx = 0.12;    // busy edges shorten an offset of 0.5 px by about this much
 constexpr double kSigmas = 4;
@@ -136,7 +136,7 @@ void JitterCheck::add(const FrameEntry& entry, const Registration& found, double
 std::vector<JitterCheck::Registered> JitterCheck::registered() const {
     std::vector<Registered> good;
     for (const auto& f : frames_)
-        if (f.found.pixels >= kFewestPixels) good.push_back(f);
+        if (f.found.pixels >= kFewestFitted) good.push_back(f);
     return good;
 }
 

@@ -12,7 +12,7 @@ namespace aa {
 namespace {
 using glm::dvec2;
 using testing::HasSubstr;
-constexpr int kWidth = 96, kHeight = 64;
+constexpr int kJitterWidth = 96, kJitterHeight = 64;
 
 struct Box {
     dvec2 low, high;
@@ -35,17 +35,17 @@ struct Picture {
         return shade;
     }
     PlaneF sampled(dvec2 jitterPx) const {
-        PlaneF plane(kWidth, kHeight);
-        for (int y = 0; y < kHeight; y++)
-            for (int x = 0; x < kWidth; x++) plane.at(x, y) = at(dvec2(x, y) + 0.5 + jitterPx);
+        PlaneF plane(kJitterWidth, kJitterHeight);
+        for (int y = 0; y < kJitterHeight; y++)
+            for (int x = 0; x < kJitterWidth; x++) plane.at(x, y) = at(dvec2(x, y) + 0.5 + jitterPx);
         plane.fillBorder();
         return plane;
     }
     PlaneF mean() const {
         constexpr int kSide = 16;
-        PlaneF plane(kWidth, kHeight);
-        for (int y = 0; y < kHeight; y++)
-            for (int x = 0; x < kWidth; x++) {
+        PlaneF plane(kJitterWidth, kJitterHeight);
+        for (int y = 0; y < kJitterHeight; y++)
+            for (int x = 0; x < kJitterWidth; x++) {
                 double sum = 0;
                 for (int j = 0; j < kSide; j++)
                     for (int i = 0; i < kSide; i++) sum += at(dvec2(x, y) + (dvec2(i, j) + 0.5) / double(kSide));
@@ -61,7 +61,7 @@ Picture boxes(uint32_t seed, int count) {
     std::uniform_real_distribution<double> u(0, 1);
     Picture picture;
     for (int i = 0; i < count; i++) {
-        const dvec2 low(4 + u(random) * (kWidth - 40), 4 + u(random) * (kHeight - 34));
+        const dvec2 low(4 + u(random) * (kJitterWidth - 40), 4 + u(random) * (kJitterHeight - 34));
         picture.boxes.push_back({low, low + dvec2(12 + 20 * u(random), 12 + 16 * u(random)), 0.3f + 0.2f * float(i)});
     }
     return picture;
@@ -94,7 +94,7 @@ dvec2 asItIs(dvec2 j) { return j; }
 dvec2 turnedX(dvec2 j) { return {-j.x, j.y}; }
 dvec2 turnedY(dvec2 j) { return {j.x, -j.y}; }
 dvec2 exchanged(dvec2 j) { return {j.y, j.x}; }
-dvec2 inClipSpace(dvec2 j) { return j / double(kWidth); }
+dvec2 inClipSpace(dvec2 j) { return j / double(kJitterWidth); }
 
 TEST(JitterCheck, RightJitterOfBoxesIsNeverCalledWrong) {
     for (uint32_t seed = 1; seed <= 25; seed++)

@@ -16,7 +16,6 @@ namespace aa {
 namespace fs = std::filesystem;
 using nlohmann::json;
 namespace {
-constexpr float kBackground = 1e9f;
 
 // Files of a pattern, by the number that stands for {frame}.
 std::map<int, fs::path> filesOf(const fs::path& from, const std::string& pattern) {
@@ -243,7 +242,7 @@ class EngineImport {
                     z = !(atFar > 0) ? double(kBackgroundDepth)
                         : far > 0    ? n * far / (n + atFar * (far - n))
                                      : n / atFar;
-                } else if (d >= p.background.value_or(double(kBackground))) {
+                } else if (d >= p.background.value_or(double(kBackgroundFrom))) {
                     z = double(kBackgroundDepth);
                 } else if (p.depthKind == DepthKind::distance) {
                     // The ray through the sample, in view space at depth 1.
@@ -253,7 +252,7 @@ class EngineImport {
                     const double rx = (ndcX + m[2][0]) / m[0][0], ry = (ndcY + m[2][1]) / m[1][1];
                     z /= std::sqrt(1 + rx * rx + ry * ry);
                 }
-                f.depthView.at(x, y) = z >= double(kBackground) ? kBackgroundDepth : float(z);
+                f.depthView.at(x, y) = z >= double(kBackgroundFrom) ? kBackgroundDepth : float(z);
             }
     }
     void toWorldNormals(Frame& f, const EnginePasses& p) const {
@@ -265,7 +264,7 @@ class EngineImport {
             for (int x = 0; x < f.width; x++) {
                 glm::dvec3 v(f.normalWorld.c[0].at(x, y), f.normalWorld.c[1].at(x, y), f.normalWorld.c[2].at(x, y));
                 if (p.normalUnsigned) v = 2.0 * v - 1.0;
-                const bool isBackground = f.passes.has(Pass::depth) && f.depthView.at(x, y) >= kBackground;
+                const bool isBackground = f.passes.has(Pass::depth) && f.depthView.at(x, y) >= kBackgroundFrom;
                 const double length = glm::length(v);
                 v = isBackground || !(length > 1e-3) ? glm::dvec3(0.0) : toWorld * (v / length);
                 for (int c = 0; c < 3; c++) f.normalWorld.c[size_t(c)].at(x, y) = float(v[c]);

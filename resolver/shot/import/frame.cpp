@@ -11,7 +11,6 @@
 
 namespace aa {
 namespace {
-constexpr float kBackground = 1e9f;
 constexpr float kUnitTolerance = 2e-3f;  // of a normal's length; half has 1e-3
 
 std::vector<std::variant<PlaneF*, PlaneU*>> planesOf(Rgb& rgb) { return {&rgb.c[0], &rgb.c[1], &rgb.c[2]}; }
@@ -54,7 +53,7 @@ void takeIds(PlaneF& stored, const ImportPlan& plan, const std::filesystem::path
     for (int y = 0; y < f.height; y++)
         for (int x = 0; x < f.width; x++) {
             const float v = stored.at(x, y);
-            const bool background = plan.depth && f.depthView.at(x, y) >= kBackground;
+            const bool background = plan.depth && f.depthView.at(x, y) >= kBackgroundFrom;
             uint32_t id = 0;
             if (plan.ids == IdSource::cryptomatte)
                 id = std::bit_cast<uint32_t>(v);
@@ -82,7 +81,7 @@ void finishNormals(Frame& f, bool hasDepth, ImportCounts& counts) {
         for (int x = 0; x < f.width; x++) {
             const double a = n[0].at(x, y), b = n[1].at(x, y), c = n[2].at(x, y),
                          length = std::sqrt(a * a + b * b + c * c);
-            const bool background = hasDepth && f.depthView.at(x, y) >= kBackground;
+            const bool background = hasDepth && f.depthView.at(x, y) >= kBackgroundFrom;
             if (background ? length == 0 : !(std::abs(length - 1) > kUnitTolerance) || length == 0) continue;
             n[0].at(x, y) = background ? 0 : float(a / length);
             n[1].at(x, y) = background ? 0 : float(b / length);
@@ -174,7 +173,7 @@ Frame importFrame(const std::filesystem::path& path, const ImportPlan& plan, con
     if (plan.depth)
         for (int y = 0; y < f.height; y++)
             for (int x = 0; x < f.width; x++)
-                if (f.depthView.at(x, y) >= kBackground) f.depthView.at(x, y) = kBackgroundDepth;
+                if (f.depthView.at(x, y) >= kBackgroundFrom) f.depthView.at(x, y) = kBackgroundDepth;
     if (plan.ids != IdSource::none) takeIds(ids, plan, path, f, counts);
     if (plan.normal) finishNormals(f, plan.depth, counts);
     if (plan.vector) motionFromVector(f.motionXPx, f.motionYPx, f.depthView, entry.jitterPx, entry.camera, before);
@@ -194,7 +193,7 @@ Rgb unlitAlbedo(const AlbedoPasses& p, const PlaneF& depthView, const Rgb& combi
     Rgb r(w, h);
     for (int y = 0; y < h; y++)
         for (int x = 0; x < w; x++) {
-            const bool background = !depthView.empty() && depthView.at(x, y) >= kBackground;
+            const bool background = !depthView.empty() && depthView.at(x, y) >= kBackgroundFrom;
             float colour[3], most = 0, left[3];
             for (size_t c = 0; c < 3; c++) {
                 left[c] = std::max(at(base, c, x, y) - (emissionInside ? at(p.emission, c, x, y) : 0.0f), 0.0f);
