@@ -15,7 +15,7 @@ space := $() $()
 # A compiler cache is used where there is one.
 LAUNCHER := $(if $(shell command -v ccache 2>/dev/null),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache,)
 
-.PHONY: help deps configure build program install demo test test-addon test-blenders blender-facts blenders-clean fuzz sanitize bench asserts addon bundle deb test-bundle docs bits reproduce speed farm test-farm format clean
+.PHONY: help deps configure build program install demo test test-addon test-blenders blender-facts blenders-clean fuzz sanitize bench asserts addon bundle deb test-bundle docs bits reproduce speed growth farm test-farm format clean
 help:
 	@echo "make demo       build, render two scenes in Blender, run the methods, make contact sheets and reports"
 	@echo "make test       build and run every test"
@@ -26,7 +26,8 @@ help:
 	@echo "make deb        Debian packages of the program; docs/install.md says who takes which file"
 	@echo "make bench      speed of every method, ns per pixel, and of the exporter, CPU seconds"
 	@echo "make speed      every method in every instruction set of this machine: docs/results/speed.json and .md"
-	@echo "                wants a quiet machine, keeps what is measured, PIECES=4: so many measurements now"
+	@echo "make growth     time and memory over sizes, frames and threads: docs/results/growth.md; both want a quiet machine,"
+	@echo "                keep what is measured, and take PIECES=4: so many measurements now"
 	@echo "make reproduce  render the study's scenes, run every method on each, hold them against the published"
 	@echo "                tables, write docs/results; QUICK=1: a short form, FULL=1: published sizes, ONLY=oliveros-5.8: one table, ONLY=list"
 	@echo "make farm       a small study of scenes x frames x methods as a Snakemake workflow, two jobs at once, to"
@@ -125,6 +126,7 @@ test-bundle: bundle
 # the pages of what was measured, from their files.
 docs: program
 	@python3 scenes/reproduce/speed.py --page-only docs/results
+	@python3 tests/bench/growth.py --page-only docs/results
 	@python3 blender_addon/write_scenes_page.py
 	@$(BUILD)/aaresolve list --markdown > docs/methods.md
 	@python3 resolver/metrics/write_page.py $(BUILD)/aaresolve docs/metrics.md
@@ -146,6 +148,9 @@ reproduce: program
 PIECES ?=
 speed: program
 	@python3 scenes/reproduce/speed.py $(BUILD)/aaresolve $(BUILD)/speed docs/results $(if $(PIECES),--pieces $(PIECES))
+
+growth: program
+	@python3 tests/bench/growth.py $(BUILD)/aaresolve $(BUILD)/growth docs/results $(if $(PIECES),--pieces $(PIECES))
 
 # Only these need Snakemake and Slurm. What is finished is kept.
 STUDY ?=

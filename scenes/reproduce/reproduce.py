@@ -349,6 +349,10 @@ def write_pages(study: studies.Study, by_angle: Page | None, docs: Path) -> list
         index.append(
             "[speed.md](speed.md): ns per pixel in every instruction set, memory, and the fast form against double"
         )
+    if (docs / "growth.md").exists():  # of `make growth`
+        index.append(
+            "[growth.md](growth.md): time and memory from 480 x 270 to 8K, from 16 frames to 1,000, on one thread and two"
+        )
     if (docs / "whole-run.md").exists():  # of tests/bench/whole_run.py
         index.append("[whole-run.md](whole-run.md): what a run of 20 methods costs")
     if (docs / "stability.md").exists():  # of `make docs`

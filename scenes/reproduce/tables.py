@@ -395,12 +395,13 @@ def anchor(heading: str) -> str:
 
 
 def write_svg(
-    path: Path, series: dict[str, list[float]], title: str, unit: str, first: int = 0
-) -> None:
-    """Curves over the frames; infinite values leave a gap."""
+    path: Path, series: dict[str, list[float]], title: str, unit: str, first: int = 0,
+    labels: list[str] | None = None, along: str = "frame", low: float | None = None,
+) -> None:  # fmt: skip
+    """Curves over the frames, or over what has `labels`; infinite values leave a gap. `low`: where the axis begins."""
     width, height, left, right, top, bottom = 860, 300, 56, 150, 28, 34
     finite = [v for values in series.values() for v in values if math.isfinite(v)]
-    low, high = min(finite), max(finite)
+    low, high = min(finite) if low is None else low, max(finite)
     low, high = (low - 0.5, high + 0.5) if high - low < 1e-9 else (low, high)
     count = max(len(v) for v in series.values())
     x = lambda i: left + (width - left - right) * i / max(1, count - 1)  # noqa: E731
@@ -427,10 +428,10 @@ def write_svg(
         )
     for k in range(0, count, max(1, count // 10)):
         out.append(
-            f'<text x="{x(k):.1f}" y="{height - 16}" text-anchor="middle" fill="#555">{k + first}</text>'
+            f'<text x="{x(k):.1f}" y="{height - 16}" text-anchor="middle" fill="#555">{labels[k] if labels else k + first}</text>'
         )
     out.append(
-        f'<text x="{width - right}" y="{height - 3}" text-anchor="end" fill="#555">frame; {unit}</text>'
+        f'<text x="{width - right}" y="{height - 3}" text-anchor="end" fill="#555">{along}; {unit}</text>'
     )
     for n, (name, values) in enumerate(series.items()):
         colour, pen, path_data = colours[n % len(colours)], "M", []

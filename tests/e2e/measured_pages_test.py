@@ -51,6 +51,10 @@ class MeasuredPages(ProgramTest):
             line.split("|")[2 * len(sets) + 1].strip(), f"{row['nsPerPixel'] / base:.1f}"
         )
 
+    def test_growth(self) -> None:
+        page = self.page_of("tests/bench/growth.py", "growth.json")
+        self.assertEqual(page, (RESULTS / "growth.md").read_text(), "make docs")
+
     def test_columns_of_shaders_are_kept(self) -> None:
         small = "--size 48x27 --frames 8 --long-frames 128 -q --markdown --device cpu".split()
         new = self.aaresolve("stability", "-m", "noaa,fxaa311", *small).stdout
