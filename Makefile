@@ -15,7 +15,7 @@ space := $() $()
 # A compiler cache is used where there is one.
 LAUNCHER := $(if $(shell command -v ccache 2>/dev/null),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache,)
 
-.PHONY: help deps configure build program install demo test test-addon test-blenders blender-facts blenders-clean fuzz sanitize bench asserts addon bundle deb test-bundle docs bits reproduce speed growth farm test-farm format clean
+.PHONY: help deps configure build program install demo test test-addon test-blenders blender-facts blenders-clean fuzz sanitize bench asserts addon bundle deb test-bundle docs bits reproduce speed growth farm test-farm test-arm format clean
 help:
 	@echo "make demo       build, render two scenes in Blender, run the methods, make contact sheets and reports"
 	@echo "make test       build and run every test"
@@ -35,6 +35,7 @@ help:
 	@echo "make test-farm  the same study on one machine and on a Slurm of its own, killed and resumed: same bytes"
 	@echo "make test-addon     the add-on's tests in the Blender at BLENDER=/path/to/blender; ONLY=\"light motion\""
 	@echo "make test-blenders  the same, scenes and more in the Blenders of Debian 13 and sid; SUITES=\"trixie sid\", ONLY=..."
+	@echo "make test-arm       built for 64-bit Arm and run under qemu: unit and property tests, and the bits of x86"
 	@echo "make test-bundle    the bundle and the zips in bare systems of Debian 12, 13 and sid"
 	@echo "make fuzz       damaged input through the program, then each parser under libFuzzer, FUZZ_SECONDS=300 or"
 	@echo "                FUZZ_RUNS=1000000 each; how much of the parsers the corpus reaches; COVERAGE=1: this table alone"
@@ -124,6 +125,12 @@ test-bundle: bundle
 
 # Generated: the page of methods and the add-on's copy of the registry, the tables of precision, memory and stability; and
 # the pages of what was measured, from their files.
+# Only this needs a cross compiler, an emulator and another processor's libraries. What is built is kept, in build-arm/.
+test-arm: deps
+	@CI_PACKAGES="g++-aarch64-linux-gnu qemu-user-static mmdebstrap" .ci/bootstrap || true
+	@python3 tests/arm/run.py -j $(JOBS)
+
+# Generated: the page of methods and the add-on's copy of the registry, the tables of precision, memory and stability.
 docs: program
 	@python3 scenes/reproduce/speed.py --page-only docs/results
 	@python3 tests/bench/growth.py --page-only docs/results

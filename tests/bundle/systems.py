@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import re
 import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Callable
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "blenders"))
 
@@ -27,12 +29,14 @@ class System:
     suite: str
     variant: str
     packages: tuple[str, ...] = ()
+    further: tuple[str, ...] = ()
+    settle: Callable[[Path], None] | None = None  # once it is filled
 
     @property
     def options(self) -> tuple[str, ...]:
         shared = [o for o in debian.OPTIONS if not re.match("--(variant|include)=", o)]
         include = [f"--include={','.join(self.packages)}"] if self.packages else []
-        return (f"--variant={self.variant}", *include, *shared)
+        return (f"--variant={self.variant}", *include, *shared, *self.further)
 
     @property
     def recipe(self) -> str:
@@ -51,7 +55,39 @@ BLENDER = {
 }
 # A driver that loads the newest C++ library there is.
 VULKAN = {"vulkan-sid": System("sid", "essential", ("libvulkan1", "mesa-vulkan-drivers"))}
-ALL = {**BARE, **BLENDER, **VULKAN}
+
+
+def settle_links(root: Path) -> None:
+    """Links hold from outside; BLAS is where its package's script would have put it."""
+    for link in filter(Path.is_symlink, (root / "usr").rglob("*")):
+        target = os.readlink(link)
+        if target.startswith("/"):
+            link.unlink()
+            link.symlink_to(os.path.relpath(f"{root}{target}", link.parent))
+    libraries = root / "usr/lib/aarch64-linux-gnu"
+    for kind in ("blas", "lapack"):
+        (libraries / f"lib{kind}.so.3").symlink_to(f"{kind}/lib{kind}.so.3")
+
+
+# What a program for 64-bit Arm is compiled against and runs on: unpacked, and never entered.
+ARM_PACKAGES = (
+    "libopenimageio-dev,libopenexr-dev,libpng-dev,libfreetype-dev,libcairo2-dev,libwebp-dev,libgif-dev,libglm-dev,"
+    "nlohmann-json3-dev,libcli11-dev,libxxhash-dev,libtbb-dev,libdeflate-dev,libgtest-dev,libgmock-dev,fonts-dejavu-core"
+)
+ARM = {
+    f"arm64-{suite}": System(
+        suite,
+        "extract",
+        tuple(ARM_PACKAGES.split(",")),
+        (
+            "--architecture=arm64",
+            "--hook-dir=/usr/share/mmdebstrap/hooks/merged-usr",
+        ),
+        settle_links,
+    )
+    for suite in ("bookworm", "trixie", "sid")
+}
+ALL = {**BARE, **BLENDER, **VULKAN, **ARM}
 
 # A mount namespace of its own: nothing stays mounted however this ends.
 ENTER = r"""
@@ -88,6 +124,8 @@ def root_of(name: str) -> Path:
             try:
                 debian.say(f"making {name} in {folder / name}")
                 debian.fill(making / "root", system.suite, lock, system.options)
+                if system.settle:
+                    system.settle(making / "root")
                 (making / "made.json").write_text(json.dumps({"recipe": system.recipe}))
                 debian.remove(folder / name)
                 making.rename(folder / name)

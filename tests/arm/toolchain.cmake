@@ -1,0 +1,17 @@
+# 64-bit Arm from another processor: Debian's cross compiler, Debian's arm64 packages unpacked below AA_ARM_SYSROOT, and
+# qemu for what the build and its tests run. Natively on Arm no such file is needed.
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR aarch64)
+list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES AA_ARM_SYSROOT)
+if(NOT EXISTS "${AA_ARM_SYSROOT}/usr/include")
+  message(FATAL_ERROR "AA_ARM_SYSROOT: expected a folder with arm64 packages, found '${AA_ARM_SYSROOT}' (tests/arm/run.py makes one)")
+endif()
+set(CMAKE_SYSROOT ${AA_ARM_SYSROOT})
+set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
+set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
+set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
+set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64-static -L ${AA_ARM_SYSROOT})
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+foreach(kind LIBRARY INCLUDE PACKAGE)
+  set(CMAKE_FIND_ROOT_PATH_MODE_${kind} ONLY)
+endforeach()
