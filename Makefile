@@ -123,14 +123,13 @@ test-bundle: bundle
 	@CI_PACKAGES=mmdebstrap .ci/bootstrap || true
 	@python3 tests/bundle/run.py $(BUILD)
 
-# Generated: the page of methods and the add-on's copy of the registry, the tables of precision, memory and stability; and
-# the pages of what was measured, from their files.
 # Only this needs a cross compiler, an emulator and another processor's libraries. What is built is kept, in build-arm/.
 test-arm: deps
 	@CI_PACKAGES="g++-aarch64-linux-gnu qemu-user-static mmdebstrap" .ci/bootstrap || true
 	@python3 tests/arm/run.py -j $(JOBS)
 
-# Generated: the page of methods and the add-on's copy of the registry, the tables of precision, memory and stability.
+# Generated: the page of methods and the add-on's copy of the registry, the tables of precision, memory and stability; and
+# the pages of what was measured, from their files.
 docs: program
 	@python3 scenes/reproduce/speed.py --page-only docs/results
 	@python3 tests/bench/growth.py --page-only docs/results
