@@ -19,6 +19,7 @@ struct RunCommandArguments {
     std::vector<std::string> methods;
     bool resume = false, add = false;
     bool debugLayers = false, overFrames = false, withoutBaseline = false;
+    std::string trace;  // a file
 };
 constexpr const char* kBaseline = "noaa";
 std::vector<const MethodResult*> bestFirst(const RunResults& r) {
@@ -249,6 +250,7 @@ void execute(const RunCommandArguments& o, Context& context) {
     if (!o.methods.empty()) run.methods = chosenFor(o.run.shot, o.methods);
     if (!o.add) addBaseline(run.methods, o);  // what is added to has its own
     run.debugLayers = o.debugLayers;
+    if (!o.trace.empty()) run.trace = std::make_shared<Trace>();
     run.provenance =
         provenanceOf(context.arguments, {"-m", "--method", "-o", "--out", "--external"}, {"--resume", "--add"});
     const ShotReader shot = openShot(o.run, run);
@@ -260,6 +262,7 @@ void execute(const RunCommandArguments& o, Context& context) {
     withThreads(o.run.work.threads, [&] {
         TerminalProgress progress(shot.manifest().name, stepsOf(run, shot.manifest()), o.run.quiet);
         results = goesOn ? aa::resume(shot, run, progress.callbacks()) : aa::run(shot, run, progress.callbacks());
+        if (run.trace) run.trace->write(o.trace);
         if (progress.interrupted()) context.exitCode = 130;
     });
     printReplaced(results, run.out);
@@ -291,6 +294,10 @@ void addRun(CommandLine& line, Context& context) {
     c.flag("--add", o->add, "add these methods to the run in OUT, whose options must be the same; its methods stay");
     c.flag("--over-frames", o->overFrames, "print best, worst and average over the frames of every figure as well");
     c.flag("--debug-layers", o->debugLayers, "also write each method's intermediate images");
+    c.option("--trace", o->trace,
+             "what each thread does when, as a file for chrome://tracing or ui.perfetto.dev: decoding, preparing, the "
+             "methods, their figures and pictures")
+        .typeName("FILE");
     c.run([o, &context] { execute(*o, context); });
 }
 

@@ -8,7 +8,7 @@
 namespace aa {
 namespace {
 ColourArgs colourArgs(const Rgb& in, Rgb& out, const DisplayChain& chain) {
-    if (out.width() != in.width() || out.height() != in.height()) out = Rgb(in.width(), in.height());
+    if (out.width() != in.width() || out.height() != in.height()) out = Rgb::unset(in.width(), in.height());
     return {view(in), view(out), in.stride(), in.width(), displayArgs(chain)};
 }
 }  // namespace

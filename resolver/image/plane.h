@@ -8,24 +8,35 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <new>
 #include <string>
 #include <vector>
 
+#include "image/plane_pool.h"
 #include "kernels/table.h"
 
 namespace aa {
 
 template <class T>
-struct AlignedAllocator {
+struct PlaneAllocator {
     using value_type = T;
-    AlignedAllocator() = default;
+    PlaneAllocator() = default;
     template <class U>
-    AlignedAllocator(const AlignedAllocator<U>&) {}
-    T* allocate(size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), std::align_val_t(64))); }
-    void deallocate(T* p, size_t) { ::operator delete(p, std::align_val_t(64)); }
+    PlaneAllocator(const PlaneAllocator<U>&) {}
+    T* allocate(size_t n) { return static_cast<T*>(takePlaneMemory(n * sizeof(T))); }
+    void deallocate(T* p, size_t n) { givePlaneMemory(p, n * sizeof(T)); }
+    // Without a value a plane's samples are left as they are: Plane::unset().
     template <class U>
-    bool operator==(const AlignedAllocator<U>&) const {
+    void construct(U* p) {
+        ::new (static_cast<void*>(p)) U;
+    }
+    template <class U, class V>
+    void construct(U* p, const V& value) {
+        ::new (static_cast<void*>(p)) U(value);
+    }
+    template <class U>
+    bool operator==(const PlaneAllocator<U>&) const {
         return true;
     }
 };
@@ -43,6 +54,19 @@ class Plane {
           height_(height),
           stride_(paddedStride(width)),
           data_(size_t(stride_) * size_t(height + 2 * kBorderY) * Channels, value) {}
+
+    // With any content, for what is written before it is read; builds with asserts fill it with what nobody wants.
+    static Plane unset(int width, int height) {
+#ifndef NDEBUG
+        using Limits = std::numeric_limits<T>;
+        return Plane(width, height, Limits::has_quiet_NaN ? Limits::quiet_NaN() : Limits::max());
+#else
+        Plane plane;
+        plane.width_ = width, plane.height_ = height, plane.stride_ = paddedStride(width);
+        plane.data_ = Samples(size_t(plane.stride_) * size_t(height + 2 * kBorderY) * Channels);
+        return plane;
+#endif
+    }
 
     bool empty() const { return data_.empty(); }
     int width() const { return width_; }
@@ -87,8 +111,9 @@ class Plane {
         const T* src = row(from) - ptrdiff_t(kBorderX) * Channels;
         std::copy(src, src + ptrdiff_t(stride_) * Channels, row(to) - ptrdiff_t(kBorderX) * Channels);
     }
+    using Samples = std::vector<T, PlaneAllocator<T>>;
     int width_ = 0, height_ = 0, stride_ = 0;
-    std::vector<T, AlignedAllocator<T>> data_;
+    Samples data_;
 };
 
 using PlaneF = Plane<float>;
@@ -101,6 +126,11 @@ struct Rgb {
     Rgb() = default;
     Rgb(int width, int height, float value = 0) {
         for (auto& p : c) p = PlaneF(width, height, value);
+    }
+    static Rgb unset(int width, int height) {
+        Rgb planes;
+        for (auto& p : planes.c) p = PlaneF::unset(width, height);
+        return planes;
     }
     bool empty() const { return c[0].empty(); }
     int width() const { return c[0].width(); }

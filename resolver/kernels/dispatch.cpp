@@ -3,6 +3,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 #include <time.h>
 
 #include <atomic>
@@ -31,15 +32,24 @@ double ProcessorTime::seconds() const { return 1e-9 * double(threadNanoseconds()
 
 void parallelRows(int height, int grain, const std::function<void(int, int)>& rows) {
     Meter* const mine = &meter;  // of the caller; a task's own is another
-    tbb::parallel_for(
-        tbb::blocked_range<int>(0, height, size_t(grain)),
-        [&, measured = mine->runs](const auto& r) {
-            if (!measured || &meter == mine) return rows(r.begin(), r.end());
-            const int64_t start = threadNanoseconds();
-            rows(r.begin(), r.end());
-            mine->ofOthers += threadNanoseconds() - start;
-        },
-        tbb::simple_partitioner{});
+    const bool measured = mine->runs;
+    const auto block = [&](const tbb::blocked_range<int>& r) {
+        if (!measured || &meter == mine) return rows(r.begin(), r.end());
+        const int64_t start = threadNanoseconds();
+        rows(r.begin(), r.end());
+        mine->ofOthers += threadNanoseconds() - start;
+    };
+    // Isolated: while it waits for the last rows the caller would else begin another method, as its own time.
+    tbb::this_task_arena::isolate([&] {
+        tbb::parallel_for(tbb::blocked_range<int>(0, height, size_t(grain)), block, tbb::simple_partitioner{});
+    });
+}
+
+void sideBySide(const Exec& exec, size_t count, const std::function<void(size_t)>& task) {
+    if (exec.parallel)
+        tbb::parallel_for(size_t(0), count, task, tbb::simple_partitioner{});
+    else
+        for (size_t i = 0; i < count; i++) task(i);
 }
 
 struct Scratch::Memory {

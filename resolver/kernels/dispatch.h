@@ -27,6 +27,10 @@ class ProcessorTime {
     double start_;
 };
 
+// task(0) .. task(count - 1), side by side where `exec` allows it and in order where not. Each may give rows to others
+// and waits for its own alone, so that what one measures is its own. The first exception ends them all.
+void sideBySide(const Exec& exec, size_t count, const std::function<void(size_t)>& task);
+
 // Blocks of `grain` rows on all threads of the caller's arena. TBB stands behind dispatch.cpp alone: its headers cost
 // each file that includes them as much to compile as all else.
 void parallelRows(int height, int grain, const std::function<void(int y0, int y1)>& rows);

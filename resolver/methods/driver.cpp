@@ -13,7 +13,7 @@ RunningMethod::RunningMethod(MethodSpec s, std::unique_ptr<Method> form)
     : spec(std::move(s)), method(std::move(form)) {}
 
 void RunningMethod::accumulate(const Frame& frame, const Exec& exec) {
-    if (out.width() != frame.width || out.height() != frame.height) out = Rgb(frame.width, frame.height);
+    if (out.width() != frame.width || out.height() != frame.height) out = Rgb::unset(frame.width, frame.height);
     method->resolve(frame, exec, out);
 }
 ResolveSeconds RunningMethod::again(const Frame& frame, const Exec& exec) {

@@ -26,6 +26,7 @@ struct RunningMethod {
     void accumulate(const Frame& frame, const Exec& exec);
     // Resolves it once more for the time alone. Not of a method that keeps something from frame to frame.
     ResolveSeconds again(const Frame& frame, const Exec& exec);
+    void forgetPicture() { out = Rgb(), outEncoded = Rgb(); }
     bool isRepeatable() const { return !spec.method->temporal && spec.stages.empty(); }
 };
 

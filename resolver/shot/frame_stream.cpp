@@ -1,23 +1,32 @@
 #include "shot/frame_stream.h"
 
+#include <tbb/global_control.h>
+
 namespace aa {
+namespace {
+std::launch whenToDecode() {
+    const bool alone = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) == 1;
+    return alone ? std::launch::deferred : std::launch::async;
+}
+}  // namespace
 
 FrameStream::FrameStream(const ShotReader& reader, std::vector<size_t> indices, PassSet wanted, bool withTruth,
-                         PassSet wantedOfCentre)
+                         PassSet wantedOfCentre, Trace* trace)
     : reader_(reader),
       indices_(std::move(indices)),
       wanted_(wanted),
       withTruth_(withTruth),
-      wantedOfCentre_(wantedOfCentre) {
+      wantedOfCentre_(wantedOfCentre),
+      trace_(trace) {
     startDecoding();
 }
 FrameStream::~FrameStream() {
-    if (pending_.valid()) pending_.wait();
+    if (pending_.valid() && pending_.wait_for(std::chrono::seconds(0)) != std::future_status::deferred) pending_.wait();
 }
 
 void FrameStream::startDecoding() {
     if (started_ == indices_.size()) return;
-    pending_ = std::async(std::launch::async,
+    pending_ = std::async(whenToDecode(),
                           [this, index = indices_[started_], last = Last{centre_, truth_, centreFile_, truthFile_}] {
                               return decode(index, last);
                           });
@@ -26,6 +35,7 @@ void FrameStream::startDecoding() {
 
 FrameStream::Decoded FrameStream::decode(size_t index, const Last& last) const {
     const FrameEntry& entry = reader_.manifest().frames.at(index);
+    const Trace::Span span(trace_, "decode", std::to_string(entry.frame));
     Decoded d;
     d.frame = reader_.read(index, wanted_, &d.counts);
     if (!wantedOfCentre_.empty())

@@ -1,9 +1,11 @@
-// Frames of a shot in order, each decoded on a background thread while the caller works on the one before.
+// Frames of a shot in order, each decoded on a background thread while the caller works on the one before; where the
+// program may use one thread alone, when it is asked for.
 #pragma once
 #include <future>
 #include <memory>
 #include <vector>
 
+#include "image/trace.h"
 #include "shot/reader.h"
 
 namespace aa {
@@ -14,7 +16,7 @@ class FrameStream {
   public:
     // `indices` into manifest().frames, in the order of delivery.
     FrameStream(const ShotReader& reader, std::vector<size_t> indices, PassSet wanted, bool withTruth = false,
-                PassSet wantedOfCentre = {});
+                PassSet wantedOfCentre = {}, Trace* trace = nullptr);
     ~FrameStream();
     FrameStream(const FrameStream&) = delete;
     FrameStream& operator=(const FrameStream&) = delete;
@@ -51,6 +53,7 @@ class FrameStream {
     PassSet wanted_;
     bool withTruth_;
     PassSet wantedOfCentre_;
+    Trace* trace_;
     size_t started_ = 0;  // how many of indices_ have been given to the background
     std::future<Decoded> pending_;
     std::shared_ptr<Frame> centre_;

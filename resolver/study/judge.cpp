@@ -81,14 +81,14 @@ FrameMetrics Judge::again(const FrameMetrics& known, const Rgb& encoded, const R
     return known;
 }
 
-const Rgb* Judge::farthest(const RunningMethod& method, uint64_t& nonFinite) {
+Rgb Judge::farthest(const RunningMethod& method, uint64_t& nonFinite) const {
     const Rgb* const broken = reference_ && !reference_->broken.empty() ? &reference_->broken : nullptr;
     nonFinite = nonFiniteValues(method.out);
     if (nonFinite == 0 && broken) nonFinite = nonFiniteValues(*broken);
-    if (nonFinite == 0 || !reference_) return nullptr;
-    farthest_ = method.outEncoded;
-    putFarthest(method.out.empty() ? nullptr : &method.out, broken, reference_->encoded, farthest_);
-    return &farthest_;
+    if (nonFinite == 0 || !reference_) return {};
+    Rgb picture = method.outEncoded;
+    putFarthest(method.out.empty() ? nullptr : &method.out, broken, reference_->encoded, picture);
+    return picture;
 }
 
 // Of linear light there is no largest difference.
@@ -117,6 +117,7 @@ void Judge::watchReference() {
 }
 
 void Judge::watch(size_t k, const Rgb& encoded, const Rgb* linear, FrameMetrics& metrics) {
+    const std::lock_guard one(watching_);
     for (Watch& w : watches_) {
         if (options_.measure.viewing.display->isHdr && !linear) continue;
         if (!w.tests[k]) w.tests[k] = w.reference->test();
@@ -126,6 +127,7 @@ void Judge::watch(size_t k, const Rgb& encoded, const Rgb* linear, FrameMetrics&
 }
 
 PlaneF Judge::sequenceMap(size_t k, const MapKind& kind) const {
+    const std::lock_guard one(watching_);
     for (const Watch& w : watches_)
         if (w.metric->figures[0].name == kind.sequenceFigure && w.tests[k]) return w.tests[k]->latestMap(options_.exec);
     return {};
@@ -138,8 +140,9 @@ FrameResult Judge::judge(size_t k, const RunningMethod& method, const ResolveSec
     result.seconds = seconds.processor;
     result.wallSeconds = seconds.wall;
     if (&method == standIn_) return result;
-    const Rgb* const broken = farthest(method, result.nonFinite);
-    const Rgb& encoded = broken ? *broken : method.outEncoded;
+    const Rgb picture = farthest(method, result.nonFinite);
+    const bool broken = !picture.empty();
+    const Rgb& encoded = broken ? picture : method.outEncoded;
     if (reference_) {
         const bool last = seen_ == options_.frames.size();
         const bool linear = method.spec.outputSpace() == Space::linear;
@@ -163,12 +166,22 @@ FrameResult Judge::judge(size_t k, const RunningMethod& method, const ResolveSec
     return result;
 }
 
+namespace {
+std::string baseOf(const RunningMethod& m) { return withoutStages(m.spec.text); }
+}  // namespace
+
+// A stage asks for the mask.
+bool Judge::isReadLater(const std::vector<RunningMethod>& methods, size_t k) {
+    return std::any_of(methods.begin(), methods.end(), [&](const RunningMethod& m) {
+        return !m.spec.stages.empty() && baseOf(m) == baseOf(methods[k]);
+    });
+}
+
 void Judge::judgeRejected(const std::vector<RunningMethod>& methods, std::vector<MethodResult>& results) const {
     if (!overTime_ || !reference_ || reset_) return;
-    const auto base = [](const RunningMethod& m) { return withoutStages(m.spec.text); };
     for (size_t k = 0; k < methods.size(); k++) {
-        const auto peer = std::find_if(methods.begin(), methods.end(), [&](const auto& m) {
-            return m.method->rejection() && base(m) == base(methods[k]);
+        const auto peer = std::find_if(methods.begin(), methods.end(), [&](const RunningMethod& m) {
+            return m.method->rejection() && baseOf(m) == baseOf(methods[k]);
         });
         if (peer == methods.end()) continue;
         if (&methods[k] == standIn_) continue;

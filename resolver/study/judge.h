@@ -1,6 +1,7 @@
 // Measures the methods of a run, frame by frame, against the truth (or the method that stands in for it) and over time.
 #pragma once
 #include <memory>
+#include <mutex>
 
 #include "methods/driver.h"
 #include "metrics/maps.h"
@@ -22,12 +23,14 @@ class Judge {
     const Reference& measured() const { return region_ ? *region_ : *reference_; }
     // Figures of what method `k` gave for it; of the stand-in none, which would be held against itself.
     // Where its figures are `known`, only the sums that the whole run needs are made again. Throws InputError where
-    // they are not those of this image.
+    // they are not those of this image. Several methods may be judged at a time.
     FrameResult judge(size_t k, const RunningMethod& method, const ResolveSeconds& seconds,
                       const FrameResult* known = nullptr);
     // Once all methods are judged: squared error where history was rejected, of every method that keeps the mask (one
     // with a fill) and of its peers without or with another fill, which reject the same pixels.
     void judgeRejected(const std::vector<RunningMethod>& methods, std::vector<MethodResult>& results) const;
+    // Whether that may read the picture of method `k`.
+    static bool isReadLater(const std::vector<RunningMethod>& methods, size_t k);
     // Fills what holds for the whole run; `fromReset`: the first frame had no history.
     void finish(RunResults& results, bool fromReset) const;
     const std::vector<TileErrors>& errors() const { return errors_; }
@@ -39,9 +42,9 @@ class Judge {
                        TileErrors& pool) const;
     void lookAtTruth();
     void lookAtMethod(const RunningMethod& standIn);
-    // The method's displayed picture, with the largest difference wherever it or the reference holds no number; null
+    // The method's displayed picture, with the largest difference wherever it or the reference holds no number; empty
     // where neither does, or there is no reference.
-    const Rgb* farthest(const RunningMethod& method, uint64_t& nonFinite);
+    Rgb farthest(const RunningMethod& method, uint64_t& nonFinite) const;
     void noLinearFigures(FrameMetrics& to) const;
     // A metric of a sequence, and what it keeps of the reference and of every method; null where it cannot be measured.
     struct Watch {
@@ -52,13 +55,13 @@ class Judge {
     void watchReference();
     void watch(size_t k, const Rgb& encoded, const Rgb* linear, FrameMetrics& metrics);
     std::vector<Watch> watches_;
+    mutable std::mutex watching_;  // the tests of a metric share its memory
     const Manifest& manifest_;
     const RunOptions& options_;
     bool overTime_;
     std::shared_ptr<const Truth> truth_;
     std::optional<Reference> reference_, region_;  // region_: the protocol's, where it has one
     const RunningMethod* standIn_ = nullptr;
-    Rgb farthest_;
     std::vector<TileErrors> errors_;
     TemporalScene scene_;
     std::vector<TemporalJudge> overTimeOf_;

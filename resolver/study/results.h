@@ -63,7 +63,7 @@ struct MethodResult {
     double secondsMedian = 0, secondsMin = 0, nsPerPixel = 0;
     double secondsLow = 0, secondsHigh = 0;  // quartiles; those of few timings are the least and the most
     int timings = 0;
-    double wallMedian = 0;  // by the clock, with the run's threads
+    double wallMedian = 0;  // by the clock, with the run's threads, on which other methods work beside it
     std::optional<double> deviceSecondsMedian, deviceSecondsMin;
     std::optional<PooledMetrics> pooled;
     std::vector<double> tileSquares;  // sums of squared error of tiles of kResultTilePx squared

@@ -9,10 +9,9 @@
 #include "gpu/method.h"
 #include "metrics/temporal.h"
 #include "shot/frame_stream.h"
-#include "shot/pass_table.h"
 #include "study/external.h"
 #include "study/feed.h"
-#include "study/images.h"
+#include "study/frame_work.h"
 #include "study/judge.h"
 #include "study/prepare.h"
 #include "study/resume.h"
@@ -33,24 +32,6 @@ std::vector<const Metric*> watchingMetrics(const RunOptions& o) {
 }
 
 namespace {
-// The methods' indices: the one that the others are held against first.
-std::vector<size_t> orderOfWork(const std::vector<RunningMethod>& methods, const std::string& reference) {
-    std::vector<size_t> order(methods.size());
-    for (size_t k = 0; k < order.size(); k++) order[k] = k;
-    std::stable_partition(order.begin(), order.end(), [&](size_t k) { return methods[k].spec.text == reference; });
-    return order;
-}
-const FrameResult* knownFrame(const RunOptions& o, const std::string& method, size_t i) {
-    const auto known = o.known.find(method);
-    return known != o.known.end() && i < known->second.size() ? &known->second[i] : nullptr;
-}
-bool isThere(const std::filesystem::path& out, const std::string& image) {
-    std::error_code ignored;
-    return !image.empty() && std::filesystem::exists(out / image, ignored);
-}
-// Timings of one method below which its frames are resolved again, where it keeps nothing from frame to frame.
-constexpr size_t kTimings = 5;
-
 // Metrics of a run by default join those that were asked for where the time allows; otherwise the results say so.
 DefaultMetrics defaultsOf(const RunOptions& o, const Manifest& manifest) {
     const double judged = manifest.isStatic ? 1 : double(o.frames.size()),
@@ -160,11 +141,6 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, const Progres
                       std::vector<TileErrors>& errors) {
     const Manifest& manifest = shot.manifest();
     std::vector<RunningMethod> methods = startMethods(shot, o);
-    std::vector<std::unique_ptr<Method>> timed;  // the same methods on a device, for its time alone
-    if (o.device && o.timeOnly)
-        for (const auto& spec : o.methods)
-            timed.push_back(isExternal(spec) ? nullptr : gpu::create(*o.device, spec, shotInfo(manifest)));
-    Rgb unused;
     RunResults results = describeRun(manifest, o);
     if (!o.device || o.timeOnly) results.load = loadNow();
     const InputPlan plan = planInput(shot, o);
@@ -179,70 +155,24 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, const Progres
     if (o.checkpoint) o.checkpoint(results);
     if (progress.interrupted()) return results;
 
-    const std::vector<size_t> order = orderOfWork(methods, o.protocol.reference);
     const bool standsIn = !o.protocol.reference.empty();
-    FrameStream stream(shot, o.frames, plan.jittered, /*withTruth=*/!standsIn, plan.centre);
-    const DisplayChain& display = o.protocol.display;
+    FrameStream stream(shot, o.frames, plan.jittered, /*withTruth=*/!standsIn, plan.centre, o.trace.get());
     Feed feed(
         stream,
         [&](int i, Frame& frame) {
+            const Trace::Span preparing(o.trace.get(), "prepare", std::to_string(frame.number));
             if (i == 0) {
                 frame.reset = passes == 0;  // a sequence may start in the middle
                 if (passes > 0) frame.previousCamera = before;
             }
-            prepareFrame(frame, methods, display, o.exec);
+            prepareFrame(frame, methods, o.protocol.display, o.exec);
         },
         o.device.get());
+    FrameWork work(shot, o, plan, judge, methods, results);
     for (size_t i = 0; auto item = feed.next(); i++) {
-        const auto& frame = item->frame;
-        if (!standsIn) judge.look(*frame, item->truth, nullptr);
-        const auto isWritten = [&] {
-            return o.writeAllFrames || (judge.reference() && (!manifest.isStatic || i + 1 == o.frames.size()));
-        };
-        if (!standsIn && judge.reference() && isWritten())
-            if (const auto image = writeTruthImage(*judge.reference(), frame->number, o); !image.empty())
-                results.truthImages[frame->number] = image;
-
-        for (const size_t k : order) {
-            const bool isReference = standsIn && k == order.front();
-            const Frame& input = plan.readsCentre(methods[k].spec) ? *item->centre : *frame;
-            ResolveSeconds seconds = methods[k].resolve(input, input.display, o.exec);
-            const bool isOurs = !isExternal(methods[k].spec);
-            if ((o.device && !o.timeOnly) || !isOurs) seconds = {};
-            const FrameResult* known = knownFrame(o, methods[k].spec.text, i);
-            for (size_t n = o.frames.size();
-                 n < kTimings && !known && seconds.processor > 0 && methods[k].isRepeatable(); n += o.frames.size())
-                results.methods[k].moreSeconds.push_back(methods[k].again(input, o.exec).processor);
-            if (!timed.empty() && isOurs) timed[k]->resolve(input, o.exec, unused);
-            if (o.protocol.eightBit) quantise8(methods[k].outEncoded, o.exec);
-            if (isReference) judge.look(*frame, nullptr, &methods[k]);
-            FrameResult result = judge.judge(k, methods[k], seconds, known);
-            if (o.device && isOurs)
-                result.deviceSeconds = (timed.empty() ? *methods[k].method : *timed[k]).deviceSeconds();
-            if (known) {
-                result.seconds = known->seconds, result.wallSeconds = known->wallSeconds;
-                result.deviceSeconds = known->deviceSeconds;
-            }
-            if (isWritten() && (!known || !isThere(o.out, known->image))) {
-                result.image = writeImage(methods[k], frame->number, o);
-                if (judge.reference() && !isReference)
-                    writeMaps(methods[k], judge.measured(), frame->number, o,
-                              [&](const MapKind& kind) { return judge.sequenceMap(k, kind); });
-            } else if (known) {
-                result.image = known->image;
-            }
-            if (isReference && !result.image.empty()) results.truthImages[frame->number] = result.image;
-            MethodResult& of = results.methods[k];
-            if (manifest.isStatic && !of.frames.empty()) of.frames.back().judged = false;
-            of.frames.push_back(std::move(result));
-            of.inputBytes =
-                std::max(of.inputBytes, bytesOf(methods[k].spec.passes(), input, manifest.subsamplePositionsPx.size()));
-            of.targetBytes = isOurs ? bytesOfTarget(input.width, input.height) : 0;
-            of.stateBytes = std::max(of.stateBytes, methods[k].method->stateBytes());
-        }
-        judge.judgeRejected(methods, results.methods);
+        work(*item, i);
         if (o.checkpoint) o.checkpoint(results);
-        progress.step("frame " + std::to_string(frame->number));
+        progress.step("frame " + std::to_string(item->frame->number));
         if (progress.interrupted()) break;
     }
     feed.stop();

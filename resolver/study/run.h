@@ -1,12 +1,14 @@
-// A run: every chosen method on every frame while it is in memory; the next frame is decoded meanwhile; only the passes
-// that the methods need are read. Memory does not grow with the number of frames. The way of the data is that of the
-// files here: prepare -> (warm_up) -> resolve -> judge -> images, results.
+// A run: every chosen method on every frame while it is in memory, side by side where there are threads; the next frame
+// is decoded meanwhile; only the passes that the methods need are read. Memory does not grow with the number of frames.
+// The way of the data is that of the files here: prepare -> (warm_up) -> frame_work: resolve -> judge -> images ->
+// results.
 #pragma once
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
 
+#include "image/trace.h"
 #include "methods/spec.h"
 #include "metrics/maps.h"
 #include "shot/reader.h"
@@ -33,6 +35,7 @@ struct RunOptions {
     bool dither = false;          // codes of PNG files are rounded up or down by chance (metrics/metrics.h)
     bool writeAllFrames = false;  // otherwise: frames with ground truth of their own; of a static shot, the last
     bool debugLayers = false;
+    std::shared_ptr<Trace> trace;  // null: none is kept
     // Of a run that goes on with an earlier one (study/resume.h): every method of the results, of which `methods` run
     // now, and what is known of the frames of these. Empty: `methods` are all.
     std::vector<MethodSpec> allMethods;

@@ -12,6 +12,7 @@
 
 #include "image/error.h"
 #include "image/io.h"
+#include "image/json_text.h"
 #include "image/png.h"
 #include "shot/synth/synth.h"
 #include "study/prepare.h"
@@ -64,6 +65,36 @@ TEST(Study, AnInterruptedRunHoldsTheFramesThatWereFinished) {
     const RunResults r = run(shot("moving"), o, {[&](const std::string&) { steps++; }, [&] { return steps >= 2; }});
     EXPECT_EQ(r.methods[0].frames.size(), 2u);
     EXPECT_EQ(r.methods[1].frames.size(), 2u);
+}
+// Side by side or one after the other, with a method that others are held against, a mask that a peer reads, and
+// pictures.
+TEST(Study, MethodsSideBySideGiveWhatTheyGiveAlone) {
+    for (const std::string reference : {"", "smaa1x"}) {
+        RunOptions o = optionsFor("moving", {"noaa", "accumReject", "accumReject+fill=fxaa311", "smaa1x", "inside",
+                                             "karis", "taaSimplest+sharpen=norm", "fxaa311"});
+        o.protocol.reference = reference;
+        o.writePng = true;
+        o.writeAllFrames = true;
+        std::map<std::string, std::string> figures[2], pictures[2];
+        for (const bool parallel : {false, true}) {
+            o.exec.parallel = parallel;
+            fs::remove_all(o.out);
+            for (const auto& m : run(shot("moving"), o, {}).methods) {
+                std::string& all = figures[parallel][m.text];
+                for (const auto& f : m.frames) {
+                    if (f.metrics) all += std::to_string(f.metrics->mse) + " " + std::to_string(f.metrics->psnr) + " ";
+                    for (const auto& [name, value] : f.metrics ? f.metrics->others : FrameMetrics().others)
+                        all += name + " " + std::to_string(value) + " ";
+                    all += std::to_string(f.rejected ? f.rejected->sum : -1) + "\n";
+                    pictures[parallel][f.image] = *textOf(o.out / f.image);
+                }
+            }
+        }
+        EXPECT_EQ(figures[0], figures[1]) << reference;
+        EXPECT_EQ(pictures[0].size(), 8 * 4) << reference;
+        EXPECT_TRUE(pictures[0] == pictures[1]) << reference;
+        EXPECT_TRUE(fs::remove_all(o.out));
+    }
 }
 TEST(Study, TimesAreOfTheProcessorAndRepeated) {
     const RunResults r = run(shot("moving"), optionsFor("moving", {"noaa", "fxaa311", "taaSimplest"}), {});

@@ -1,13 +1,15 @@
 """What a whole run costs: processor time, wall time and peak memory of `aaresolve run`, of one program or of two.
 
     python3 tests/bench/whole_run.py PROGRAM [OLDER_PROGRAM] [--size 1920x1080] [--frames 16] [--rounds 1] [--threads 1,2]
-        [--methods a,b,c] [--cache FOLDER]
+        [--methods a,b,c] [--cache FOLDER] [--stages]
 
 Both programs run the same methods on the same shot (`synth moving`, made once and kept in the cache), without pictures and
 with EXR pictures of every frame, in turn, so that a busy machine slows both alike. Processor time and peak memory are what
 the system says of the process; of several rounds the least is shown.
 
-A run cannot take less than its methods' kernels on all cores: ratios are to their sum in results.json.
+A run cannot take less than decoding its frames or its methods' kernels on all cores, whichever is more: ratios are to
+that. Kernels are the sum of the methods' times in results.json; decoding is its share of a run on one thread (`--trace`)
+times that run's processor time. --stages prints the shares of all stages of that run.
 """
 
 from __future__ import annotations
@@ -21,6 +23,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -64,7 +67,7 @@ def least(costs: list[Cost]) -> Cost:
 class Bench:
     def __init__(self, arguments: argparse.Namespace, shot: Path, work: Path) -> None:
         self.methods = [word for m in arguments.methods.split(",") for word in ("-m", m)]
-        self.shot, self.out = shot, work / "out"
+        self.shot, self.out, self.trace = shot, work / "out", work / "trace.json"
 
     def run(self, program: str, write: str, threads: int, *options: str) -> Cost:
         shutil.rmtree(self.out, ignore_errors=True)
@@ -75,6 +78,16 @@ class Bench:
         results = json.loads((self.out / "results.json").read_text())
         cost.kernels = sum(f["seconds"] for m in results["methods"] for f in m["frames"])
         return cost
+
+    def stages(self, program: str) -> dict[str, float]:
+        """Processor seconds of each stage of a run with pictures on one thread."""
+        cost = self.run(program, "exr", 1, "--trace", str(self.trace))
+        lengths: Counter[str] = Counter()
+        for event in json.loads(self.trace.read_text())["traceEvents"]:
+            if event["ph"] == "X":
+                lengths[event["cat"]] += event["dur"] / 1e6
+        lengths["other"] = max(0.0, cost.wall - sum(lengths.values()))
+        return {stage: cost.processor * s / cost.wall for stage, s in lengths.items()}
 
 
 def shot_in(cache: Path, program: str, size: str, frames: int) -> Path:
@@ -102,6 +115,7 @@ def main() -> None:
     parser.add_argument("--threads", default=f"1,{os.cpu_count()}", help="numbers of threads")
     parser.add_argument("--methods", default=METHODS)
     parser.add_argument("--cache", type=Path, default=Path.home() / ".cache/aa-resolve/bench")
+    parser.add_argument("--stages", action="store_true")
     arguments = parser.parse_args()
     newest = arguments.programs[0]
     shot = shot_in(arguments.cache, newest, arguments.size, arguments.frames)
@@ -112,18 +126,21 @@ def main() -> None:
     )
     with tempfile.TemporaryDirectory(prefix="aa_whole_run_") as work:
         bench = Bench(arguments, shot, Path(work))
-        print(f"{'program':<10} {'write':<5} {'-j':>2} {'CPU s':>8} {'wall s':>8} {'peak MB':>8} {'CPU/kernels':>12} {'wall/kernels':>12}")  # fmt: skip
+        stages = bench.stages(newest)
+        if arguments.stages:
+            print("of a run with pictures on one thread, CPU s: " + ", ".join(f"{k} {v:.2f}" for k, v in stages.items()))  # fmt: skip
+        print(f"{'program':<10} {'write':<5} {'-j':>2} {'CPU s':>8} {'wall s':>8} {'peak MB':>8} {'CPU/limit':>10} {'wall/limit':>10}")  # fmt: skip
         for threads in map(int, arguments.threads.split(",")):
             for write in ("none", "exr"):
                 costs: dict[str, list[Cost]] = {program: [] for program in arguments.programs}
                 for _ in range(arguments.rounds):
                     for program in arguments.programs:
                         costs[program].append(bench.run(program, write, threads))
-                limit = least(costs[newest]).kernels
+                limit = max(stages["decode"], least(costs[newest]).kernels)
                 for number, program in enumerate(arguments.programs):
                     c = least(costs[program])
                     name = "new" if number == 0 else "old" if number == 1 else f"older {number}"
-                    print(f"{name:<10} {write:<5} {threads:>2} {c.processor:>8.1f} {c.wall:>8.1f} {c.peak_mb:>8.0f} {c.processor / limit:>12.2f} {c.wall * threads / limit:>12.2f}")  # fmt: skip
+                    print(f"{name:<10} {write:<5} {threads:>2} {c.processor:>8.1f} {c.wall:>8.1f} {c.peak_mb:>8.0f} {c.processor / limit:>10.2f} {c.wall * threads / limit:>10.2f}")  # fmt: skip
 
 
 if __name__ == "__main__":

@@ -48,6 +48,37 @@ class Pipeline(ProgramTest):
         )
         self.assertIn("unchartedNorm", html)
 
+    def test_a_trace_shows_the_stages_of_a_run(self) -> None:
+        shot, trace = self.folder / "shot", self.folder / "trace.json"
+        self.synth("moving", shot, (48, 32), 3, "--for", "fxaa311,taaSimplest")
+        command = ("run", shot, "-m", "fxaa311", "-m", "taaSimplest", "-q", "--write", "png")
+        self.aaresolve(*command, "-o", self.folder / "out", "--trace", trace)
+        events = json.loads(trace.read_text())["traceEvents"]
+        spans = [e for e in events if e["ph"] == "X"]
+        count = {
+            stage: sum(e["cat"] == stage for e in spans) for stage in {e["cat"] for e in spans}
+        }
+        methods = 3  # noaa joins them
+        self.assertEqual(count["decode"], 3)
+        self.assertEqual(count["truth"], 3)
+        self.assertGreaterEqual(count["prepare"], 3)
+        for stage in ("resolve", "judge", "write"):
+            self.assertEqual(count[stage], 3 * methods, stage)
+        self.assertTrue(all(e["dur"] >= 0 and e["ts"] >= 0 for e in spans))
+        named = {e["tid"] for e in events if e["ph"] == "M"}
+        self.assertTrue({e["tid"] for e in spans} <= named)
+        # On one thread nothing overlaps but what lies in something else, and nothing here does.
+        self.aaresolve(*command, "-o", self.folder / "one", "--trace", trace, "-j", 1)
+        spans = [e for e in json.loads(trace.read_text())["traceEvents"] if e["ph"] == "X"]
+        self.assertEqual(len({e["tid"] for e in spans}), 1)
+        spans.sort(key=lambda e: e["ts"])
+        for one, next_one in zip(spans, spans[1:]):
+            self.assertLessEqual(one["ts"] + one["dur"], next_one["ts"] + 1)
+        self.refused(
+            *(1, *command, "-o", self.folder / "out", "--trace", self.folder / "none/trace.json"),
+            says=("trace.json", "cannot be written"),
+        )
+
     def test_same_bits_for_threads_and_instruction_sets(self) -> None:
         shot = self.folder / "shot"
         self.synth("moving", shot, (90, 50), 5, "--for", "uncharted,fxaa311")

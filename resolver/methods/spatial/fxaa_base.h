@@ -63,7 +63,7 @@ class SearchedLuma {
 
   private:
     int width_ = 0, height_ = 0, stride_ = 0;
-    std::vector<float, AlignedAllocator<float>> data_;
+    std::vector<float, PlaneAllocator<float>> data_;
 };
 
 // What every variant keeps: the luma plane and, on request, what it found at each edge pixel.

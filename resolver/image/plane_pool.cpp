@@ -1,0 +1,87 @@
+#include "image/plane_pool.h"
+
+#include <algorithm>
+#include <deque>
+#include <mutex>
+#include <new>
+
+namespace aa {
+namespace {
+constexpr std::align_val_t kAlignment{64};
+// Smaller ones the allocator keeps by itself. Under AddressSanitizer it keeps all: it must see what is used too late.
+#ifdef AA_SANITIZED
+constexpr size_t kSmallest = ~size_t(0);
+#else
+constexpr size_t kSmallest = size_t(128) << 10;
+#endif
+
+class Pool {
+  public:
+    void* take(size_t bytes) {
+        {
+            const std::lock_guard one(mutex_);
+            // The last one given back may still be in the cache.
+            const auto found =
+                std::find_if(unused_.rbegin(), unused_.rend(), [&](const Block& b) { return b.bytes == bytes; });
+            if (found != unused_.rend()) {
+                void* const memory = found->memory;
+                unused_.erase(std::next(found).base());
+                unusedBytes_ -= bytes;
+                return memory;
+            }
+        }
+        return ::operator new(bytes, kAlignment);
+    }
+    void give(void* memory, size_t bytes) {
+        std::deque<Block> leaving;
+        {
+            const std::lock_guard one(mutex_);
+            unused_.push_back({memory, bytes});
+            unusedBytes_ += bytes;
+            while (unusedBytes_ > kMostUnusedPlaneBytes) {
+                leaving.push_back(unused_.front());
+                unusedBytes_ -= unused_.front().bytes;
+                unused_.pop_front();
+            }
+        }
+        for (const Block& b : leaving) ::operator delete(b.memory, kAlignment);
+    }
+    size_t unusedBytes() {
+        const std::lock_guard one(mutex_);
+        return unusedBytes_;
+    }
+
+  private:
+    struct Block {
+        void* memory;
+        size_t bytes;
+    };
+    std::mutex mutex_;
+    std::deque<Block> unused_;
+    size_t unusedBytes_ = 0;
+};
+
+// Never ended: planes of static lifetime give back their memory after everything else.
+union KeptPool {
+    Pool pool;
+    KeptPool() : pool() {}
+    ~KeptPool() {}
+};
+Pool& pool() {
+    static KeptPool kept;
+    return kept.pool;
+}
+}  // namespace
+
+void* takePlaneMemory(size_t bytes) {
+    return bytes < kSmallest ? ::operator new(bytes, kAlignment) : pool().take(bytes);
+}
+void givePlaneMemory(void* memory, size_t bytes) {
+    if (bytes < kSmallest)
+        ::operator delete(memory, kAlignment);
+    else
+        pool().give(memory, bytes);
+}
+size_t unusedPlaneBytes() { return pool().unusedBytes(); }
+
+}  // namespace aa

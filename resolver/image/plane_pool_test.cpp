@@ -1,0 +1,35 @@
+#include "image/plane_pool.h"
+
+#include <gtest/gtest.h>
+
+#include "image/plane.h"
+
+namespace aa {
+namespace {
+
+TEST(PlanePool, APlaneTakesWhatAnotherOfItsSizeGaveBack) {
+#ifdef AA_SANITIZED
+    GTEST_SKIP() << "without the pool";
+#endif
+    PlaneF a(1000, 300, 3);
+    const float* const memory = a.row(0);
+    a = PlaneF();
+    const PlaneF other(1000, 301), same(1000, 300);
+    EXPECT_NE(other.row(0), memory);
+    EXPECT_EQ(same.row(0), memory);
+    for (int y = -kBorderY; y < 300 + kBorderY; y++)
+        for (int x = -kBorderX; x < 1000 + kBorderX; x++) ASSERT_EQ(same.at(x, y), 0) << "of the plane before";
+}
+
+TEST(PlanePool, WhatLiesUnusedIsBounded) {
+    constexpr size_t kBytes = size_t(40) << 20;
+    std::vector<void*> all;
+    for (int i = 0; i < 12; i++) all.push_back(takePlaneMemory(kBytes));
+    for (void* memory : all) {
+        givePlaneMemory(memory, kBytes);
+        EXPECT_LE(unusedPlaneBytes(), kMostUnusedPlaneBytes);
+    }
+}
+
+}  // namespace
+}  // namespace aa
