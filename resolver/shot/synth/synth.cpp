@@ -9,7 +9,10 @@
 #include "kernels/dispatch.h"
 #include "shot/manifest.h"
 #include "shot/patterns.h"
+#include "shot/synth/placed.h"
+#include "shot/synth/sampler.h"
 #include "shot/synth/scenes.h"
+#include "shot/synth/truth.h"
 #include "shot/writer.h"
 
 namespace aa {
@@ -17,127 +20,14 @@ using glm::dvec2;
 using glm::dvec3;
 
 namespace {
-constexpr int kStrata = 32;  // of the zone plate's truth, per axis and half
-
 dvec2 turned(dvec2 p, double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
     return {c * p.x - s * p.y, s * p.x + c * p.y};
 }
-bool rests(const RigidMotion& m) { return m.velocityPx == dvec2(0.0) && m.turn == 0; }
-
-// A shape where it is at one time.
-struct Placed {
-    const SynthShape* shape;
-    Region region;
-    Bounds bounds;
-};
-std::vector<Placed> placedAt(const std::vector<SynthShape>& shapes, double time) {
-    std::vector<Placed> r;
-    for (const SynthShape& s : shapes) {
-        Placed p{&s, s.region, {}};
-        if (!rests(s.motion)) {
-            if (auto* disc = std::get_if<Disc>(&p.region)) disc->centre = s.motion.apply(disc->centre, time);
-            if (auto* polygon = std::get_if<Polygon>(&p.region))
-                for (dvec2& corner : *polygon) corner = s.motion.apply(corner, time);
-        }
-        p.bounds = bounds(p.region);
-        r.push_back(std::move(p));
-    }
-    return r;
-}
-// Those that reach into a row of pixels, front to back.
-std::vector<const Placed*> ofRow(const std::vector<Placed>& placed, int y) {
-    std::vector<const Placed*> r;
-    for (const Placed& p : placed)
-        if (p.bounds.min.y <= y + 1 && p.bounds.max.y >= y) r.push_back(&p);
-    return r;
-}
-bool holds(const Placed& shape, dvec2 p) {
-    return p.x >= shape.bounds.min.x && p.x <= shape.bounds.max.x && p.y >= shape.bounds.min.y &&
-           p.y <= shape.bounds.max.y && contains(shape.region, p);
-}
-const Placed* frontMost(const std::vector<const Placed*>& row, dvec2 p) {
-    for (const Placed* c : row)
-        if (holds(*c, p)) return c;
-    return nullptr;
-}
-const Placed* frontMost(const std::vector<Placed>& all, dvec2 p) {
-    for (const Placed& c : all)
-        if (holds(c, p)) return &c;
-    return nullptr;
-}
-
-bool isSeam(const SynthShape& shape, size_t edge) { return edge < 32 && (shape.seams >> edge & 1); }
-
-// Signed distance along its major axis from p to the line of the shape's nearest edge (conventions 3).
-dvec2 nearestEdgePx(const Placed& placed, dvec2 p) {
-    const auto& polygon = std::get<Polygon>(placed.region);
-    double nearest = INFINITY;
-    dvec2 r(0.5);
-    for (size_t i = 0; i < polygon.size(); i++) {
-        const dvec2 a = polygon[i], d = polygon[(i + 1) % polygon.size()] - a;
-        if (d == dvec2(0.0) || isSeam(*placed.shape, i)) continue;
-        const dvec2 n(-d.y, d.x);
-        const bool alongX = std::abs(n.x) > std::abs(n.y);
-        const double s = glm::dot(a - p, n) / (alongX ? n.x : n.y);
-        if (!(std::abs(s) < nearest)) continue;
-        nearest = std::abs(s);
-        r = alongX ? dvec2(s, 0.5) : dvec2(0.5, s);
-    }
-    return r;
-}
-
-void put(Rgb& to, int x, int y, dvec3 v) {
-    for (int c = 0; c < 3; c++) to.c[size_t(c)].at(x, y) = float(v[c]);
-}
-
 bool polygonsOnly(const std::vector<SynthShape>& shapes) {
     return std::all_of(shapes.begin(), shapes.end(),
                        [](const auto& s) { return std::holds_alternative<Polygon>(s.region); });
 }
-
-// Everything that a sample at one position of one frame sees.
-class Sampler {
-  public:
-    // All shapes moved by `shiftView` in view space.
-    Sampler(const SynthSceneContents& scene, int width, int height, double time, dvec3 shiftView = dvec3(0.0))
-        : scene_(scene),
-          shiftView_(shiftView),
-          width_(width),
-          height_(height),
-          time_(time),
-          toWorld_(glm::transpose(glm::dmat3(scene.camera.view))) {}
-
-    dvec3 color(const Placed* hit, dvec2 p) const {
-        if (scene_.zonePlate) return dvec3(zonePlateValue(p, width_, height_));
-        return hit ? hit->shape->color : scene_.backgroundColor;
-    }
-    float depth(const Placed* hit, dvec2 p) const {
-        if (!hit) return kBackgroundDepth;
-        const SynthShape& s = *hit->shape;
-        const glm::dmat4& m = scene_.camera.projection;
-        const dvec2 ndc(2 * p.x / width_ - 1, 1 - 2 * p.y / height_);
-        const dvec2 ray(ndc.x / m[0][0], ndc.y / m[1][1]);  // both cameras are centred
-        const dvec3 n = s.normalView;
-        const double distance = s.distance + glm::dot(n, shiftView_);
-        return float(scene_.camera.kind == "perspective" ? distance / (n.x * ray.x + n.y * ray.y - n.z)
-                                                         : (n.x * ray.x + n.y * ray.y - distance) / n.z);
-    }
-    dvec3 normal(const Placed* hit) const { return hit ? toWorld_ * hit->shape->normalView : dvec3(0.0); }
-    static uint32_t object(const Placed* hit) { return hit ? hit->shape->object : 0; }
-    dvec2 motionPx(const Placed* hit, dvec2 p) const {
-        if (!hit || rests(hit->shape->motion)) return dvec2(0.0);
-        const RigidMotion& m = hit->shape->motion;
-        return p - m.apply(m.invert(p, time_), time_ - 1);
-    }
-
-  private:
-    const SynthSceneContents& scene_;
-    dvec3 shiftView_;
-    int width_, height_;
-    double time_;
-    glm::dmat3 toWorld_;
-};
 
 // [Stejmar n.d., 3.7.1]: the jitter's translation in clip space, multiplied to the wrong side of the projection, moves
 // the geometry in view space instead. It is a translation parallel to the picture's plane, so every depth stays.
@@ -168,69 +58,6 @@ void addSegments(const Placed& shape, const Sampler& sampler, std::vector<EdgeSe
     }
 }
 
-// Exact: each visible shape counts by its area in the pixel.
-void areaTruth(const std::vector<Placed>& placed, dvec3 background, Rgb& to) {
-    forRows({}, to.height(), [&](int y0, int y1) {
-        for (int y = y0; y < y1; y++) {
-            const auto row = ofRow(placed, y);
-            for (int x = 0; x < to.width(); x++) {
-                const Polygon pixel = rectangle(x, y, x + 1, y + 1);
-                const auto holdsPixel = [&](const Placed* p) {
-                    return std::all_of(pixel.begin(), pixel.end(),
-                                       [&](dvec2 corner) { return contains(p->region, corner); });
-                };
-                std::vector<const Region*> regions;
-                std::vector<dvec3> colors;
-                bool covered = false;
-                for (const Placed* p : row) {
-                    if (p->bounds.min.x >= x + 1 || p->bounds.max.x <= x) continue;
-                    regions.push_back(&p->region);
-                    colors.push_back(p->shape->color);
-                    if ((covered = holdsPixel(p))) break;
-                }
-                if (regions.size() <= size_t(covered)) {  // one shape, or none: no rounding of areas
-                    put(to, x, y, covered ? colors[0] : background);
-                    continue;
-                }
-                const std::vector<double> areas = visibleAreas(pixel, regions);
-                dvec3 sum = areas.back() * (covered ? colors.back() : background);
-                for (size_t i = 0; i < colors.size(); i++) sum += areas[i] * colors[i];
-                put(to, x, y, glm::max(sum, dvec3(0.0)));
-            }
-        }
-    });
-}
-
-// Repeatable offset of a stratum's sample, in [0,1)^2.
-dvec2 stratumOffset(uint32_t x, uint32_t y, uint32_t stratum, uint32_t half) {
-    uint32_t h =
-        x * 0x9E3779B1u ^ y * 0x85EBCA77u ^ stratum * 0xC2B2AE3Du ^ (half + 1) * 0x27D4EB2Fu;  // xxHash's primes
-    const auto next = [&h] {
-        h ^= h >> 15;
-        h *= 0x2C1B3C6Du;
-        h ^= h >> 12;
-        h *= 0x297A2D39u;
-        h ^= h >> 15;
-        return h / 4294967296.0;
-    };
-    const double u = next(), v = next();
-    return {u, v};
-}
-void zonePlateTruth(int width, int height, uint32_t half, Rgb& to) {
-    forRows({}, height, [&](int y0, int y1) {
-        for (int y = y0; y < y1; y++)
-            for (int x = 0; x < width; x++) {
-                double sum = 0;
-                for (uint32_t k = 0; k < kStrata * kStrata; k++) {
-                    const dvec2 o = stratumOffset(uint32_t(x), uint32_t(y), k, half);
-                    sum += zonePlateValue({x + (k % kStrata + o.x) / kStrata, y + (k / kStrata + o.y) / kStrata}, width,
-                                          height);
-                }
-                put(to, x, y, dvec3(sum / (kStrata * kStrata)));
-            }
-    });
-}
-
 // Planar z of each object's geometry, nearest and farthest: what `check` holds a scaled depth against.
 nlohmann::json depthBounds(const SynthSceneContents& scene, int width, int height, double time) {
     std::map<uint32_t, std::pair<double, double>> range;
@@ -249,6 +76,29 @@ nlohmann::json depthBounds(const SynthSceneContents& scene, int width, int heigh
     nlohmann::json j = nlohmann::json::object();
     for (const auto& [id, z] : range) j[std::to_string(id)] = {z.first, z.second};
     return j;
+}
+
+// How far the samples of a pixel lie outside of it.
+double reachOf(dvec2 samplePx, const std::vector<dvec2>& subSamplesPx) {
+    const auto farthest = [](dvec2 p) { return std::max(std::abs(p.x), std::abs(p.y)); };
+    double most = 0;
+    for (const dvec2& p : subSamplesPx) most = std::max(most, farthest(samplePx + p));
+    return std::max(0.0, std::max(most, farthest(samplePx)) - 0.5);
+}
+void putSample(Frame& f, int x, int y, const Sampler& sampler, const Placed* hit, dvec2 p) {
+    put(f.colorLinear, x, y, sampler.color(hit, p));
+    put(f.normalWorld, x, y, sampler.normal(hit));
+    f.depthView.at(x, y) = sampler.depth(hit, p);
+    f.objectId.at(x, y) = sampler.object(hit);
+    const dvec2 motion = sampler.motionPx(hit, p);
+    f.motionXPx.at(x, y) = float(motion.x);
+    f.motionYPx.at(x, y) = float(motion.y);
+}
+void putSubSample(SubSample& s, int x, int y, const Sampler& sampler, const Placed* hit, dvec2 p) {
+    s.depthView.at(x, y) = sampler.depth(hit, p);
+    put(s.normalWorld, x, y, sampler.normal(hit));
+    s.objectId.at(x, y) = sampler.object(hit);
+    if (!s.colorLinear.empty()) put(s.colorLinear, x, y, sampler.color(hit, p));
 }
 
 std::string numbered(const char* folder, int frame) {
@@ -308,7 +158,7 @@ SynthShot::SynthShot(const SynthOptions& o) {
         m.subsamplePattern = o.subsamples;
         m.subsamplePositionsPx = patternPositionsPx(o.subsamples);
     }
-    m.truthSamplesPerHalf = scene_->contents.zonePlate ? kStrata * kStrata : 0;
+    m.truthSamplesPerHalf = scene_->contents.zonePlate ? kZonePlateStrata * kZonePlateStrata : 0;
     m.extra["producer"] = {{"name", "aaresolve synth"}, {"version", AA_VERSION}};
     m.extra["jitter"]["centred"] = o.centred;
     m.extra["truth"]["exact"] = !scene_->contents.zonePlate;  // areas by formula: no samples, no error bar
@@ -373,19 +223,18 @@ Frame SynthShot::frame(size_t index, Sampling sampling) const {
         samplePx = dvec2(0.0);
     }
     const Sampler sampler(scene_->contents, w, h, time, shiftView);
+    const double reachPx = reachOf(samplePx, f.subSamplePositionsPx);
+    // A sub-sample that lies beyond its pixel's row sees the shapes of that row alone: the shots' hashes hold that.
+    const auto shapesByRow = shapesOfRows(placed, h, 0);
     forRows({}, h, [&](int y0, int y1) {
         for (int y = y0; y < y1; y++) {
-            const auto row = ofRow(placed, y);
+            const PlacedRow row(shapesByRow[size_t(y)], y, w, reachPx);
+            const Placed* hit = nullptr;
             for (int x = 0; x < w; x++) {
-                const dvec2 centre(x + 0.5, y + 0.5), p = centre + samplePx;
-                const Placed* hit = frontMost(row, p);
-                put(f.colorLinear, x, y, sampler.color(hit, p));
-                put(f.normalWorld, x, y, sampler.normal(hit));
-                f.depthView.at(x, y) = sampler.depth(hit, p);
-                f.objectId.at(x, y) = sampler.object(hit);
-                const dvec2 motion = sampler.motionPx(hit, p);
-                f.motionXPx.at(x, y) = float(motion.x);
-                f.motionYPx.at(x, y) = float(motion.y);
+                const dvec2 p = dvec2(x + 0.5, y + 0.5) + samplePx;
+                const bool isCrossed = row.isCrossed(x);
+                if (isCrossed || x == 0 || row.isCrossed(x - 1)) hit = row.frontMost(x, p);
+                putSample(f, x, y, sampler, hit, p);
                 if (edges && hit) {
                     const dvec2 e = nearestEdgePx(*hit, p);
                     f.edgeXPx.at(x, y) = float(e.x);
@@ -393,13 +242,9 @@ Frame SynthShot::frame(size_t index, Sampling sampling) const {
                 }
                 for (size_t k = 0; k < f.subSamples.size(); k++) {
                     const dvec2 q = p + f.subSamplePositionsPx[k];
-                    const Placed* subHit = frontMost(row, q);
-                    SubSample& s = f.subSamples[k];
-                    s.depthView.at(x, y) = sampler.depth(subHit, q);
-                    put(s.normalWorld, x, y, sampler.normal(subHit));
-                    s.objectId.at(x, y) = sampler.object(subHit);
+                    const Placed* subHit = isCrossed ? row.frontMost(x, q) : hit;
+                    putSubSample(f.subSamples[k], x, y, sampler, subHit, q);
                     if (k < 32 && sampler.object(subHit) == sampler.object(hit)) f.subSampleMask.at(x, y) |= 1u << k;
-                    if (!s.colorLinear.empty()) put(s.colorLinear, x, y, sampler.color(subHit, q));
                 }
             }
         }
@@ -426,8 +271,8 @@ Truth SynthShot::truth(size_t index) const {
     Truth t{Rgb(manifest_.width, manifest_.height), {}};
     if (scene_->contents.zonePlate) {
         t.b = t.a;
-        zonePlateTruth(manifest_.width, manifest_.height, 0, t.a);
-        zonePlateTruth(manifest_.width, manifest_.height, 1, t.b);
+        zonePlateTruth(0, t.a);
+        zonePlateTruth(1, t.b);
     } else {
         areaTruth(placedAt(shapes(), double(index)), scene_->contents.backgroundColor, t.a);
         t.b = t.a;

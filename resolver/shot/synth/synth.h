@@ -49,6 +49,7 @@ struct RigidMotion {
     glm::dvec2 velocityPx{0.0};  // per frame
     double turn = 0;             // radians per frame, x towards y
     glm::dvec2 pivotPx{0.0};     // at frame time 0
+    bool rests() const { return velocityPx == glm::dvec2(0.0) && turn == 0; }
     glm::dvec2 apply(glm::dvec2 p, double time) const;
     glm::dvec2 invert(glm::dvec2 p, double time) const;
 };
