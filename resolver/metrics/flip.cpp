@@ -50,31 +50,38 @@ FlipFilters filtersAt(double pixelsPerDegree) {
     }
     return f;
 }
-}  // namespace
-
-double flip(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map, double pixelsPerDegree) {
-    Rgb linearTest, linearReference;
-    decode(test, {}, exec, linearTest);
-    decode(reference, {}, exec, linearReference);
-    return flipOfLight(linearTest, linearReference, exec, map, pixelsPerDegree);
-}
-
-double flipOfLight(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map, double pixelsPerDegree) {
+double flip(const Rgb& test, const Rgb& reference, bool encoded, const Exec& exec, PlaneF* map,
+            double pixelsPerDegree) {
     assert(test.width() == reference.width() && test.height() == reference.height());
     assert(pixelsPerDegree >= kLeastFlipPixelsPerDegree && pixelsPerDegree <= kMostFlipPixelsPerDegree);
-    constexpr int kRowsPerBlock = 128;  // each block repeats 20 rows of the pass along x
+    constexpr int kRowsPerBlock = 128;  // each block repeats the loading of 20 rows
     const int w = test.width(), h = test.height();
     if (map && (map->width() != w || map->height() != h)) *map = PlaneF(w, h);
-    std::vector<double> rows(size_t(h) * kSumStrands);
+    std::vector<double> rows(static_cast<size_t>(h));
     const bool usual = pixelsPerDegree == kFlipPixelsPerDegree;
     const FlipFilters filters = usual ? FlipFilters{} : filtersAt(pixelsPerDegree);
-    const FlipArgs args{
-        view(test),  view(reference), test.stride(), w, h, map ? map->row(0) : nullptr, map ? map->stride() : 0,
-        rows.data(), &filters};
+    const FlipArgs args{.test = view(test),
+                        .reference = view(reference),
+                        .encoded = encoded,
+                        .stride = test.stride(),
+                        .width = w,
+                        .height = h,
+                        .map = map ? map->row(0) : nullptr,
+                        .mapStride = map ? map->stride() : 0,
+                        .rows = rows.data(),
+                        .filters = &filters};
     const auto& kernels = flipKernelsFor(exec);
     runKernel(usual ? kernels.flip : kernels.given, exec, args, h, kRowsPerBlock);
     if (map) map->fillBorder();
     return std::accumulate(rows.begin(), rows.end(), 0.0) / (double(w) * h);
+}
+}  // namespace
+
+double flip(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map, double pixelsPerDegree) {
+    return flip(test, reference, true, exec, map, pixelsPerDegree);
+}
+double flipOfLight(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map, double pixelsPerDegree) {
+    return flip(test, reference, false, exec, map, pixelsPerDegree);
 }
 
 Metric flipMetric() {
@@ -86,7 +93,7 @@ Metric flipMetric() {
                         quartile("flipMedian", "FLIP, median", "below which half of all FLIP lies"),
                         quartile("flipThirdQuartile", "FLIP, 3rd quartile", "below which three quarters of it lie")},
             .byDefault = true,
-            .nsPerPixel = 100,
+            .nsPerPixel = 45,
             .source = "[Andersson 2020]",
             .measure = [](const ImagePair& i, const Exec& exec) {
                 PlaneF map;

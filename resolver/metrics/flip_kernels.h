@@ -11,11 +11,12 @@ struct FlipFilters {
     double czWideShare;
 };
 struct FlipArgs {
-    RgbIn test, reference;  // linear display-referred
+    RgbIn test, reference;
+    bool encoded;  // sRGB codes; otherwise linear and display-referred
     int stride, width, height;
     float* map;  // pixel (0,0) of a plane, or null
     int mapStride;
-    double* rows;                // [height][kSumStrands], zero at the start
+    double* rows;                // [height]: sums, zero at the start
     const FlipFilters* filters;  // of `given` alone
 };
 struct FlipKernels {

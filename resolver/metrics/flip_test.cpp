@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "image/colour.h"
 #include "metrics/flip_constants.h"
 
 namespace aa {
@@ -182,6 +183,12 @@ TEST(Flip, SameBitsEverywhere) {
             EXPECT_EQ(flip(t, r, {isa, Precision::fast, parallel}, &map), mean);
             EXPECT_TRUE(map.samePixels(first));
         }
+}
+TEST(Flip, CodesAreDecodedAsImagesAre) {
+    const Rgb t = scene(90, 40, 1, 0.2f), r = scene(90, 40, 2, 0.2f);
+    Rgb linearTest, linearReference;
+    decode(t, {}, {}, linearTest), decode(r, {}, {}, linearReference);
+    EXPECT_EQ(flip(t, r, {}), flipOfLight(linearTest, linearReference, {}));
 }
 TEST(Flip, ConstantsAgreeWithTheirFormulas) {
     using namespace flip_constants;

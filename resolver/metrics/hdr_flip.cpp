@@ -88,7 +88,7 @@ double hdrFlip(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* 
 Metric hdrFlipMetric() {
     return {.figures = {{"hdrFlip", "HDR-FLIP", "FLIP of linear light, the largest over exposures, mean"}},
             .space = ColourSpace::linear,
-            .nsPerPixel = 400,
+            .nsPerPixel = 200,
             .source = "[Andersson 2021]",
             .measure = [](const ImagePair& i, const Exec& exec) {
                 return std::vector{hdrFlip(*i.testLinear, *i.referenceLinear, exec, nullptr, i.flipPixelsPerDegree)};

@@ -31,7 +31,7 @@ Metric luma709Metric() {
                          [](const FrameMetrics& m) { return psnr(m.others.at("mseLuma709")); }},
                         {"mseLuma709", "MSE 709", "mean squared error of BT.709 luma"},
                         {"ssimLuma709", "SSIM 709", "SSIM of BT.709 luma", FigureForm::similarity, true}},
-            .nsPerPixel = 32,
+            .nsPerPixel = 12,
             .source = "conventions 13.2",
             .measure = [](const ImagePair& i, const Exec& exec) {
                 const Luma709 l = luma709(i.testEncoded, i.referenceEncoded, exec);

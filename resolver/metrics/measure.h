@@ -49,7 +49,7 @@ struct MeasureOptions {
 };
 // The metrics that a run measures by default and that `asked` does not name; none where they would take more than
 // kDefaultSeconds on one processor. `pixels`: of all frames that are judged, times the methods.
-inline constexpr double kDefaultSeconds = 60;
+inline constexpr double kDefaultSeconds = 20;
 struct DefaultMetrics {
     std::vector<const Metric*> metrics;
     double seconds = 0;  // about

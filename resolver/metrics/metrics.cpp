@@ -19,7 +19,7 @@ double ssim(const Rgb& test, const Rgb& reference, const Exec& exec, SsimSignal 
     assert(test.width() == reference.width() && test.height() == reference.height());
     const int w = test.width(), h = test.height();
     if (map && (map->width() != w || map->height() != h)) *map = PlaneF(w, h);
-    std::vector<double> rows(size_t(h) * kSumStrands);
+    std::vector<double> rows(static_cast<size_t>(h));
     const SsimArgs args{
         view(test), view(reference), test.stride(), w, h, signal, map ? map->row(0) : nullptr, map ? map->stride() : 0,
         rows.data()};
@@ -167,19 +167,19 @@ Metric ssimMetric(Figure figure, bool always, int nsPerPixel,
 }
 }  // namespace
 Metric ssimLumaMetric() {
-    return ssimMetric({"ssimLuma", "SSIM", "structural similarity of luma 601"}, true, 25, ssimLuma);
+    return ssimMetric({"ssimLuma", "SSIM", "structural similarity of luma 601"}, true, 5, ssimLuma);
 }
 Metric ssimValidMetric() {
-    return ssimMetric({"ssimValid", "SSIM valid", "SSIM of luma 601, windows within the picture alone"}, false, 25,
+    return ssimMetric({"ssimValid", "SSIM valid", "SSIM of luma 601, windows within the picture alone"}, false, 7,
                       ssimValid);
 }
 Metric ssimRgbMetric() {
-    Metric m = ssimMetric({"ssimRgb", "SSIM RGB", "SSIM, mean over channels"}, false, 75, ssimRgb);
+    Metric m = ssimMetric({"ssimRgb", "SSIM RGB", "SSIM, mean over channels"}, false, 12, ssimRgb);
     m.byDefault = true;
     return m;
 }
 Metric ssimMatlab3DMetric() {
-    return ssimMetric({"ssimMatlab3D", "SSIM 3D", "SSIM as MATLAB filters an RGB array"}, false, 120, ssimMatlab3D);
+    return ssimMetric({"ssimMatlab3D", "SSIM 3D", "SSIM as MATLAB filters an RGB array"}, false, 20, ssimMatlab3D);
 }
 
 void dither8(Rgb& encoded, int frame, const Exec& exec) {

@@ -1,5 +1,6 @@
 #include "kernels/hash.h"
 #include "kernels/lanes.h"
+#include "kernels/transpose.h"
 #include "metrics/metrics_kernels.h"
 #include "metrics/strip.h"
 
@@ -47,13 +48,25 @@ __attribute__((flatten)) void relativeErrorRows(const RelativeErrorArgs& a, int 
 // Works on the sum s = x + y and the difference d = x - y of the two images:
 //   2 mu_x mu_y = (mu_s^2 - mu_d^2) / 2      mu_x^2 + mu_y^2       = (mu_s^2 + mu_d^2) / 2
 //   2 sigma_xy  = (var_s - var_d) / 2        sigma_x^2 + sigma_y^2 = (var_s + var_d) / 2
-// so that two variances are enough and identical images (d = 0) give exactly 1. A variance is gathered first along x
-// about the row's own mean and then along y about the mean of those means; all its terms are >= 0 and none cancel:
-//   var = sum_j w_j (var_j + (mean_j - mean)^2).
+// so that two variances are enough and identical images (d = 0) give exactly 1. A variance is gathered first along y
+// and then along x, of the columns' means and variances:
+//   var = sum_i w_i (var_i + (mean_i - p)^2) - (mean - p)^2
+// p is a value of the window itself, of weight w: var >= w (mean - p)^2, so that the difference loses at
+// most a factor 1 + 1 / w of the precision, and that only where an edge lies between p and nearly all of the window:
+// 1.3e-6 of one pixel's SSIM, 1e-10 of a picture's. One p serves kTile rows, then kTile columns, which are the same
+// whatever rows a thread is given. So both passes are weighted sums, two per signal, and nothing is subtracted tap by
+// tap. They run on registers whose lanes are columns, then rows: between them tiles are transposed, because of
+// unaligned neighbours every other one lies in two cache lines.
+//
+// What limits it on AVX2: arithmetic, of which 117 additions per 8 pixels of a channel, two per cycle, are the most.
 
-constexpr int kTaps = 11, kReach = 5;
-constexpr int kStrip = 64;               // columns; twice as many are slower here
-constexpr int kPadded = kStrip + 2 * 8;  // a strip and its neighbourhood, a whole number of lanes
+constexpr int kReach = 5;
+constexpr int kTile = kTileRows;             // rows and columns about one pivot: at most 4 away, w >= 0.0076
+constexpr int kPivot = kTile / 2 - 1;        // its place
+constexpr int kWindow = kTile + 2 * kReach;  // rows or columns that a tile reads
+constexpr int kStrip = 128;                  // columns
+constexpr int kMargin = 8;                   // beside a strip: whole lanes
+constexpr int kPadded = kStrip + 2 * kMargin;
 // exp(-i^2 / (2 1.5^2)) / sum, i = 0..5 (conventions 13.2; here to double precision)
 constexpr double kGauss[kReach + 1] = {0.2660117248617943,  0.21300553771125366,  0.1093606895097,
                                        0.03600077212843082, 0.007598758135239184, 0.0010283800844791099};
@@ -63,87 +76,100 @@ template <class R>
 struct Moments {
     R mean, variance;
 };
-// Storage of one strip of moments, of s and of d.
+// Of s and of d, along y: mean and variance of kTile rows of each column, one column after the other.
 template <class T>
-struct alignas(64) MomentRow {
-    T mean[2][kStrip], variance[2][kStrip];
+struct alignas(64) ColumnMoments {
+    T of[2][2][kPadded * kTile];
 };
+// p[0] .. p[10]
 template <class R>
-AA_INLINE R weight(int i) {
-    return R(Elem<R>(kGauss[i]));
+AA_INLINE R windowed(const R* p) {
+    const auto w = [](int i) __attribute__((always_inline)) { return R(Elem<R>(kGauss[i])); };
+    const auto pair = [&](int i) __attribute__((always_inline)) { return (p[kReach - i] + p[kReach + i]) * w(i); };
+    return (p[kReach] * w(0) + pair(1)) + ((pair(2) + pair(3)) + (pair(4) + pair(5)));
 }
-// The window's mean and variance along x about p[0], p spans -5..5.
+// Of the kTile windows about `value` and what lies kReach before and behind; `within`: the variances of these values.
 template <class R>
-AA_INLINE Moments<R> momentsAlongX(const Elem<R>* p) {
-    R lo[kReach], hi[kReach];
-    const R centre = loadOwn<R>(p);
-    for (int i = 0; i < kReach; i++) lo[i] = loadOwn<R>(p - 1 - i), hi[i] = loadOwn<R>(p + 1 + i);
-    R mean = centre * weight<R>(0);
-    for (int i = 0; i < kReach; i++) mean = mean + (lo[i] + hi[i]) * weight<R>(i + 1);
-    const R e = centre - mean;
-    R variance = e * e * weight<R>(0);
-    for (int i = 0; i < kReach; i++) {
-        const R a = lo[i] - mean, b = hi[i] - mean;
-        variance = variance + (a * a + b * b) * weight<R>(i + 1);
+AA_INLINE void momentsOf(const R (&value)[kWindow], const R* within, Moments<R> (&out)[kTile]) {
+    const R pivot = value[kReach + kPivot];
+    R first[kWindow], second[kWindow];
+#pragma GCC unroll 18  // kWindow
+    for (int j = 0; j < kWindow; j++) {
+        first[j] = value[j] - pivot;
+        second[j] = first[j] * first[j];
+        if (within) second[j] = within[j] + second[j];
     }
-    return {mean, variance};
-}
-// `rows` are the window's 11 rows in order.
-template <class R, class T>
-AA_INLINE Moments<R> momentsAlongY(const MomentRow<T>* rows, int signal, int x) {
-    R m[kTaps];
-    for (int j = 0; j < kTaps; j++) m[j] = loadOwn<R>(rows[j].mean[signal] + x);
-    R mean = m[kReach] * weight<R>(0);
-    for (int j = 1; j <= kReach; j++) mean = mean + (m[kReach - j] + m[kReach + j]) * weight<R>(j);
-    const auto part = [&](int j) __attribute__((always_inline)) {
-        const R e = m[j] - mean;
-        return loadOwn<R>(rows[j].variance[signal] + x) + e * e;
-    };
-    R variance = part(kReach) * weight<R>(0);
-    for (int j = 1; j <= kReach; j++) variance = variance + (part(kReach - j) + part(kReach + j)) * weight<R>(j);
-    return {mean, variance};
+#pragma GCC unroll 8  // kTile
+    for (int k = 0; k < kTile; k++) {
+        const R mean = windowed(first + k);
+        out[k] = {pivot + mean, windowed(second + k) - mean * mean};
+    }
 }
 
-AA_INLINE void prefetchRow(const SsimArgs& a, int signal, int y, int first) {
-    if (y < 0 || y >= a.height) return;
-    for (int c = 0; c < 3; c++) {
-        if (signal < 3 && c != signal) continue;
-        const long o = long(y) * a.stride + first;
-        prefetch(a.test.c[c] + o, kPadded);
-        prefetch(a.reference.c[c] + o, kPadded);
-    }
-}
-// s and d of row y, columns [x0 - 8, x0 + kStrip + 8), coordinates clamped to the image.
+// Rows y0 .. y0 + kTile - 1 of the strip at x0 and what is needed beside it; coordinates are clamped to the image. Of
+// the strip before it, the last columns are there already.
 template <class R>
-AA_INLINE void loadRow(const SsimArgs& a, int signal, int x0, int y, Elem<R>* s, Elem<R>* d) {
-    const long row = long(y < 0 ? 0 : y >= a.height ? a.height - 1 : y) * a.stride;
-    const auto pixel = [&]<class Q>(const RgbIn& image, long o, Q) __attribute__((always_inline)) {
-        if (signal < 3) return load<Q>(image.c[signal] + o);
-        return luma601(vec3<Q>(load<Q>(image.c[0] + o), load<Q>(image.c[1] + o), load<Q>(image.c[2] + o)));
+AA_INLINE void momentsAlongY(const SsimArgs& a, int signal, int x0, int y0, int columns, ColumnMoments<Elem<R>>& out) {
+    long rows[kWindow];
+#pragma GCC unroll 18  // kWindow
+    for (int j = 0; j < kWindow; j++) {
+        const int y = y0 - kReach + j;
+        rows[j] = long(y < 0 ? 0 : y >= a.height ? a.height - 1 : y) * a.stride + x0;
+    }
+    const int reach = columns + kMargin, inside = a.width - x0, end = reach < inside ? reach : inside;
+    const auto pixel = [&](const RgbIn& image, long o) __attribute__((always_inline)) {
+        if (signal < 3) return load<R>(image.c[signal] + o);
+        return luma601(vec3<R>(load<R>(image.c[0] + o), load<R>(image.c[1] + o), load<R>(image.c[2] + o)));
     };
-    const int first = x0 - 8;
-    if (first >= 0 && first + kPadded <= a.width) {
-        prefetchRow(a, signal, y + kRowsAhead, first);
-        for (int i = 0; i < kPadded; i += N<R>) {
-            const R t = pixel(a.test, row + first + i, R{}), r = pixel(a.reference, row + first + i, R{});
-            store(t + r, s + i), store(t - r, d + i);
+    for (int x = x0 ? kMargin : 0; x < end; x += N<R>) {  // the last lanes may lie beyond the image, in its padding
+        R value[2][kWindow];
+#pragma GCC unroll 18  // kWindow
+        for (int j = 0; j < kWindow; j++) {
+            const R t = pixel(a.test, rows[j] + x), r = pixel(a.reference, rows[j] + x);
+            value[0][j] = t + r, value[1][j] = t - r;
         }
-        return;
+        for (int signal = 0; signal < 2; signal++) {
+            Moments<R> m[kTile];
+            momentsOf<R>(value[signal], nullptr, m);
+            R mean[kTile], variance[kTile];
+#pragma GCC unroll 8  // kTile
+            for (int k = 0; k < kTile; k++) mean[k] = m[k].mean, variance[k] = m[k].variance;
+            storeTransposed(mean, out.of[signal][0] + (kMargin + x) * kTile);
+            storeTransposed(variance, out.of[signal][1] + (kMargin + x) * kTile);
+        }
     }
-    for (int i = 0; i < kPadded; i++) {
-        using T = Elem<R>;
-        const int x = first + i < 0 ? 0 : first + i >= a.width ? a.width - 1 : first + i;
-        const T t = pixel(a.test, row + x, T{}), r = pixel(a.reference, row + x, T{});
-        s[i] = t + r, d[i] = t - r;
+    const auto repeat = [&](int from, int x) __attribute__((always_inline)) {
+        for (auto& signal : out.of)
+            for (auto& p : signal)
+                for (int k = 0; k < kTile; k++) p[(kMargin + x) * kTile + k] = p[(kMargin + from) * kTile + k];
+    };
+    for (int x = -kReach; x < 0 && x0 == 0; x++) repeat(0, x);
+    for (int x = inside; x < kStrip + kMargin; x++) repeat(inside - 1, x);
+}
+// What the strip after it begins with.
+template <class T>
+AA_INLINE void keepLast(ColumnMoments<T>& m) {
+    for (auto& signal : m.of)
+        for (auto& p : signal) std::memcpy(p, p + kStrip * kTile, 2 * kMargin * kTile * sizeof(T));
+}
+// Columns x .. x + kTile - 1 of the strip; lanes are rows, from `row` on.
+template <class R>
+AA_INLINE void momentsAlongX(const ColumnMoments<Elem<R>>& columns, int signal, int x, int row,
+                             Moments<R> (&out)[kTile]) {
+    R value[kWindow], within[kWindow];
+#pragma GCC unroll 18  // kWindow
+    for (int j = 0; j < kWindow; j++) {
+        const int at = (kMargin + x - kReach + j) * kTile + row;
+        value[j] = loadOwn<R>(columns.of[signal][0] + at), within[j] = loadOwn<R>(columns.of[signal][1] + at);
     }
+    momentsOf<R>(value, within, out);
 }
 template <class R>
 AA_INLINE R ssimOf(Moments<R> s, Moments<R> d) {
     using T = Elem<R>;
-    const R half(T(0.5)), c1{T(kC1)}, c2{T(kC2)};
+    const R c1(T(2 * kC1)), c2(T(2 * kC2));  // both sides of the fraction times 4
     const R s2 = s.mean * s.mean, d2 = d.mean * d.mean;
-    return (((s2 - d2) * half + c1) * ((s.variance - d.variance) * half + c2)) /
-           (((s2 + d2) * half + c1) * ((s.variance + d.variance) * half + c2));
+    return ((s2 - d2 + c1) * (s.variance - d.variance + c2)) / ((s2 + d2 + c1) * (s.variance + d.variance + c2));
 }
 // The third axis of a volume of three channels: tap o of channel c falls on channel clamp(c + o, 0, 2).
 template <class R>
@@ -158,66 +184,63 @@ AA_INLINE Moments<R> momentsAcrossChannels(const Moments<R>* m, int channel) {
     const R e0 = m[0].mean - mean, e1 = m[1].mean - mean, e2 = m[2].mean - mean;
     return {mean, (m[0].variance + e0 * e0) * w0 + (m[1].variance + e1 * e1) * w1 + (m[2].variance + e2 * e2) * w2};
 }
+// SSIM of a tile's column from the moments of each channel.
 template <class R, int Signals>
-AA_INLINE void ssimStrip(const SsimArgs& a, int x0, int y0, int y1) {
-    using T = Elem<R>;
-    // Every row is stored twice, kTaps apart, so that any 11 successive rows lie one after the other.
-    MomentRow<T> ring[Signals][2 * kTaps];
-    alignas(64) T s[kPadded], d[kPadded];
-    const int columns = a.width - x0 < kStrip ? a.width - x0 : kStrip;
-    for (int y = y0 - kReach; y < y1 + kReach; y++) {
-        const int slot = (y - y0 + kReach) % kTaps;
-        for (int k = 0; k < Signals; k++) {
-            loadRow<R>(a, Signals == 1 ? int(a.signal) : k, x0, y, s, d);
-            MomentRow<T>&row = ring[k][slot], &again = ring[k][slot + kTaps];
-            for (int signal = 0; signal < 2; signal++)
-                for (int x = 0; x < columns; x += N<R>) {
-                    const Moments<R> m = momentsAlongX<R>((signal ? d : s) + 8 + x);
-                    store(m.mean, row.mean[signal] + x), store(m.variance, row.variance[signal] + x);
-                    store(m.mean, again.mean[signal] + x), store(m.variance, again.variance[signal] + x);
-                }
+AA_INLINE R ssimOf(const Moments<R> (&m)[Signals][2][kTile], int column) {
+    if constexpr (Signals == 1) return ssimOf(m[0][0][column], m[0][1][column]);
+    R sum(Elem<R>(0));
+    for (int channel = 0; channel < Signals; channel++) {
+        Moments<R> pair[2];
+        for (int signal = 0; signal < 2; signal++) {
+            Moments<R> of[Signals];
+            for (int k = 0; k < Signals; k++) of[k] = m[k][signal][column];
+            pair[signal] = momentsAcrossChannels(of, channel);
         }
-        const int centre = y - kReach;
-        if (centre < y0) continue;
-        MomentRow<T> window[Signals];
+        sum = sum + ssimOf(pair[0], pair[1]);
+    }
+    return sum / R(Elem<R>(3));
+}
+// Rows y .. y + N<R> - 1 of a strip; of these, rows [y0, y1) count. `row`: of y in the tile.
+template <class R, int Signals>
+AA_INLINE void ssimLanes(const SsimArgs& a, const ColumnMoments<Elem<R>> (&moments)[Signals], int x0, int columns,
+                         int y, int row, int y0, int y1) {
+    RowSums<R> sums;
+    for (int x = 0; x < columns; x += kTile) {
+        Moments<R> m[Signals][2][kTile];
         for (int k = 0; k < Signals; k++)
-            for (int signal = 0; signal < 2; signal++)
-                for (int x = 0; x < columns; x += N<R>) {
-                    const Moments<R> m = momentsAlongY<R>(&ring[k][slot + 1], signal, x);
-                    store(m.mean, window[k].mean[signal] + x), store(m.variance, window[k].variance[signal] + x);
-                }
-        Strands<R> sum;
-        for (int x = 0; x < columns; x += N<R>) {
-            Moments<R> ms[Signals], md[Signals];
-            for (int k = 0; k < Signals; k++) {
-                ms[k] = {loadOwn<R>(window[k].mean[0] + x), loadOwn<R>(window[k].variance[0] + x)};
-                md[k] = {loadOwn<R>(window[k].mean[1] + x), loadOwn<R>(window[k].variance[1] + x)};
-            }
-            R value;
-            if constexpr (Signals == 1)
-                value = ssimOf(ms[0], md[0]);
-            else {
-                R sum(T(0));
-                for (int k = 0; k < 3; k++)
-                    sum = sum + ssimOf(momentsAcrossChannels(ms, k), momentsAcrossChannels(md, k));
-                value = sum / R(T(3));
-            }
-            sum.add(value, x, columns - x);
-            if (a.map) {
-                float* out = a.map + long(centre) * a.mapStride + x0 + x;
-                store(value, out);
-            }
+            for (int signal = 0; signal < 2; signal++) momentsAlongX<R>(moments[k], signal, x, row, m[k][signal]);
+        for (int k = 0; k < kTile && x + k < columns; k++) {
+            const R value = ssimOf<R, Signals>(m, k);
+            sums.add(value);
+            if (!a.map) continue;
+            alignas(32) Elem<R> of[N<R>];
+            store(value, of);
+            for (int i = 0; i < N<R>; i++)
+                if (y + i >= y0 && y + i < y1) a.map[long(y + i) * a.mapStride + x0 + x + k] = float(of[i]);
         }
-        sum.addTo(a.rows + long(centre) * kSumStrands);
+    }
+    for (int i = 0; i < N<R>; i++)
+        if (y + i >= y0 && y + i < y1) a.rows[y + i] += sums.of(i);
+}
+template <class R, int Signals>
+AA_INLINE void ssimTiles(const SsimArgs& a, int y, int y0, int y1) {
+    ColumnMoments<Elem<R>> moments[Signals];
+    for (int x0 = 0; x0 < a.width; x0 += kStrip) {
+        const int columns = a.width - x0 < kStrip ? a.width - x0 : kStrip;
+        for (int k = 0; k < Signals; k++)
+            momentsAlongY<R>(a, Signals == 1 ? int(a.signal) : k, x0, y, columns, moments[k]);
+        for (int row = 0; row < kTile; row += N<R>)
+            ssimLanes<R, Signals>(a, moments, x0, columns, y + row, row, y0, y1);
+        for (auto& m : moments) keepLast(m);
     }
 }
 template <class R>
 __attribute__((flatten)) void ssimRows(const SsimArgs& a, int y0, int y1) {
-    for (int x0 = 0; x0 < a.width; x0 += kStrip) {
+    for (int y = y0 / kTile * kTile; y < y1; y += kTile) {
         if (a.signal == SsimSignal::volume)
-            ssimStrip<R, 3>(a, x0, y0, y1);
+            ssimTiles<R, 3>(a, y, y0, y1);
         else
-            ssimStrip<R, 1>(a, x0, y0, y1);
+            ssimTiles<R, 1>(a, y, y0, y1);
     }
 }
 // Codes of an image file, so float in every precision. Channels draw on their own: grey noise would be seen better.

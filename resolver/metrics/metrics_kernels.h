@@ -26,7 +26,7 @@ struct SsimArgs {
     SsimSignal signal;
     float* map;  // pixel (0,0) of a plane, or null
     int mapStride;
-    double* rows;  // [height][kSumStrands], zero at the start
+    double* rows;  // [height]: sums, zero at the start
 };
 struct DitherArgs {
     RgbOut image;

@@ -1,10 +1,10 @@
 #include "metrics/temporal.h"
 
 #include <cmath>
-#include <functional>
 #include <limits>
 
 #include "metrics/metrics.h"
+#include "metrics/temporal_kernels.h"
 
 namespace aa {
 namespace {
@@ -23,14 +23,20 @@ void fit(Rgb& p, int w, int h) {
 }
 void luma(const Rgb& encoded, const Exec& exec, PlaneF& out) {
     fit(out, encoded.width(), encoded.height());
-    forRows(exec, encoded.height(), [&](int y0, int y1) {
-        for (int y = y0; y < y1; y++) {
-            const float *r = encoded.c[0].row(y), *g = encoded.c[1].row(y), *b = encoded.c[2].row(y);
-            float* o = out.row(y);
-            for (int x = 0; x < encoded.width(); x++) o[x] = 0.299f * r[x] + 0.587f * g[x] + 0.114f * b[x];
-        }
-    });
+    const LumaArgs args{view(encoded), out.stride(), encoded.width(), out.row(0)};
+    runKernel(temporalMetricKernelsFor(exec).luma, exec, args, encoded.height());
     out.fillBorder();
+}
+// Two sums over the rows of `area` in a fixed order, whatever the number of threads.
+template <class Args>
+std::array<double, 2> sumRows(const RowKernel<Args>& kernel, const Exec& exec, const Window& area, Args args) {
+    std::vector<double> rows(2 * size_t(area.y + area.height));
+    args.rows = rows.data(), args.first = area.x, args.end = area.x + area.width;
+    const auto fn = rowsOf(kernel, exec.precision);
+    forRows(exec, area.height, [&](int y0, int y1) { fn(args, area.y + y0, area.y + y1); });
+    std::array<double, 2> total{};
+    for (size_t i = 0; i < rows.size(); i++) total[i % 2] += rows[i];
+    return total;
 }
 // Position (x, y) in px inside [0, W] x [0, H]; the border is filled, so the taps need no clamp.
 float bilinear(const PlaneF& p, float x, float y) {
@@ -42,20 +48,6 @@ float bilinear(const PlaneF& p, float x, float y) {
     const float bottom = s == 0 ? b[0] : b[0] + (b[1] - b[0]) * s;
     return top + (bottom - top) * t;
 }
-// Sums over the rows of `area` in a fixed order, whatever the number of threads.
-template <size_t n>
-std::array<double, n> sumRows(const Exec& exec, const Window& area,
-                              const std::function<void(int, std::array<double, n>&)>& row) {
-    std::vector<std::array<double, n>> rows(static_cast<size_t>(area.height));
-    forRows(exec, area.height, [&](int y0, int y1) {
-        for (int y = y0; y < y1; y++) row(area.y + y, rows[size_t(y)] = {});
-    });
-    std::array<double, n> total{};
-    for (const auto& r : rows)
-        for (size_t i = 0; i < n; i++) total[i] += r[i];
-    return total;
-}
-
 // Frames in which `fraction`, by age, falls to half of its first value; between two ages it is taken as exponential.
 // Where nothing stale is to be seen, nothing halves.
 std::optional<double> halfLife(const std::vector<double>& fraction) {
@@ -97,13 +89,14 @@ void TemporalScene::advance(const Frame& frame, const Rgb* truthEncoded, const E
     alongMotion_ = !fresh;
     if (alongMotion_ && truth_ && hadTruth) {
         fit(step_, width_, height_);
-        forRows(exec, height_, [&](int y0, int y1) {
-            for (int y = y0; y < y1; y++)
-                for (int x = 0; x < width_; x++) {
-                    const float px = qx_.at(x, y);
-                    step_.at(x, y) = px == px ? luma_.at(x, y) - bilinear(previousLuma_, px, qy_.at(x, y)) : 0;
-                }
-        });
+        const StepArgs args{.luma = luma_.row(0),
+                            .previous = previousLuma_.row(0),
+                            .qx = qx_.row(0),
+                            .qy = qy_.row(0),
+                            .stride = luma_.stride(),
+                            .end = width_,
+                            .step = step_.row(0)};
+        runKernel(temporalMetricKernelsFor(exec).step, exec, args, height_);
         truthStep_ = true;
     }
     previousDepth_ = frame.depthView;
@@ -156,81 +149,87 @@ void TemporalScene::followSurfaces(const Frame& frame, const Exec& exec) {
     });
 }
 
-void TemporalJudge::add(const TemporalScene& scene, const Rgb& encoded, const Exec& exec) {
-    const int w = scene.width(), h = scene.height();
-    area_ = region_.value_or(Window{0, 0, w, h});
-    const double pixels = double(area_.width) * area_.height;
+void TemporalJudge::add(TemporalScene& scene, const Rgb& encoded, const Exec& exec, std::optional<double> mse) {
+    area_ = region_.value_or(Window{0, 0, scene.width(), scene.height()});
     const bool counts = seen_++ >= warmup_;
     latest_ = {};
     isStatic_ = scene.isStatic();
     const Rgb* truth = scene.truth();
     if (truth) {
-        const double mse = (region_ ? squaredError(cropped(encoded, area_), cropped(*truth, area_), exec)
-                                    : squaredError(encoded, *truth, exec))
-                               .mse;
-        psnr_.push_back(psnr(mse));
-        if (counts) squaredError_ += mse, framesWithTruth_++;
+        if (!mse)
+            mse = (region_ ? squaredError(cropped(encoded, area_), cropped(*truth, area_), exec)
+                           : squaredError(encoded, *truth, exec))
+                      .mse;
+        psnr_.push_back(psnr(*mse));
+        if (counts) squaredError_ += *mse, framesWithTruth_++;
     }
-    PlaneF y;
+    PlaneF& y = scene.spare();
     luma(encoded, exec, y);
     const bool hasPrevious = hasPrevious_ && scene.framesSinceReset() > 0;
-    if (scene.isStatic() && counts) {
-        fit(mean_, w, h), fit(spread_, w, h);
-        counted_++;
-        const float n = float(counted_);
-        const auto sums = sumRows<2>(exec, area_, [&](int row, std::array<double, 2>& sum) {
-            for (int x = area_.x; x < area_.x + area_.width; x++) {  // Welford
-                const float v = y.at(x, row), d = v - mean_.at(x, row);
-                mean_.at(x, row) += d / n;
-                spread_.at(x, row) += d * (v - mean_.at(x, row));
-                if (!hasPrevious) continue;
-                const double step = double(v) - double(previousLuma_.at(x, row));
-                sum[0] += std::fabs(step), sum[1] += step * step;
-            }
-        });
-        if (hasPrevious) {
-            stepSum_ += sums[0] / pixels, steps_++;
-            latest_.flickerSquares = sums[1], latest_.flickerPixels = pixels;
-        }
-    }
-    if (!scene.isStatic() && scene.alongMotion() && counts) {
-        if (scene.hasTruthStep() && hasPrevious) {
-            const auto sums = sumRows<2>(exec, area_, [&](int row, std::array<double, 2>& sum) {
-                for (int x = area_.x; x < area_.x + area_.width; x++) {
-                    const float px = scene.qx().at(x, row);
-                    if (px != px) continue;
-                    const double step = double(y.at(x, row) - bilinear(previousLuma_, px, scene.qy().at(x, row)));
-                    const double d = step - double(scene.truthStep().at(x, row));
-                    sum[0] += d * d, sum[1] += 1;
-                }
-            });
-            motionSquares_ += sums[0], motionPixels_ += sums[1];
-            latest_.flickerSquares = sums[0], latest_.flickerPixels = sums[1];
-        }
-        if (truth) {
-            const auto sums =
-                sumRows<3 + 2 * kGhostAges>(exec, area_, [&](int row, std::array<double, 3 + 2 * kGhostAges>& sum) {
-                    for (int x = area_.x; x < area_.x + area_.width; x++) {
-                        const uint32_t age = scene.age().at(x, row);
-                        if (age == 0) continue;
-                        double squares = 0, along = 0, norm = 0;
-                        for (size_t c = 0; c < 3; c++) {
-                            const double r = double(truth->c[c].at(x, row)), e = double(encoded.c[c].at(x, row)) - r;
-                            const double o = double(scene.stale().c[c].at(x, row)) - r;
-                            squares += e * e, along += e * o, norm += o * o;
-                        }
-                        sum[0] += squares, sum[1] += 3, sum[2] += 1;
-                        if (norm == norm) sum[2 + age] += along, sum[2 + kGhostAges + age] += norm;
-                    }
-                });
-            ghostSquares_ += sums[0], ghostPixels_ += sums[1];
-            latest_.ghostSquares = sums[0], latest_.ghostValues = sums[1];
-            trailPixels_ += sums[2], trailFrames_ += pixels;
-            for (size_t a = 0; a < kGhostAges; a++) along_[a] += sums[3 + a], norm_[a] += sums[3 + kGhostAges + a];
-        }
+    if (counts && scene.isStatic()) addStatic(y, hasPrevious, exec);
+    if (counts && scene.alongMotion()) {
+        if (scene.hasTruthStep() && hasPrevious) addFlicker(scene, y, exec);
+        if (truth) addTrail(scene, encoded);
     }
     std::swap(previousLuma_, y);
     hasPrevious_ = true;
+}
+
+void TemporalJudge::addStatic(const PlaneF& y, bool hasPrevious, const Exec& exec) {
+    fit(mean_, y.width(), y.height()), fit(spread_, y.width(), y.height());
+    const auto sums = sumRows(temporalMetricKernelsFor(exec).spread, exec, area_,
+                              SpreadArgs{.luma = y.row(0),
+                                         .previous = hasPrevious ? previousLuma_.row(0) : nullptr,
+                                         .stride = y.stride(),
+                                         .count = ++counted_,
+                                         .mean = mean_.row(0),
+                                         .spread = spread_.row(0)});
+    if (!hasPrevious) return;
+    const double pixels = double(area_.width) * area_.height;
+    stepSum_ += sums[0] / pixels, steps_++;
+    latest_.flickerSquares = sums[1], latest_.flickerPixels = pixels;
+}
+
+void TemporalJudge::addFlicker(const TemporalScene& scene, const PlaneF& y, const Exec& exec) {
+    const auto sums = sumRows(temporalMetricKernelsFor(exec).step, exec, area_,
+                              StepArgs{.luma = y.row(0),
+                                       .previous = previousLuma_.row(0),
+                                       .qx = scene.qx().row(0),
+                                       .qy = scene.qy().row(0),
+                                       .stride = y.stride(),
+                                       .truthStep = scene.truthStep().row(0)});
+    motionSquares_ += sums[0], motionPixels_ += sums[1];
+    latest_.flickerSquares = sums[0], latest_.flickerPixels = sums[1];
+}
+
+// Few pixels lie on a trail: their rows are looked through one by one.
+void TemporalJudge::addTrail(const TemporalScene& scene, const Rgb& encoded) {
+    const Rgb& truth = *scene.truth();
+    TrailSums frame;
+    for (int y = area_.y; y < area_.y + area_.height; y++) {
+        TrailSums row;
+        const uint32_t* const ages = scene.age().row(y);
+        for (int x = area_.x; x < area_.x + area_.width; x++) {
+            if (ages[x] == 0) continue;
+            double squares = 0, along = 0, norm = 0;
+            for (size_t c = 0; c < 3; c++) {
+                const double r = double(truth.c[c].at(x, y)), e = double(encoded.c[c].at(x, y)) - r;
+                const double o = double(scene.stale().c[c].at(x, y)) - r;
+                squares += e * e, along += e * o, norm += o * o;
+            }
+            row.squares += squares, row.pixels++;
+            if (norm == norm) row.along[ages[x] - 1] += along, row.norm[ages[x] - 1] += norm;
+        }
+        frame += row;
+    }
+    trail_ += frame;
+    latest_.ghostSquares = frame.squares, latest_.ghostValues = 3 * frame.pixels;
+    trailFrames_ += double(area_.width) * area_.height;
+}
+TemporalJudge::TrailSums& TemporalJudge::TrailSums::operator+=(const TrailSums& other) {
+    squares += other.squares, pixels += other.pixels;
+    for (size_t a = 0; a < kGhostAges; a++) along[a] += other.along[a], norm[a] += other.norm[a];
+    return *this;
 }
 
 TemporalMetrics TemporalJudge::result() const {
@@ -250,11 +249,11 @@ TemporalMetrics TemporalJudge::result() const {
         if (steps_ > 0) m.flickerStep = 255 * stepSum_ / steps_;
     }
     if (motionPixels_ > 0) m.flickerMoving = 255 * std::sqrt(motionSquares_ / motionPixels_);
-    if (ghostPixels_ > 0) {
-        m.ghostMse = ghostSquares_ / ghostPixels_;
-        m.trailShare = trailPixels_ / trailFrames_;
-        for (size_t a = 0; a < kGhostAges && norm_[a] > 0; a++)
-            m.ghostFraction.push_back(std::clamp(along_[a] / norm_[a], -1.0, 1.0));
+    if (trail_.pixels > 0) {
+        m.ghostMse = trail_.squares / (3 * trail_.pixels);
+        m.trailShare = trail_.pixels / trailFrames_;
+        for (size_t a = 0; a < kGhostAges && trail_.norm[a] > 0; a++)
+            m.ghostFraction.push_back(std::clamp(trail_.along[a] / trail_.norm[a], -1.0, 1.0));
         m.ghostHalfLife = halfLife(m.ghostFraction);
     }
     if (isStatic_ && psnr_.size() > 1) {

@@ -54,6 +54,7 @@ class TemporalScene {
     const PlaneF& truthStep() const { return step_; }      // D_R
     const PlaneU& age() const { return age_[current_]; }   // 1..16 on the trail, else 0
     const Rgb& stale() const { return stale_[current_]; }  // O, where age() > 0; NaN when it is not known
+    PlaneF& spare() { return spare_; }  // where the next method's luma goes, in exchange for its last
 
   private:
     void followSurfaces(const Frame& frame, const Exec& exec);
@@ -63,7 +64,7 @@ class TemporalScene {
     bool alongMotion_ = false, truthStep_ = false;
     const Rgb* truth_ = nullptr;
     Rgb previousPicture_;  // encoded; its truth or, where there is none, its sampled colours
-    PlaneF luma_, previousLuma_, qx_, qy_, step_, previousDepth_;
+    PlaneF luma_, previousLuma_, qx_, qy_, step_, previousDepth_, spare_;
     PlaneU previousId_, age_[2];
     Rgb stale_[2];
     size_t current_ = 0;
@@ -91,12 +92,22 @@ struct TemporalFrame {
 class TemporalJudge {
   public:
     explicit TemporalJudge(int warmup, std::optional<Window> region = {}) : warmup_(warmup), region_(region) {}
-    // After scene.advance() for the same frame. `encoded` has a filled border.
-    void add(const TemporalScene& scene, const Rgb& encoded, const Exec& exec);
+    // After scene.advance() for the same frame. `encoded` has a filled border; `mse`: its squared error against the
+    // truth, of the region where there is one, if that is known.
+    void add(TemporalScene& scene, const Rgb& encoded, const Exec& exec, std::optional<double> mse = {});
     TemporalMetrics result() const;
     const TemporalFrame& latest() const { return latest_; }  // zeros during the warm-up
 
   private:
+    // Sums over the pixels on the trail, and of those of one age.
+    struct TrailSums {
+        double squares = 0, pixels = 0;
+        std::array<double, kGhostAges> along{}, norm{};
+        TrailSums& operator+=(const TrailSums& other);
+    };
+    void addStatic(const PlaneF& luma, bool hasPrevious, const Exec& exec);
+    void addFlicker(const TemporalScene& scene, const PlaneF& luma, const Exec& exec);
+    void addTrail(const TemporalScene& scene, const Rgb& encoded);
     int warmup_;
     std::optional<Window> region_;
     Window area_;  // the region, or the picture
@@ -113,8 +124,8 @@ class TemporalJudge {
     PlaneF previousLuma_;
     bool hasPrevious_ = false, isStatic_ = false;
     double motionSquares_ = 0, motionPixels_ = 0;
-    double ghostSquares_ = 0, ghostPixels_ = 0, trailPixels_ = 0, trailFrames_ = 0;
-    std::array<double, kGhostAges> along_{}, norm_{};
+    TrailSums trail_;
+    double trailFrames_ = 0;    // pixels of all frames
     std::vector<double> psnr_;  // per frame with truth
 };
 

@@ -129,6 +129,51 @@ TEST(TemporalMetrics, ARegionHoldsItsOwnPixelsAlone) {
     EXPECT_GT(*all.flickerMoving, *l.flickerMoving);
 }
 
+TEST(TemporalMetrics, SameFiguresEverywhere) {
+    std::vector<TemporalMetrics> moving, still;
+    for (const Exec& exec : {Exec{Isa::v2, Precision::scalar, false}, Exec{Isa::v2}, Exec{Isa::v3}, Exec{Isa::v4}}) {
+        if (!isaSupported(exec.isa)) continue;
+        for (const bool isStatic : {false, true}) {
+            const Bar bar;
+            TemporalScene scene(isStatic);
+            TemporalJudge judge(1);
+            std::vector<Rgb> truths;
+            for (int n = 0; n < 7; n++) truths.push_back(bar.truth(n));
+            for (int n = 0; n < 7; n++) {
+                Frame frame = bar.frame(n);
+                for (int x = 0; x < kW; x++) frame.motionXPx.at(x, 3) += 0.3f, frame.motionYPx.at(x, 4) -= 0.6f;
+                scene.advance(frame, &truths[size_t(n)], exec);
+                Rgb image = truths[size_t(n)];
+                for (int x = 0; x < kW; x++) image.c[0].at(x, 3) += 0.01f * float((x * 7 + n * 5) % 11);
+                image.fillBorder();
+                judge.add(scene, image, exec);
+            }
+            (isStatic ? still : moving).push_back(judge.result());
+        }
+    }
+    for (const auto& m : moving) {
+        EXPECT_EQ(m.flickerMoving, moving[0].flickerMoving);
+        EXPECT_GT(*m.flickerMoving, 0.1);
+        EXPECT_EQ(m.ghostMse, moving[0].ghostMse);
+        EXPECT_EQ(m.tPsnr, moving[0].tPsnr);
+    }
+    for (const auto& m : still) {
+        EXPECT_EQ(m.flickerStatic, still[0].flickerStatic);
+        EXPECT_EQ(m.flickerStep, still[0].flickerStep);
+        EXPECT_GT(*m.flickerStep, 0.1);
+    }
+}
+TEST(TemporalMetrics, TakesTheErrorThatIsKnown) {
+    const Rgb truth = grey(0.5f);
+    TemporalScene scene(true);
+    TemporalJudge measured(0), told(0);
+    scene.advance(sceneFrame(0), &truth, {});
+    measured.add(scene, grey(0.6f), {});
+    told.add(scene, grey(0.6f), {}, 0.25);
+    EXPECT_NEAR(*measured.result().tPsnr, 20, 1e-4);
+    EXPECT_NEAR(*told.result().tPsnr, 6.0206, 1e-4);
+}
+
 // An image that keeps g^age of the stale colour must be read as exactly that.
 TEST(TemporalMetrics, GhostFractionAndHalfLife) {
     const Bar bar;

@@ -160,7 +160,8 @@ FrameResult Judge::judge(size_t k, const RunningMethod& method, const ResolveSec
         watch(k, seen, linear ? &out : nullptr, *result.metrics);
     }
     if (overTime_) {
-        overTimeOf_[k].add(scene_, encoded, options_.exec);
+        overTimeOf_[k].add(scene_, encoded, options_.exec,
+                           result.metrics ? std::optional(result.metrics->mse) : std::nullopt);
         if (int(seen_) > temporalWarmup(options_.frames.size())) result.temporal = overTimeOf_[k].latest();
     }
     return result;

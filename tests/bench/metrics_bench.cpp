@@ -1,7 +1,10 @@
-// ns per pixel of the metrics at 1920 x 1080, one thread. Targets: SSIM RGB <= 15, LDR-FLIP <= 60.
+// ns per pixel of the metrics at 1920 x 1080, one thread. Targets on AVX2: SSIM RGB <= 10, LDR-FLIP <= 36.
+// AARESOLVE_BENCH_ISA=v2|v3|v4 chooses the instruction set.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <string_view>
 
 #include "metrics/cvvdp.h"
 #include "metrics/flip.h"
@@ -31,6 +34,8 @@ template <class Metric>
 void measure(benchmark::State& state, Metric metric) {
     Exec exec;
     exec.parallel = false;
+    if (const char* isa = std::getenv("AARESOLVE_BENCH_ISA"))
+        exec.isa = std::string_view(isa) == "v2" ? Isa::v2 : std::string_view(isa) == "v3" ? Isa::v3 : Isa::v4;
     image(0);
     for (auto _ : state) benchmark::DoNotOptimize(metric(image(0), image(1), exec));
     // seconds per iteration * 1e9 / pixels
