@@ -149,7 +149,7 @@ void TemporalScene::followSurfaces(const Frame& frame, const Exec& exec) {
     });
 }
 
-void TemporalJudge::add(TemporalScene& scene, const Rgb& encoded, const Exec& exec, std::optional<double> mse) {
+void TemporalJudge::add(const TemporalScene& scene, const Rgb& encoded, const Exec& exec, std::optional<double> mse) {
     area_ = region_.value_or(Window{0, 0, scene.width(), scene.height()});
     const bool counts = seen_++ >= warmup_;
     latest_ = {};
@@ -163,7 +163,7 @@ void TemporalJudge::add(TemporalScene& scene, const Rgb& encoded, const Exec& ex
         psnr_.push_back(psnr(*mse));
         if (counts) squaredError_ += *mse, framesWithTruth_++;
     }
-    PlaneF& y = scene.spare();
+    PlaneF y;
     luma(encoded, exec, y);
     const bool hasPrevious = hasPrevious_ && scene.framesSinceReset() > 0;
     if (counts && scene.isStatic()) addStatic(y, hasPrevious, exec);

@@ -54,7 +54,6 @@ class TemporalScene {
     const PlaneF& truthStep() const { return step_; }      // D_R
     const PlaneU& age() const { return age_[current_]; }   // 1..16 on the trail, else 0
     const Rgb& stale() const { return stale_[current_]; }  // O, where age() > 0; NaN when it is not known
-    PlaneF& spare() { return spare_; }  // where the next method's luma goes, in exchange for its last
 
   private:
     void followSurfaces(const Frame& frame, const Exec& exec);
@@ -64,7 +63,7 @@ class TemporalScene {
     bool alongMotion_ = false, truthStep_ = false;
     const Rgb* truth_ = nullptr;
     Rgb previousPicture_;  // encoded; its truth or, where there is none, its sampled colours
-    PlaneF luma_, previousLuma_, qx_, qy_, step_, previousDepth_, spare_;
+    PlaneF luma_, previousLuma_, qx_, qy_, step_, previousDepth_;
     PlaneU previousId_, age_[2];
     Rgb stale_[2];
     size_t current_ = 0;
@@ -94,7 +93,7 @@ class TemporalJudge {
     explicit TemporalJudge(int warmup, std::optional<Window> region = {}) : warmup_(warmup), region_(region) {}
     // After scene.advance() for the same frame. `encoded` has a filled border; `mse`: its squared error against the
     // truth, of the region where there is one, if that is known.
-    void add(TemporalScene& scene, const Rgb& encoded, const Exec& exec, std::optional<double> mse = {});
+    void add(const TemporalScene& scene, const Rgb& encoded, const Exec& exec, std::optional<double> mse = {});
     TemporalMetrics result() const;
     const TemporalFrame& latest() const { return latest_; }  // zeros during the warm-up
 
