@@ -23,7 +23,7 @@ void fit(Rgb& p, int w, int h) {
 }
 void luma(const Rgb& encoded, const Exec& exec, PlaneF& out) {
     fit(out, encoded.width(), encoded.height());
-    const LumaArgs args{view(encoded), out.stride(), encoded.width(), out.row(0)};
+    const PictureLumaArgs args{view(encoded), out.stride(), encoded.width(), out.row(0)};
     runKernel(temporalMetricKernelsFor(exec).luma, exec, args, encoded.height());
     out.fillBorder();
 }

@@ -6,7 +6,7 @@ namespace AA_ARCH {
 using namespace aa;
 
 template <class R>
-__attribute__((flatten)) void lumaRows(const LumaArgs& a, int y0, int y1) {
+__attribute__((flatten)) void pictureLumaRows(const PictureLumaArgs& a, int y0, int y1) {
     for (int y = y0; y < y1; y++)
         for (int x = 0; x < a.width; x += N<R>) {
             const long o = long(y) * a.stride + x;
@@ -82,5 +82,5 @@ __attribute__((flatten)) void spreadRows(const SpreadArgs& a, int y0, int y1) {
 }
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::TemporalMetricKernels, temporalMetricKernels) = {AA_ROWS(lumaRows), AA_ROWS(stepRows),
+AA_DEFINE_TABLE(aa::TemporalMetricKernels, temporalMetricKernels) = {AA_ROWS(pictureLumaRows), AA_ROWS(stepRows),
                                                                      AA_ROWS(spreadRows)};

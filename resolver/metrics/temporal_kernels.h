@@ -3,7 +3,7 @@
 
 namespace aa {
 
-struct LumaArgs {
+struct PictureLumaArgs {
     RgbIn in;
     int stride, width;
     float* out;  // a plane of the same stride; BT.601
@@ -25,7 +25,7 @@ struct SpreadArgs {
     double* rows = nullptr;  // [height][2]: sums of |luma - previous| and of its square
 };
 struct TemporalMetricKernels {
-    RowKernel<LumaArgs> luma;
+    RowKernel<PictureLumaArgs> luma;
     RowKernel<StepArgs> step;
     RowKernel<SpreadArgs> spread;
 };
