@@ -264,8 +264,12 @@ class FaultsTest(ProgramTest):
                     shrinking = {"AA_SHRINKS": str(file), "AA_SHRINK_AT": str(at)}
                     process = self.start(command, out, LD_PRELOAD=str(SHIM), **shrinking)
                     said = process.communicate(timeout=300)[1]
-                    self.assertEqual(len(file.read_bytes()), len(whole_file) // 2)
                     what = f"{command[0]}, {file.name} shrinks at touch {at} of {touches}: {said}"
+                    if len(file.read_bytes()) == len(whole_file):
+                        # Threads share the reading: this time they touched it less often.
+                        self.assertGreater(at, 1, what)
+                        self.assertEqual(process.returncode, 0, what)
+                        continue
                     self.assertIn(process.returncode, (0, 3), what)
                     if process.returncode == 3:
                         lines = [

@@ -119,6 +119,18 @@ TEST_P(EveryMethod, AnySizeWorksAndFiniteInGivesFiniteOut) {
     }
 }
 
+// A picture's memory comes as it was left. The width is a whole number of lanes: nothing is written beyond it.
+TEST_P(EveryMethod, WhatThePictureHeldBeforeIsNowhereInIt) {
+    const int w = 64, h = 20;
+    Subject clean = makeSubject(GetParam(), w, h), used = makeSubject(GetParam(), w, h);
+    for (int n = 1; n <= 3; n++) {
+        const Frame f =
+            renderFrame(n == 2 ? noise(7) : shapes({0.7 * n, 0}), w, h, n, halton(n), {0.7, 0}, clean.samples);
+        clean.running.out = Rgb(w, h), used.running.out = Rgb(w, h, NAN);
+        ASSERT_TRUE(step(used, f).samePixels(step(clean, f))) << "frame " << n;
+    }
+}
+
 TEST_P(EveryMethod, SameBitsForThreadsInstructionSetsAndScalar) {
     Subject reference = makeSubject(GetParam(), 67, 43);
     std::vector<Rgb> expected;

@@ -209,8 +209,9 @@ AA_INLINE void blendRow(const MlaaBlendArgs& a, int y, const float* top, const f
             }
             T before[3], after[3];
             for (int c = 0; c < 3; c++) {
-                before[c] = lastX == x - 1 ? beforeBlend[c] : T(a.out.c[c][o - 1]);
-                after[c] = a.out.c[c][o + 1];
+                // Beyond the picture lies nothing that was written, and no weight leads there.
+                before[c] = lastX == x - 1 ? beforeBlend[c] : T(a.out.c[c][x > 0 ? o - 1 : o]);
+                after[c] = a.out.c[c][x + 1 < a.width ? o + 1 : o];
                 beforeBlend[c] = a.out.c[c][o];
             }
             lastX = x;
