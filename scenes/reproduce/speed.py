@@ -11,13 +11,13 @@ programs disturbed is measured again, and the quieter call kept. The file is wri
 
 from __future__ import annotations
 
-import argparse
 import hashlib
 import json
 import subprocess
 import sys
 from pathlib import Path
 
+import measured
 from catalogue import EDGES, SPATIAL, SUBSAMPLES, TEMPORAL
 from page import Page, code
 
@@ -72,12 +72,7 @@ def measure(program: Path, out: Path, docs: Path, most: int) -> bool:
             kept.write_text(said)
     if not all(f.exists() for f in files):
         return False
-    document = {
-        "format": "aaresolve-speed",
-        "version": 1,
-        "calls": [json.loads(f.read_text()) for f in files],
-    }
-    (docs / "speed.json").write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
+    measured.write_document(docs, "speed", {"calls": [json.loads(f.read_text()) for f in files]})
     return True
 
 
@@ -142,21 +137,13 @@ def _row(method: str, of: dict[str, dict], base: dict[str, dict], sets: list[str
     ]
 
 
-def main(argv: list[str]) -> int:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("places", nargs="+", type=Path, metavar="PROGRAM OUT DOCS")
-    parser.add_argument("--pieces", type=int, help="calls now; all of them without it")
-    parser.add_argument("--page-only", action="store_true", help="from the file as it is")
-    a = parser.parse_args(argv)
-    if not a.page_only:
-        program, out, docs = a.places
-        if not measure(program.resolve(), out, docs, a.pieces):
-            print("more to measure: call again")
-            return 0
-    docs = a.places[-1]
-    page_of(json.loads((docs / "speed.json").read_text())).write(docs / "speed.md")
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(
+        measured.main(
+            sys.argv[1:],
+            __doc__,
+            "speed",
+            measure,
+            lambda document, docs: page_of(document).write(docs / "speed.md"),
+        )
+    )

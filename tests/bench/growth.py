@@ -10,7 +10,6 @@ machine need not be quiet for long.
 
 from __future__ import annotations
 
-import argparse
 import hashlib
 import json
 import os
@@ -24,6 +23,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scenes/reproduce"))
 
+import measured  # noqa: E402
 from page import Page, code  # noqa: E402
 from tables import write_svg  # noqa: E402
 
@@ -118,8 +118,7 @@ def measure(program: Path, out: Path, docs: Path, most: int | None) -> bool:
         print(name, flush=True)
     if len(kept) < len(every):
         return False
-    document = {"format": "aaresolve-growth", "version": 1, "pieces": {n: kept[n] for n in every}}
-    (docs / "growth.json").write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
+    measured.write_document(docs, "growth", {"pieces": {n: kept[n] for n in every}})
     return True
 
 
@@ -127,7 +126,8 @@ def by_method(piece: dict, figure: str) -> dict[str, float]:
     return {r["method"]: r[figure] for r in piece["methods"]}
 
 
-def write_page(found: dict, docs: Path) -> None:
+def write_page(document: dict, docs: Path) -> None:
+    found = document["pieces"]
     page = Page("How time and memory grow")
     first = found[f"size {SIZES[0]}"]
     benches = [p for n, p in found.items() if not n.startswith("frames")]
@@ -207,21 +207,5 @@ def write_page(found: dict, docs: Path) -> None:
     page.write(docs / "growth.md")
 
 
-def main(argv: list[str]) -> int:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("places", nargs="+", type=Path, metavar="PROGRAM OUT DOCS")
-    parser.add_argument("--pieces", type=int, help="measurements now; all of them without it")
-    parser.add_argument("--page-only", action="store_true", help="from growth.json as it is")
-    a = parser.parse_args(argv)
-    docs = a.places[-1]
-    if not a.page_only:
-        program, out, _ = a.places
-        if not measure(program.resolve(), out.resolve(), docs, a.pieces):
-            print("more to measure: call again")
-            return 0
-    write_page(json.loads((docs / "growth.json").read_text())["pieces"], docs)
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(measured.main(sys.argv[1:], __doc__, "growth", measure, write_page))

@@ -7,35 +7,11 @@ import os
 import resource
 import shutil
 import signal
-import struct
 import subprocess
 from pathlib import Path
 
+import pictures
 from program import PROGRAM, ProgramTest, main
-
-
-def write_tiff(path: Path, width: int, height: int, codes: bytes) -> None:
-    """Grey, 8 bits, not compressed: a picture that is neither PNG nor EXR."""
-    entries = [
-        (256, width),
-        (257, height),
-        (258, 8),
-        (259, 1),
-        (262, 1),
-        (273, 8),
-        (277, 1),
-        (278, height),
-        (279, len(codes)),
-    ]
-    listed = b"".join(struct.pack("<HHII", tag, 4, 1, value) for tag, value in entries)
-    path.write_bytes(
-        b"II*\0"
-        + struct.pack("<I", 8 + len(codes))
-        + codes
-        + struct.pack("<H", len(entries))
-        + listed
-        + bytes(4)
-    )
 
 
 class BadInput(ProgramTest):
@@ -163,7 +139,7 @@ class BadInput(ProgramTest):
 
     def test_other_formats_need_their_module_and_nothing_else_does(self) -> None:
         tiff, png = self.folder / "in.tif", self.folder / "out.png"
-        write_tiff(tiff, 24, 20, bytes(i % 251 for i in range(24 * 20)))
+        tiff.write_bytes(pictures.tiff(24, 20, bytes(i % 251 for i in range(24 * 20))))
         self.aaresolve("filter", "noaa", tiff, png)
         expected = png.read_bytes()
         loaded = subprocess.run(

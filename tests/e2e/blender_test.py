@@ -5,10 +5,9 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import struct
-import zlib
 from pathlib import Path
 
+import pictures
 from program import PROGRAM, ROOT, ProgramTest, main, run_blender
 
 
@@ -43,27 +42,6 @@ Kd 0.8 0.8 0.8\nmap_Kd bricks.png
 """
 
 
-def write_png(path: Path, size: int, pixel) -> None:
-    """A square RGBA picture; ``pixel(x, y)`` gives four bytes."""
-    rows = b"".join(b"\0" + b"".join(bytes(pixel(x, y)) for x in range(size)) for y in range(size))
-
-    def chunk(kind: bytes, content: bytes) -> bytes:
-        return (
-            struct.pack(">I", len(content))
-            + kind
-            + content
-            + struct.pack(">I", zlib.crc32(kind + content))
-        )
-
-    header = struct.pack(">IIBBBBB", size, size, 8, 6, 0, 0, 0)
-    path.write_bytes(
-        b"\x89PNG\r\n\x1a\n"
-        + chunk(b"IHDR", header)
-        + chunk(b"IDAT", zlib.compress(rows))
-        + chunk(b"IEND", b"")
-    )
-
-
 class FromBlender(ProgramTest):
     def blender(self, *arguments: object) -> None:
         done = run_blender(*arguments)
@@ -90,18 +68,15 @@ class FromBlender(ProgramTest):
         """A model of another program, with textures and cut-outs: every pass of it passes every check."""
         (self.folder / "model.obj").write_text(OBJ)
         (self.folder / "model.mtl").write_text(MTL)
-        write_png(
-            self.folder / "bricks.png",
-            16,
-            lambda x, y: (200, 90 + 60 * ((x // 4 + y // 2) % 2), 60, 255),
-        )
+        bricks = lambda x, y: (200, 90 + 60 * ((x // 4 + y // 2) % 2), 60, 255)
+        (self.folder / "bricks.png").write_bytes(pictures.square_png(16, 4, bricks))
         leaf = lambda x, y: (
             40,
             140,
             60,
             255 if (x - 16) ** 2 + (y - 16) ** 2 < 150 else 0,
         )  # noqa: E731
-        write_png(self.folder / "leaves.png", 32, leaf)
+        (self.folder / "leaves.png").write_bytes(pictures.square_png(32, 4, leaf))
         blend, shot = self.folder / "scene.blend", self.folder / "shot"
         script = Path(__file__).parent / "foreign_scene.py"
         self.blender(

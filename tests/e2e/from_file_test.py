@@ -5,31 +5,13 @@ from __future__ import annotations
 import json
 import math
 import random
-import struct
-import zlib
 from pathlib import Path
 
+import pictures
 from program import ROOT, ProgramTest, main, run_blender
 
 TRUNK_RINGS, TRUNK_SIDES = 100, 30
 CARDS = 15000
-
-
-def write_png(path: Path, size: int, channels: int, pixel) -> None:
-    """A square picture; ``pixel(x, y)`` gives one byte (grey) or four (RGBA)."""
-    rows = b"".join(b"\0" + b"".join(bytes(pixel(x, y)) for x in range(size)) for y in range(size))
-
-    def chunk(kind: bytes, content: bytes) -> bytes:
-        return (
-            struct.pack(">I", len(content))
-            + kind
-            + content
-            + struct.pack(">I", zlib.crc32(kind + content))
-        )
-
-    header = struct.pack(">IIBBBBB", size, size, 8, {1: 0, 4: 6}[channels], 0, 0, 0)
-    parts = chunk(b"IHDR", header), chunk(b"IDAT", zlib.compress(rows)), chunk(b"IEND", b"")
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + b"".join(parts))
 
 
 def in_leaf(x: int, y: int, size: int = 64) -> bool:
@@ -81,9 +63,15 @@ def write_tree(folder: Path) -> int:
         "newmtl packed\nKd 0.5 0.4 0.05\nmap_Kd leaf.png\n",
         encoding="utf-8",
     )
-    write_png(folder / "green.png", 64, 4, lambda x, y: (40, 120 + x, 30, 255))
-    write_png(folder / "mask.png", 64, 1, lambda x, y: (255 * in_leaf(x, y),))
-    write_png(folder / "leaf.png", 64, 4, lambda x, y: (150, 110, 30, 255 * in_leaf(x, y)))
+    (folder / "green.png").write_bytes(
+        pictures.square_png(64, 4, lambda x, y: (40, 120 + x, 30, 255))
+    )
+    (folder / "mask.png").write_bytes(
+        pictures.square_png(64, 1, lambda x, y: (255 * in_leaf(x, y),))
+    )
+    (folder / "leaf.png").write_bytes(
+        pictures.square_png(64, 4, lambda x, y: (150, 110, 30, 255 * in_leaf(x, y)))
+    )
     return triangles
 
 

@@ -10,6 +10,7 @@ import struct
 import sys
 from pathlib import Path
 
+import pictures
 from program import ROOT, ProgramTest, main
 
 sys.path.insert(0, str(ROOT / "tests/fuzz"))
@@ -21,23 +22,6 @@ BELL = "\x1b]0;owned\x07"  # what a terminal would obey
 
 def little_memory() -> None:
     resource.setrlimit(resource.RLIMIT_AS, (2 << 30, 2 << 30))
-
-
-def write_tiff(path: Path, width: int, height: int) -> None:
-    """16 bytes of pixels under a size of one's own."""
-    entries = [
-        (256, width),
-        (257, height),
-        (258, 8),
-        (259, 1),
-        (262, 1),
-        (273, 8),
-        (277, 1),
-        (278, height),
-        (279, 16),
-    ]
-    listed = b"".join(struct.pack("<HHII", tag, 4, 1, value) for tag, value in entries)
-    path.write_bytes(b"II*\0" + struct.pack("<I", 24) + bytes(16) + struct.pack("<H", len(entries)) + listed + bytes(4))  # fmt: skip
 
 
 class HostileFiles(ProgramTest):
@@ -163,7 +147,7 @@ class HostileFiles(ProgramTest):
     def test_sizes_ask_for_no_memory(self) -> None:
         """Of a picture whose file cannot hold it, of an attribute, of one of many channels."""
         big = self.folder / "big.tif"
-        write_tiff(big, 16384, 16384)
+        big.write_bytes(pictures.tiff(16384, 16384, bytes(16)))
         self.refused(
             3,
             "filter",

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import json
 import struct
+import sys
 import zlib
 from pathlib import Path
 from typing import Callable
 
 import exr
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "e2e"))
+
+import pictures  # noqa: E402
 
 Keep = Callable[[str, str, object], None]
 
@@ -251,25 +256,8 @@ def _write_layouts(keep: Keep) -> None:
 
 def _png(width: int, height: int, *chunks: tuple[bytes, bytes], rows: bytes | None = None) -> bytes:
     """Grey, 8 bits; `chunks` between header and pixels."""
-
-    def chunk(name: bytes, content: bytes) -> bytes:
-        return (
-            struct.pack(">I", len(content))
-            + name
-            + content
-            + struct.pack(">I", zlib.crc32(name + content))
-        )
-
-    header = struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)
-    pixels = zlib.compress(b"\0" + bytes(width) if rows is None else rows)
-    inner = b"".join(chunk(*c) for c in chunks)
-    return (
-        b"\x89PNG\r\n\x1a\n"
-        + chunk(b"IHDR", header)
-        + inner
-        + chunk(b"IDAT", pixels)
-        + chunk(b"IEND", b"")
-    )
+    packed = zlib.compress(b"\0" + bytes(width) if rows is None else rows)
+    return pictures.png(width, height, 1, packed, chunks)
 
 
 def write_pictures(keep: Keep, scratch: Path) -> None:
