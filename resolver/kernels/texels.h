@@ -1,6 +1,6 @@
 // Interleaved RGBA texels in and out of lanes. Include from *.kernel.cpp only.
 #pragma once
-#include "kernels/lanes.h"
+#include "kernels/transpose.h"
 
 namespace AA_ARCH {
 
@@ -9,18 +9,6 @@ struct Texel {
     vec3<R> rgb;
     R a;
 };
-
-// Four pixels' worth of one channel, or one texel.
-using Four = VecOf<float, 4>::type;
-AA_INLINE Four loadFour(const float* p) { return *(const VecOf<float, 4>::unaligned*)p; }
-AA_INLINE void storeFour(Four v, float* p) { *(VecOf<float, 4>::unaligned*)p = v; }
-// Rows become columns.
-AA_INLINE void transpose(Four& a, Four& b, Four& c, Four& d) {
-    const Four ab01 = __builtin_shufflevector(a, b, 0, 4, 1, 5), ab23 = __builtin_shufflevector(a, b, 2, 6, 3, 7);
-    const Four cd01 = __builtin_shufflevector(c, d, 0, 4, 1, 5), cd23 = __builtin_shufflevector(c, d, 2, 6, 3, 7);
-    a = __builtin_shufflevector(ab01, cd01, 0, 1, 4, 5), b = __builtin_shufflevector(ab01, cd01, 2, 3, 6, 7);
-    c = __builtin_shufflevector(ab23, cd23, 0, 1, 4, 5), d = __builtin_shufflevector(ab23, cd23, 2, 3, 6, 7);
-}
 
 // W texels of an RGBA image at pixel offsets k[i]. One 128-bit load per texel and 4x4 transposes is four times faster
 // than planar gathers and costs the same whatever the motion.

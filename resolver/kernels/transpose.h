@@ -1,9 +1,21 @@
-// Rows of lanes into columns, for passes along x whose neighbours are then whole registers. Include from *.kernel.cpp
-// only.
+// Rows into columns: of texels, and of lanes for passes along x, whose neighbours are then whole registers.
+// Include from *.kernel.cpp only.
 #pragma once
 #include "kernels/lanes.h"
 
 namespace AA_ARCH {
+
+// Four pixels' worth of one channel, or one texel.
+using Four = VecOf<float, 4>::type;
+AA_INLINE Four loadFour(const float* p) { return *(const VecOf<float, 4>::unaligned*)p; }
+AA_INLINE void storeFour(Four v, float* p) { *(VecOf<float, 4>::unaligned*)p = v; }
+// Rows become columns.
+AA_INLINE void transpose(Four& a, Four& b, Four& c, Four& d) {
+    const Four ab01 = __builtin_shufflevector(a, b, 0, 4, 1, 5), ab23 = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+    const Four cd01 = __builtin_shufflevector(c, d, 0, 4, 1, 5), cd23 = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+    a = __builtin_shufflevector(ab01, cd01, 0, 1, 4, 5), b = __builtin_shufflevector(ab01, cd01, 2, 3, 6, 7);
+    c = __builtin_shufflevector(ab23, cd23, 0, 1, 4, 5), d = __builtin_shufflevector(ab23, cd23, 2, 3, 6, 7);
+}
 
 inline constexpr int kTileRows = 8;
 
@@ -32,15 +44,10 @@ AA_INLINE void storeTransposed(const R (&row)[kTileRows], Elem<R>* out) {
     }
 #endif
     else if constexpr (std::is_same_v<R, Lanes<float, 4>>) {
-        using V = typename R::V;
         for (int y = 0; y < 8; y += 4) {
-            const V a = row[y].v, b = row[y + 1].v, c = row[y + 2].v, d = row[y + 3].v;
-            const V ab01 = __builtin_shufflevector(a, b, 0, 4, 1, 5), ab23 = __builtin_shufflevector(a, b, 2, 6, 3, 7),
-                    cd01 = __builtin_shufflevector(c, d, 0, 4, 1, 5), cd23 = __builtin_shufflevector(c, d, 2, 6, 3, 7);
-            store(R(__builtin_shufflevector(ab01, cd01, 0, 1, 4, 5)), out + y);
-            store(R(__builtin_shufflevector(ab01, cd01, 2, 3, 6, 7)), out + 8 + y);
-            store(R(__builtin_shufflevector(ab23, cd23, 0, 1, 4, 5)), out + 16 + y);
-            store(R(__builtin_shufflevector(ab23, cd23, 2, 3, 6, 7)), out + 24 + y);
+            Four a = row[y].v, b = row[y + 1].v, c = row[y + 2].v, d = row[y + 3].v;
+            transpose(a, b, c, d);
+            storeFour(a, out + y), storeFour(b, out + 8 + y), storeFour(c, out + 16 + y), storeFour(d, out + 24 + y);
         }
     } else {
         for (int y = 0; y < kTileRows; y++)

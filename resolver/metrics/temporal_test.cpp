@@ -47,6 +47,11 @@ struct Bar {
         image.fillBorder();
         return image;
     }
+    std::vector<Rgb> truths(int count) const {
+        std::vector<Rgb> all;
+        for (int n = 0; n < count; n++) all.push_back(truth(n));
+        return all;
+    }
 };
 
 TEST(TemporalMetrics, StaticFlickerIsTheStandardDeviation) {
@@ -70,8 +75,7 @@ TEST(TemporalMetrics, TheTruthItselfNeitherFlickersNorGhosts) {
     const Bar bar;
     TemporalScene scene(false);
     TemporalJudge judge(1);
-    std::vector<Rgb> truths;
-    for (int n = 0; n < 7; n++) truths.push_back(bar.truth(n));
+    const std::vector<Rgb> truths = bar.truths(7);
     for (int n = 0; n < 7; n++) {
         scene.advance(bar.frame(n), &truths[size_t(n)], {});
         judge.add(scene, truths[size_t(n)], {});
@@ -109,8 +113,7 @@ TEST(TemporalMetrics, ARegionHoldsItsOwnPixelsAlone) {
     TemporalScene scene(false);
     const int half = kW / 2;
     TemporalJudge whole(1), left(1, Window{0, 0, half, kH}), right(1, Window{half, 0, kW - half, kH});
-    std::vector<Rgb> truths;
-    for (int n = 0; n < 7; n++) truths.push_back(bar.truth(n));
+    const std::vector<Rgb> truths = bar.truths(7);
     for (int n = 0; n < 7; n++) {
         scene.advance(bar.frame(n), &truths[size_t(n)], {});
         Rgb image = truths[size_t(n)];
@@ -137,8 +140,7 @@ TEST(TemporalMetrics, SameFiguresEverywhere) {
             const Bar bar;
             TemporalScene scene(isStatic);
             TemporalJudge judge(1);
-            std::vector<Rgb> truths;
-            for (int n = 0; n < 7; n++) truths.push_back(bar.truth(n));
+            const std::vector<Rgb> truths = bar.truths(7);
             for (int n = 0; n < 7; n++) {
                 Frame frame = bar.frame(n);
                 for (int x = 0; x < kW; x++) frame.motionXPx.at(x, 3) += 0.3f, frame.motionYPx.at(x, 4) -= 0.6f;
@@ -180,8 +182,7 @@ TEST(TemporalMetrics, GhostFractionAndHalfLife) {
     const double g = 0.5;
     TemporalScene scene(false);
     TemporalJudge judge(0);
-    std::vector<Rgb> truths;
-    for (int n = 0; n < 7; n++) truths.push_back(bar.truth(n));
+    const std::vector<Rgb> truths = bar.truths(7);
     for (int n = 0; n < 7; n++) {
         scene.advance(bar.frame(n), &truths[size_t(n)], {});
         Rgb image = truths[size_t(n)];
@@ -245,8 +246,7 @@ TEST(TemporalMetrics, FlickerAlongTheMotionIgnoresTheMotionAndSeesTheFlicker) {
     const auto flicker = [&](float amplitude, bool flipMotion) {
         TemporalScene scene(false);
         TemporalJudge judge(0);
-        std::vector<Rgb> truths;
-        for (int n = 0; n < 7; n++) truths.push_back(bar.truth(n));
+        const std::vector<Rgb> truths = bar.truths(7);
         for (int n = 0; n < 7; n++) {
             Frame f = bar.frame(n);
             if (flipMotion)

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "shot/synth/synth_testing.h"
+
 namespace aa {
 namespace {
 using glm::dvec2;
@@ -13,12 +15,7 @@ dvec2 positionWithin(int x, int y, double reach, int i) {
 }
 
 class PlacedRows : public testing::TestWithParam<std::string_view> {};
-INSTANTIATE_TEST_SUITE_P(All, PlacedRows, testing::ValuesIn([] {
-                             std::vector<std::string_view> names;
-                             for (const auto& s : synthScenes()) names.push_back(s.name);
-                             return names;
-                         }()),
-                         [](const auto& info) { return std::string(info.param); });
+AA_OVER_ALL_SCENES(PlacedRows);
 
 // Asked shape by shape, everywhere: what a row's lists leave out, and pixels in which one answer stands for all.
 TEST_P(PlacedRows, SeeWhatAllShapesSee) {

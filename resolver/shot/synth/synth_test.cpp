@@ -9,6 +9,7 @@
 
 #include "image/error.h"
 #include "shot/reader.h"
+#include "shot/synth/synth_testing.h"
 
 namespace aa {
 namespace {
@@ -33,12 +34,7 @@ dvec3 countedColor(const std::function<dvec3(dvec2)>& picture, int x, int y, int
 }
 
 class SynthScenes : public testing::TestWithParam<std::string_view> {};
-INSTANTIATE_TEST_SUITE_P(All, SynthScenes, testing::ValuesIn([] {
-                             std::vector<std::string_view> names;
-                             for (const auto& s : synthScenes()) names.push_back(s.name);
-                             return names;
-                         }()),
-                         [](const auto& info) { return std::string(info.param); });
+AA_OVER_ALL_SCENES(SynthScenes);
 
 TEST_P(SynthScenes, TruthIsTheBoxMean) {
     const SynthShot shot(small(GetParam().data()));
