@@ -160,6 +160,7 @@ class Corpus:
             keep_file(target, self.folder / path)
         self._write_frames(keep_file)
         seeds.write_documents(keep)
+        seeds.write_results(keep, json.loads((self.folder / "run/results.json").read_text()))
         seeds.write_blender_frames(keep, self.folder / "seed.exr")
         seeds.write_pictures(keep, self.folder / "seed.exr")
         for i, method in enumerate(METHODS):

@@ -82,6 +82,21 @@ def write_documents(keep: Keep) -> None:
         keep("question", f"{name}.txt", text)
 
 
+def write_results(keep: Keep, whole: dict) -> None:
+    """What only some runs hold, and what must not stand in any."""
+    run, frame = whole["run"], whole["shot"]["resolution"]
+
+    def kept(name: str, **changed: object) -> None:
+        keep("results", f"{name}.json", whole | changed)
+
+    kept("region", run=run | {"region": [1, 2, 8, 4]})
+    kept("bad-region", run=run | {"region": [1, 2, *frame]})
+    kept("bad-whole", run=run | {"region": [1, 2, 1e12, 4]})
+    kept("bad-version", version=2)
+    kept("bad-path", truth=whole["truth"] | {"images": {"1": "../000001.exr"}})
+    kept("bad-pair", pairs=[pair | {"first": 99} for pair in whole["pairs"]])
+
+
 def _write_manifests(keep: Keep) -> None:
     frame = {
         "frame": -3,
@@ -292,15 +307,50 @@ def write_pictures(keep: Keep, scratch: Path) -> None:
         ("name", whole[:8] + b"x" * 300 + whole[8:]),
         ("sampled", changed(b"R\0\2\0\0\0\0\0\0\0", struct.pack("<ii", 3, 2))),
     ):
-        keep("parts", f"bad-{name}.exr", content)
-    huge = changed(window, struct.pack("<iiii", 0, 0, 16383, 16383))
-    kind = b"compression\0compression\0\1\0\0\0"
-    at = huge.index(kind) + len(kind)
-    for number in range(1, 11):  # each unpacks so far and no further; the last is none
-        keep("parts", f"bad-huge-{number}.exr", huge[:at] + bytes([number]) + huge[at + 1 :])
-    for name, content in (("texts", b"\1\0\0\0a\2\0\0\0bc"), ("bad-texts", b"\xff\xff\xff\x7fa")):
-        exr.write(scratch, 3, 2, rgb, {}, exr.attribute("views", "stringvector", content))
+        for target in ("parts", "picture"):
+            keep(target, f"bad-{name}.exr", content)
+    compression = b"compression\0compression\0\1\0\0\0"
+    header = whole.index(b"x\0", whole.index(b"about")) + 2
+    for number, rows in enumerate(
+        (1, 1, 1, 16, 32, 16, 32, 32, 32, 256, 1)
+    ):  # of a block; the last is no kind
+        # The table of the blocks is there, they are not: each kind unpacks so far and no further.
+        last = min(500 * rows, 16384) - 1
+        huge = changed(window, struct.pack("<iiii", 0, 0, 16383, last))[:header]
+        at = huge.index(compression) + len(compression)
+        table = bytes(8 * (last // rows + 1) + 64)
+        keep(
+            "parts", f"bad-huge-{number}.exr", huge[:at] + bytes([number]) + huge[at + 1 :] + table
+        )
+    for name, kind, content in (
+        ("texts", "stringvector", b"\1\0\0\0a\2\0\0\0bc"),
+        ("bad-texts", "stringvector", b"\xff\xff\xff\x7fa"),
+        ("preview", "preview", struct.pack("<II", 2, 1) + bytes(8)),
+        ("bad-preview", "preview", struct.pack("<II", 1 << 16, 1 << 16) + bytes(8)),
+    ):
+        exr.write(scratch, 3, 2, rgb, {}, exr.attribute("views", kind, content))
         keep("parts", f"{name}.exr", scratch.read_bytes())
+    _write_layers(keep, scratch)
+
+
+def _write_layers(keep: Keep, scratch: Path) -> None:
+    """Pictures of several layers, of which one is meant, or none that could be told."""
+    values = [0.25 * i for i in range(6)]
+
+    def layer(prefix: str, letters: str = "RGB") -> dict[str, list[float]]:
+        return {f"{prefix}{letter}": values for letter in letters}
+
+    for name, channels in (
+        ("plain", layer("", "RGBA") | layer("AO.", "Z")),
+        ("combined", layer("View.Combined.", "RGBA") | layer("View.AO.")),
+        ("only", layer("View.Noise.") | layer("View.Depth.", "Z")),
+        ("single", layer("", "Y")),
+        ("pair", layer("View.Depth.", "ZA")),
+        ("bad-several", layer("A.") | layer("B.")),
+        ("bad-none", layer("A.", "Z") | layer("B.", "Z")),
+    ):
+        exr.write(scratch, 3, 2, channels, {})
+        keep("picture", f"{name}.exr", scratch.read_bytes())
 
 
 def write_blender_frames(keep: Keep, scratch: Path) -> None:

@@ -3,6 +3,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -11,6 +12,7 @@
 
 #include "image/error.h"
 #include "image/exr.h"
+#include "image/exr_layers.h"
 #include "image/io.h"
 #include "image/png.h"
 #include "methods/spec.h"
@@ -66,15 +68,22 @@ const Folder& folder() {
 std::string asText(Bytes input) { return {reinterpret_cast<const char*>(input.data()), input.size()}; }
 
 // Pictures that only take longer; those above what is read at all are refused without room being made for them.
-bool isLarge(int width, int height) {
+bool takesLong(int width, int height) {
     constexpr int kMost = 1 << 16;
     return width <= kLargestSide && height <= kLargestSide && int64_t(width) * height > kMost;
+}
+// Nor is room made for more than could be unpacked from so few bytes.
+bool isLarge(const ExrPart& part, Bytes input) {
+    constexpr int64_t kMostUnpacked = 256 * 1032;
+    return takesLong(part.width, part.height) &&
+           int64_t(part.width) * part.height * int64_t(part.channels.size()) * int64_t(sizeof(float)) / kMostUnpacked <=
+               int64_t(input.size());
 }
 // Every channel of every part, each as what it is stored as.
 void readParts(Bytes input) {
     ExrFile file(folder().write("parts.exr", input));
     for (const ExrPart& part : file.parts()) {
-        if (isLarge(part.width, part.height)) continue;
+        if (isLarge(part, input)) continue;
         std::vector<PlaneF> numbers(part.channels.size());
         std::vector<PlaneU> ids(part.channels.size());
         std::vector<ChannelTarget> targets;
@@ -117,7 +126,7 @@ void readBlenderFrame(Bytes input) {
     const fs::path file = folder().write("blender.exr", input);
     ImportReport report;
     const ImportPlan plan = planImport(file, {}, report);
-    if (isLarge(plan.width, plan.height)) return;
+    if (takesLong(plan.width, plan.height)) return;
     FrameEntry entry;
     ImportCounts counts;
     importFrame(file, plan, entry, {}, counts);
@@ -127,7 +136,22 @@ void readBlenderFrame(Bytes input) {
     cryptomatteNames(whole, notes);
     headerPitfalls(whole);
 }
-void readPicture(Bytes input) { readImage(folder().write("picture.png", input)); }
+// By itself and each of its layers by name.
+void readExrPicture(Bytes input) {
+    const fs::path file = folder().write("picture.exr", input);
+    {
+        const ExrFile exr(file);
+        const auto large = [&](const ExrPart& p) { return isLarge(p, input); };
+        if (std::any_of(exr.parts().begin(), exr.parts().end(), large)) return;
+        for (const ExrLayer& layer : layersOf(exr)) try {
+                chooseLayer(exr, layer.name);
+            } catch (const InputError&) {  // two that are called so
+            }
+    }
+    LoadedImage image = readImage(file);
+    if (!takesLong(image.shown.width, image.shown.height)) showDisplayWindow(image, file);
+}
+void readPng(Bytes input) { readImage(folder().write("picture.png", input)); }
 void readShotManifest(Bytes input) { parseManifest(asText(input), folder().path() / "shot.json"); }
 void readNotes(Bytes input) { readFrameNotes(folder().write("notes.json", input)); }
 void readRun(Bytes input) {
@@ -229,6 +253,10 @@ Seed partsSeed() {
     const PlaneU ids(9, 5, 7);
     return written("parts.exr", {{"one", {{"R", &a}, {"id", &ids}}, {{"aaresolve", 1}}}, {"two", {{"value", &b}}}});
 }
+Seed pictureSeed() {
+    const PlaneF a = ramp(40, 20, 0.1f);  // of several blocks
+    return written("zip.exr", {{"", {{"A", &a}, {"R", &a}, {"G", &a}, {"B", &a}}}});
+}
 // Frames that the program does not write itself: ids stored as numbers, lists of edges, parts that do not fit.
 std::vector<Seed> frameSeeds() {
     const PlaneF a = ramp(kWidth, kHeight, 0.1f), ids = ramp(kWidth, kHeight, 1), ends = ramp(5, 1, 1),
@@ -279,10 +307,11 @@ const std::vector<Target>& targets() {
         {"vary", readVaried, true},
         {"question", readQuestion, true},
         {"parts", readParts},
+        {"picture", readExrPicture},
         {"frame", readFrame},
         {"truth", readTruth},
         {"blender", readBlenderFrame},
-        {"png", readPicture, false, mendPng},
+        {"png", readPng, false, mendPng},
     };
     return all;
 }
@@ -313,6 +342,7 @@ bool readOrAbort(const Target& target, Bytes input) {
 
 std::vector<Seed> pictureSeeds(std::string_view target) {
     if (target == "parts") return {partsSeed()};
+    if (target == "picture") return {pictureSeed()};
     if (target == "frame") return frameSeeds();
     if (target == "truth") return truthSeeds();
     if (target == "png") return {pngSeed()};
