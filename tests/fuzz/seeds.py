@@ -94,7 +94,7 @@ def write_results(keep: Keep, whole: dict) -> None:
     kept("bad-whole", run=run | {"region": [1, 2, 1e12, 4]})
     kept("bad-version", version=2)
     kept("bad-path", truth=whole["truth"] | {"images": {"1": "../000001.exr"}})
-    kept("bad-pair", pairs=[pair | {"first": 99} for pair in whole["pairs"]])
+    kept("bad-pair", pairs=[pair | {"indices": [0, 99]} for pair in whole["pairs"]])
 
 
 def _write_manifests(keep: Keep) -> None:
@@ -311,9 +311,8 @@ def write_pictures(keep: Keep, scratch: Path) -> None:
             keep(target, f"bad-{name}.exr", content)
     compression = b"compression\0compression\0\1\0\0\0"
     header = whole.index(b"x\0", whole.index(b"about")) + 2
-    for number, rows in enumerate(
-        (1, 1, 1, 16, 32, 16, 32, 32, 32, 256, 1)
-    ):  # of a block; the last is no kind
+    rows_of_block = {3: 16, 4: 32, 5: 16, 6: 32, 7: 32, 8: 32, 9: 256, 10: 1}  # the last is no kind
+    for number, rows in rows_of_block.items():
         # The table of the blocks is there, they are not: each kind unpacks so far and no further.
         last = min(500 * rows, 16384) - 1
         huge = changed(window, struct.pack("<iiii", 0, 0, 16383, last))[:header]
