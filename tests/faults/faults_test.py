@@ -218,7 +218,7 @@ class FaultsTest(ProgramTest):
 
     def test_two_writers_of_one_folder_give_one_whole_result(self) -> None:
         out = self.folder / "out"
-        command = self.commands()["run"]
+        command = self.commands().get("run") or self.skipTest("not of these commands")
         whole = self.finished(command, out)
         shutil.rmtree(out)
         for _ in range(COUNT):
