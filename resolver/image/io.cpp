@@ -95,13 +95,18 @@ void giveUpWriting(const fs::path& file, const std::string& why) {
     throw OutputError(file.string() + ": cannot be written (" + why + "); check permissions and free disk space");
 }
 
-void writeBytes(const fs::path& file, std::span<const unsigned char> bytes) {
+void writeStream(const fs::path& file, const std::function<void(std::ostream&)>& content) {
     const fs::path temporary = temporaryName(file);
     std::ofstream out(temporary, std::ios::binary);
-    out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+    content(out);
     out.close();
     if (!out) giveUpWriting(file, std::generic_category().message(errno));
     renameInto(temporary, file);
+}
+void writeBytes(const fs::path& file, std::span<const unsigned char> bytes) {
+    writeStream(file, [&](std::ostream& out) {
+        out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+    });
 }
 void writeText(const fs::path& file, const std::string& text) {
     writeBytes(file, {reinterpret_cast<const unsigned char*>(text.data()), text.size()});

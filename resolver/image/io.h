@@ -2,6 +2,8 @@
 // module (image/other_formats.h). Files are written under a temporary name and renamed when complete.
 #pragma once
 #include <filesystem>
+#include <functional>
+#include <iosfwd>
 #include <optional>
 #include <span>
 #include <string>
@@ -67,7 +69,9 @@ std::filesystem::path temporaryName(const std::filesystem::path& file);
 void renameInto(const std::filesystem::path& temporary, const std::filesystem::path& file);  // throws InputError
 // Removes the temporary file and throws InputError.
 [[noreturn]] void giveUpWriting(const std::filesystem::path& file, const std::string& why);
-// Writes a file through a temporary name. Throws InputError when it cannot.
+// Write a file through a temporary name: what `content` puts into the stream, bytes, a text. Throw InputError when they
+// cannot.
+void writeStream(const std::filesystem::path& file, const std::function<void(std::ostream&)>& content);
 void writeBytes(const std::filesystem::path& file, std::span<const unsigned char> bytes);
 void writeText(const std::filesystem::path& file, const std::string& text);
 // Makes a folder (and its parents) to write to; clears what killed processes left in it. Throws InputError.

@@ -3,6 +3,7 @@
 // "Inf".
 #pragma once
 #include <filesystem>
+#include <iosfwd>
 #include <map>
 #include <optional>
 #include <string>
@@ -192,6 +193,7 @@ void finish(RunResults& run, const std::vector<TileErrors>& errors);
 void writeResults(const RunResults& run, const std::filesystem::path& folder);
 std::string toJsonText(const RunResults& run);
 std::string toCsvText(const RunResults& run);
+void writeCsv(const RunResults& run, std::ostream& out);
 // The figures that a run holds, in the order of tables: mse, psnr and snr, those that every run has, those asked for.
 std::vector<const Figure*> figuresIn(const RunResults& run);
 // Reads OUT/results.json, or that file under any name. Throws InputError: no run there, damaged, wrong type of a member

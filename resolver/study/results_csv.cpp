@@ -38,8 +38,7 @@ std::vector<const Figure*> figuresIn(const RunResults& run) {
     return figures;
 }
 
-std::string toCsvText(const RunResults& run) {
-    std::ostringstream out;
+void writeCsv(const RunResults& run, std::ostream& out) {
     const std::string protocol = csvText(inOneField(run.protocol));
     const std::vector<const Figure*> figures = figuresIn(run);
     out << "method,frame";
@@ -58,6 +57,10 @@ std::string toCsvText(const RunResults& run) {
             line(m.text, std::to_string(f.frame), f.metrics ? &*f.metrics : nullptr, f.seconds, f.deviceSeconds);
         line(m.text, "pooled", m.pooled ? &m.pooled->mean : nullptr, m.secondsMedian, m.deviceSecondsMedian);
     }
+}
+std::string toCsvText(const RunResults& run) {
+    std::ostringstream out;
+    writeCsv(run, out);
     return out.str();
 }
 

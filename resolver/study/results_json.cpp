@@ -3,10 +3,12 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <utility>
 
 #include "image/error.h"
 #include "image/io.h"
+#include "image/json_stream.h"
 #include "image/json_text.h"
 #include "study/json_number.h"
 #include "study/results.h"
@@ -77,10 +79,10 @@ void fromJson(const json& j, std::map<int, std::string>& images) {
 // The two visitors. One member per call: under a key, as a value or as what its own members() describe.
 class Writer {
   public:
-    explicit Writer(json& to) : to_(to) {}
+    explicit Writer(JsonStream& to) : to_(to) {}
     template <class T>
     void value(const char* key, const T& v) {
-        to_[key] = toJson(v);
+        to_.value(key, toJson(v));
     }
     // Left out where there is nothing to say; absent, it is what it was.
     template <class T>
@@ -93,7 +95,7 @@ class Writer {
     }
     template <class T>
     void orNull(const char* key, const std::optional<T>& v) {
-        to_[key] = v ? toJson(*v) : json(nullptr);
+        to_.value(key, v ? toJson(*v) : json(nullptr));
     }
     // Follows from other members: written alone.
     template <class T>
@@ -102,11 +104,11 @@ class Writer {
     }
     template <class... T>
     void array(const char* key, const T&... v) {
-        to_[key] = json::array({toJson(v)...});
+        to_.value(key, json::array({toJson(v)...}));
     }
     template <class Members>
     void group(const char* key, const Members& inside) {
-        inside(Writer(to_[key]));
+        to_.object(key, [&] { inside(Writer(to_)); });
     }
     template <class Members>
     void groupIf(bool present, const char* key, const Members& inside) {
@@ -114,7 +116,7 @@ class Writer {
     }
     template <class T>
     void object(const char* key, const T& v) {
-        members(Writer(to_[key] = json::object()), v);
+        to_.object(key, [&] { members(Writer(to_), v); });
     }
     template <class T>
     void maybeObject(const char* key, const std::optional<T>& v) {
@@ -122,13 +124,25 @@ class Writer {
     }
     template <class T>
     void objectOrNull(const char* key, const std::optional<T>& v) {
-        to_[key] = nullptr;
-        maybeObject(key, v);
+        if (v)
+            object(key, *v);
+        else
+            to_.value(key, nullptr);
+    }
+    // `derived` adds what follows from elsewhere to each.
+    template <class T, class Derived>
+    void list(const char* key, const std::vector<T>& all, const Derived& derived) {
+        to_.list(key, [&] {
+            for (const T& v : all)
+                to_.element([&] {
+                    members(Writer(to_), v);
+                    derived(Writer(to_), v);
+                });
+        });
     }
     template <class T>
     void list(const char* key, const std::vector<T>& all) {
-        json& j = to_[key] = json::array();
-        for (const T& v : all) members(Writer(j.emplace_back(json::object())), v);
+        list(key, all, [](const Writer&, const T&) {});
     }
     template <class T>
     void sparseList(const char* key, const std::vector<T>& all) {
@@ -136,7 +150,7 @@ class Writer {
     }
 
   private:
-    json& to_;
+    JsonStream& to_;
 };
 class Reader {
   public:
@@ -185,8 +199,8 @@ class Reader {
         from_.at(key);
         maybeObject(key, v);
     }
-    template <class T>
-    void list(const char* key, std::vector<T>& all) {
+    template <class T, class... Derived>
+    void list(const char* key, std::vector<T>& all, const Derived&...) {
         for (const json& j : from_.at(key)) members(Reader(j), all.emplace_back());
     }
     template <class T>
@@ -457,26 +471,35 @@ void members(V all, S& run) {
         v.sparse("maps", run.maps, !run.maps.empty());
         v.value("sanitised", run.sanitised);
     });
-    all.list("methods", run.methods);
-    all.list("pairs", run.pairs);
+    all.list("methods", run.methods, [&](auto v, const MethodResult& m) {
+        const std::string line = rerunLine(run, m);
+        v.sparse("rerun", line, !line.empty());
+    });
+    all.list("pairs", run.pairs, [&](auto v, const PairResult& p) {  // for those who read the file without counting
+        v.derived("first", run.methods[p.first].text);
+        v.derived("second", run.methods[p.second].text);
+    });
+}
+void writeJson(const RunResults& run, std::ostream& out) {
+    JsonStream::write(out, [&](JsonStream& stream) {
+        stream.value("format", "aaresolve-results");
+        stream.value("version", 1);
+        members(Writer(stream), run);
+    });
+    out << '\n';
 }
 }  // namespace
 
 std::string toJsonText(const RunResults& run) {
-    json j = {{"format", "aaresolve-results"}, {"version", 1}};
-    members(Writer(j), run);
-    for (size_t i = 0; i < run.methods.size(); i++)
-        if (const std::string line = rerunLine(run, run.methods[i]); !line.empty()) j["methods"][i]["rerun"] = line;
-    for (size_t i = 0; i < run.pairs.size(); i++) {  // for those who read the file without counting
-        j["pairs"][i]["first"] = run.methods[run.pairs[i].first].text;
-        j["pairs"][i]["second"] = run.methods[run.pairs[i].second].text;
-    }
-    return jsonText(j) + "\n";
+    std::ostringstream out;
+    writeJson(run, out);
+    return out.str();
 }
 
 void writeResults(const RunResults& run, const fs::path& folder) {
-    writeText(folder / "results.csv", toCsvText(run));
-    writeText(folder / "results.json", toJsonText(run));  // last: whole results have a whole table beside them
+    writeStream(folder / "results.csv", [&](std::ostream& out) { writeCsv(run, out); });
+    // Last: whole results have a whole table beside them.
+    writeStream(folder / "results.json", [&](std::ostream& out) { writeJson(run, out); });
 }
 
 namespace {

@@ -47,14 +47,16 @@ RUN = (
 
 def called(words: list[object]) -> tuple[str, dict]:
     """What a program prints; its processor seconds and the peak of its memory, as far as one looks often enough. (The
-    system's own maximum of a child counts what it was before it became the program.)"""
+    system's own maximum of a child counts what it was before it became the program, and so does a look that is too early.)"""
     peak = 0
+    program = Path(words[0]).resolve()
     with tempfile.TemporaryFile("w+") as said:
         process = subprocess.Popen([str(w) for w in words], stdout=said)
         status = Path(f"/proc/{process.pid}/status")
         while not os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT):
             found = re.search(r"VmHWM:\s*(\d+) kB", status.read_text())
-            peak = max(peak, int(found[1]) * 1024 if found else 0)
+            if found and Path(f"/proc/{process.pid}/exe").resolve() == program:
+                peak = max(peak, int(found[1]) * 1024)
             time.sleep(0.02)
         _, result, used = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(result)
