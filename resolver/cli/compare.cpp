@@ -148,7 +148,7 @@ FrameMetrics deviceFiguresOf(const Both& p, const std::set<const Metric*>& wante
     const gpu::Metrics::Result found = device.metrics->measure(p.encodedA, p.encodedB, names);
     device.seconds += found.deviceSeconds.value_or(0);
     FrameMetrics figures = frameMetrics(found.squares);
-    for (const auto& [name, figure] : found.others) figures.others.emplace(name, figure.mean);
+    for (const auto& [name, figure] : found.others) figures.others.emplace(figureByName(name)->name, figure.mean);
     return figures;
 }
 // Figures of `wanted` metrics; `b` is the reference.
@@ -165,7 +165,7 @@ FrameMetrics figuresOf(const Both& p, const std::set<const Metric*>& wanted, dou
         if (!metric->isPossible(images))
             throw UsageError(std::string(metric->figures[0].name) + " needs linear images: two EXR files");
         if (p.isBroken() && metric->space == ColourSpace::linear)
-            for (const Figure& f : metric->figures) figures.others[std::string(f.name)] = NAN;
+            for (const Figure& f : metric->figures) figures.others[f.name] = NAN;
         else
             addFigures(figures, *metric, images, exec);
     }
@@ -176,7 +176,7 @@ FrameMetrics noFigures(const std::set<const Metric*>& wanted) {
     FrameMetrics none = frameMetrics({NAN, NAN});
     for (const Metric* metric : wanted)
         for (const Figure& f : metric->figures)
-            if (!f.ofSquares) none.others[std::string(f.name)] = NAN;
+            if (!f.ofSquares) none.others[f.name] = NAN;
     return none;
 }
 // A metric of a sequence at work: the pairs are its frames, in their order.
@@ -202,8 +202,7 @@ struct Watch {
         put(test->add({p.encodedA, linear ? &p.linearA : nullptr}, exec), figures);
     }
     void put(const std::vector<double>& values, FrameMetrics& figures) const {
-        for (size_t i = 0; i < values.size(); i++)
-            figures.others.insert_or_assign(std::string(metric->figures[i].name), values[i]);
+        for (size_t i = 0; i < values.size(); i++) figures.others[metric->figures[i].name] = values[i];
     }
 
   private:
@@ -260,7 +259,7 @@ void compare(const CompareArguments& o, Context& context) {
     Aside a, b;
     uint64_t alphaDiffers = 0;
     SquaredError squares;
-    std::map<std::string, double, std::less<>> others;
+    FigureValues others;
     std::vector<FrameMetrics> frames;
     const double count = double(pairs.size());
     withThreads(o.work.threads, [&] {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "image/colour.h"
+#include "metrics/figures.h"
 #include "metrics/metric.h"
 
 namespace aa {
@@ -12,9 +13,9 @@ namespace aa {
 // Of encoded values (primary, conventions 13.8) but for metrics of linear light, which methods with encoded output
 // lack.
 struct FrameMetrics {
-    double mse = 0, reference = 0;                      // mean of (T-R)^2 and of R^2
-    double psnr = 0, snr = 0;                           // dB
-    std::map<std::string, double, std::less<>> others;  // figures that are not of squared error, by name
+    double mse = 0, reference = 0;  // mean of (T-R)^2 and of R^2
+    double psnr = 0, snr = 0;       // dB
+    FigureValues others;            // that are not of squared error
     SquaredError squares() const { return {mse, reference}; }
     std::optional<double> figure(std::string_view name) const;  // any figure; nothing where it was not measured
 };

@@ -57,7 +57,7 @@ Figures runFigures(const RunResults& run, const std::string& method) {
         if (m.text != method) continue;
         if (m.pooled) {
             all["psnr"] = m.pooled->mean.psnr;
-            for (const auto& [name, value] : m.pooled->mean.others) all[name] = value;
+            for (const auto& [name, value] : m.pooled->mean.others) all[std::string(name)] = value;
         }
         if (!m.temporal) continue;
         const auto add = [&](const char* name, const std::optional<double>& v) {

@@ -96,7 +96,7 @@ void Judge::noLinearFigures(FrameMetrics& to) const {
     const auto& wanted = options_.measure.metrics;
     for (const Metric& m : metrics())
         if (m.space == ColourSpace::linear && (m.always || std::find(wanted.begin(), wanted.end(), &m) != wanted.end()))
-            for (const Figure& f : m.figures) to.others[std::string(f.name)] = NAN;
+            for (const Figure& f : m.figures) to.others[f.name] = NAN;
 }
 
 void Judge::watchReference() {

@@ -233,7 +233,7 @@ void members(V v, S& m) {
                 if (value) m.others.emplace(f.name, *value);
             }
     } else {
-        for (const auto& [name, value] : m.others) v.value(name.c_str(), value);
+        for (const auto& [name, value] : m.others) v.value(std::string(name).c_str(), value);
     }
 }
 template <class V, Is<PooledMetrics> S>

@@ -65,17 +65,17 @@ void fillWaited(RunResults& run) {
 class KeepsResults {
   public:
     explicit KeepsResults(const RunOptions& o, bool goesOn = false) : options_(o), goesOn_(goesOn) {}
-    void operator()(const RunResults& sofar) {
+    bool isDue() const {
         constexpr std::chrono::seconds kEvery{5};
-        const auto now = std::chrono::steady_clock::now();
+        return std::chrono::steady_clock::now() - written_ >= kEvery;
+    }
+    // Fills what follows from the frames so far.
+    void operator()(RunResults& sofar) {
         if (!goesOn_ && !earlier_) earlier_.emplace(options_);
         if (earlier_ && !earlier_->mayBeReplacedBy(sofar)) return;
-        if (now - written_ < kEvery) return;
-        RunResults partial = sofar;
-        partial.complete = false;
-        aa::finish(partial, {});
-        write(partial);
-        written_ = now;
+        aa::finish(sofar, {});
+        write(sofar);
+        written_ = std::chrono::steady_clock::now();
     }
     void finish(RunResults& results, const std::vector<TileErrors>& errors) {
         aa::finish(results, errors);
@@ -101,9 +101,10 @@ RunResults run(const ShotReader& shot, const RunOptions& o, const Progress& prog
     if (defaults.fit()) writing.measure.ofJudged = defaults.metrics;
     const auto leftOut = leftOutOf(defaults);
     KeepsResults keeps{o};
-    writing.checkpoint = [&](RunResults r) {
-        r.leftOut = leftOut;
-        keeps(r);
+    writing.checkpoint = [&](RunResults& sofar) {
+        if (!keeps.isDue()) return;
+        sofar.leftOut = leftOut;
+        keeps(sofar);
     };
     std::vector<TileErrors> errors;
     RunResults results = runMethods(shot, writing, progress, errors);
@@ -121,8 +122,9 @@ RunResults resume(const ShotReader& shot, const RunOptions& o, const Progress& p
     std::vector<TileErrors> errors;
     if (!going.methods.empty()) {
         KeepsResults keeps{o, true};
-        going.checkpoint = [&](const RunResults& r) {
-            RunResults all = r;
+        going.checkpoint = [&](const RunResults& sofar) {
+            if (!keeps.isDue()) return;
+            RunResults all = sofar;
             std::vector<TileErrors> none;
             merge(resumption, all, none);
             all.leftOut = resumption.before.leftOut;

@@ -42,7 +42,7 @@ struct RunOptions {
     std::map<std::string, std::vector<FrameResult>> known;
     const std::vector<MethodSpec>& every() const { return allMethods.empty() ? methods : allMethods; }
     // Told what is there before the first frame and after each one.
-    std::function<void(const RunResults&)> checkpoint;
+    std::function<void(RunResults&)> checkpoint;
 };
 
 // Metrics that watch the sequence: those asked for, and those that a map is drawn from.

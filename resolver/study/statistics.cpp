@@ -87,9 +87,9 @@ std::optional<PooledMetrics> pool(const MethodResult& method, double noise) {
     p.frames = int(frames.size());
     p.mean = meanMetrics(frames);
     // Of metrics that watch the sequence a mean over frames is no figure: nothing before all were seen.
-    std::erase_if(p.mean.others,
-                  [](const auto& f) { return figureByName(f.first) && findFigure(f.first).metric->watch; });
-    for (const auto& [name, value] : method.sequence) p.mean.others.insert_or_assign(name, value);
+    p.mean.others.eraseIf([](const auto& f) { return figureByName(f.first) && findFigure(f.first).metric->watch; });
+    for (const auto& [name, value] : method.sequence)
+        if (const Figure* f = figureByName(name)) p.mean.others[f->name] = value;
     p.mseInterval = mseInterval(p.mean.mse, noise);
     double finite = 0;
     for (const FrameMetrics* m : frames) {

@@ -47,7 +47,8 @@ RUN = (
 
 def called(words: list[object]) -> tuple[str, dict]:
     """What a program prints; its processor seconds and the peak of its memory, as far as one looks often enough. (The
-    system's own maximum of a child counts what it was before it became the program, and so does a look that is too early.)"""
+    system's own maximum of a child counts what it was before it became the program, and so does a look that is too early.)
+    """
     peak = 0
     program = Path(words[0]).resolve()
     with tempfile.TemporaryFile("w+") as said:
