@@ -15,7 +15,7 @@ space := $() $()
 # A compiler cache is used where there is one.
 LAUNCHER := $(if $(shell command -v ccache 2>/dev/null),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache,)
 
-.PHONY: help deps configure build program install demo test test-addon test-blenders blender-facts blenders-clean fuzz sanitize bench asserts addon bundle deb test-bundle docs bits reproduce speed growth farm test-farm test-arm format clean
+.PHONY: help deps configure build program install demo test test-addon test-blenders blender-facts blenders-clean fuzz sanitize bench asserts addon bundle deb test-bundle docs bits reproduce speed growth peers farm test-farm test-arm format clean
 help:
 	@echo "make demo       build, render two scenes in Blender, run the methods, make contact sheets and reports"
 	@echo "make test       build and run every test"
@@ -28,6 +28,7 @@ help:
 	@echo "make speed      every method in every instruction set of this machine: docs/results/speed.json and .md"
 	@echo "make growth     time and memory over sizes, frames and threads: docs/results/growth.md; both want a quiet machine,"
 	@echo "                keep what is measured, and take PIECES=4: so many measurements now"
+	@echo "make peers      SMAA, FLIP and SSIM beside smaa-cpp, NVIDIA's FLIP and scikit-image: SMAA=FOLDER FLIP=FOLDER of their sources"
 	@echo "make reproduce  render the study's scenes, run every method on each, hold them against the published"
 	@echo "                tables, write docs/results; QUICK=1: a short form, FULL=1: published sizes, ONLY=oliveros-5.8: one table, ONLY=list"
 	@echo "make farm       a small study of scenes x frames x methods as a Snakemake workflow, two jobs at once, to"
@@ -157,6 +158,14 @@ speed: program
 
 growth: program
 	@python3 tests/bench/growth.py $(BUILD)/aaresolve $(BUILD)/growth docs/results $(if $(PIECES),--pieces $(PIECES))
+
+# Sources of others are fetched by hand: github.com/iRi-E/smaa-cpp, github.com/NVlabs/flip.
+SMAA ?=
+FLIP ?=
+peers: build
+	@CI_PACKAGES=python3-skimage .ci/bootstrap
+	@/usr/bin/python3 tests/bench/peers.py --program $(BUILD)/aaresolve --benchmarks $(BUILD)/tests/benchmarks --out docs/results/peers.md \
+	  $(if $(SMAA),--smaa $(SMAA)) $(if $(FLIP),--flip $(FLIP))
 
 # Only these need Snakemake and Slurm. What is finished is kept.
 STUDY ?=

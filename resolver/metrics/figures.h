@@ -1,5 +1,5 @@
-// Figures of one picture by their names. A run of thousands of frames keeps them for each, so they take no more room than
-// they must.
+// Figures of one picture by their names. A run of thousands of frames keeps them for each, so they take no more room
+// than they must.
 #pragma once
 #include <algorithm>
 #include <initializer_list>

@@ -351,10 +351,12 @@ def write_pages(study: studies.Study, by_angle: Page | None, docs: Path) -> list
         )
     if (docs / "growth.md").exists():  # of `make growth`
         index.append(
-            "[growth.md](growth.md): time and memory from 480 x 270 to 8K, from 16 frames to 1,000, on one thread and two"
+            "[growth.md](growth.md): time and memory from 480 x 270 to 8K, from 16 frames to 10,000, on one thread and two"
         )
     if (docs / "whole-run.md").exists():  # of tests/bench/whole_run.py
         index.append("[whole-run.md](whole-run.md): what a run of 20 methods costs")
+    if (docs / "peers.md").exists():  # of `make peers`
+        index.append("[peers.md](peers.md): SMAA, FLIP and SSIM beside those of others")
     if (docs / "stability.md").exists():  # of `make docs`
         index.append(
             "[stability.md](stability.md): the accuracy that speed costs, of every method at its defaults"

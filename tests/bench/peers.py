@@ -8,6 +8,7 @@
 Of scikit-image this Python's is taken (Debian: python3-skimage). What is missing is named and left out; nothing is
 installed. All see noaa and the truth of `synth moving` as 8-bit sRGB codes, but for our FLIP and SSIM, whose time depends
 on no value and which are those of the benchmarks. NVIDIA's FLIP is given linear light, so that ours decodes on top.
+--out FILE writes the page (`make peers`).
 """
 
 from __future__ import annotations
@@ -193,6 +194,9 @@ def table(bench: Bench, pairs: list[Pair], load: float) -> str:
         return f"{statistics.median(ns):.1f} ({min(ns):.1f} to {max(ns):.1f})"
 
     lines = [
+        "# Beside others' programs",
+        "",
+        "Made by `make peers`; `tests/bench/peers.py` says what is held against what. "
         f"{processor()}, load {load:.1f} before; {o.size}, one thread, ns of processor time per pixel, median of "
         f"{o.rounds} rounds (least to largest); ours x86-64-{o.isa}, theirs `{' '.join(FLAGS[:2])}`.",
         "",
@@ -204,7 +208,7 @@ def table(bench: Bench, pairs: list[Pair], load: float) -> str:
         lines.append(
             f"| {p.what} | {spread(p.ours_s)} | {spread(p.theirs_s)} | {p.peer} | {share:.3f} | {p.goal} |"
         )
-    return "\n".join(lines)
+    return "\n".join(lines) + "\n"
 
 
 def main() -> int:
@@ -218,6 +222,7 @@ def main() -> int:
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--size", default="1920x1080")
     parser.add_argument("--isa", default="v3")
+    parser.add_argument("--out", type=Path)
     o = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         bench = prepared(o, Path(folder))
@@ -227,7 +232,10 @@ def main() -> int:
             for p in pairs:
                 p.ours_s.append(p.ours())
                 p.theirs_s.append(p.theirs())
-        print(table(bench, pairs, load))
+        page = table(bench, pairs, load)
+    print(page, end="")
+    if o.out:
+        o.out.write_text(page, encoding="utf-8")
     return 0
 
 
