@@ -15,13 +15,17 @@ AA_INLINE R toneMapped(R x, int kind) {
         return (x * (x * R(T(2.51)) + R(T(0.03)))) / (x * (x * R(T(2.43)) + R(T(0.59))) + R(T(0.14)));
     return x;
 }
+// Before the transfer.
 template <class R>
-AA_INLINE R display(const aa::DisplayArgs& d, R c) {
+AA_INLINE R shown(const aa::DisplayArgs& d, R c) {
     using T = Elem<R>;
     // max(0, NaN) == 0; the finite ceiling keeps Inf / Inf out of the tone maps (their value is 1 long before it).
     const R x = min(max(R(T(0)), c * R(T(d.scale))), R(T(1e15)));
-    const R shown = min(max(R(T(0)), toneMapped(x, d.toneMap)), R(T(1)));
-    return d.srgb ? srgbEncode(shown) : shown;
+    return min(max(R(T(0)), toneMapped(x, d.toneMap)), R(T(1)));
+}
+template <class R>
+AA_INLINE R display(const aa::DisplayArgs& d, R c) {
+    return d.srgb ? srgbEncode(shown(d, c)) : shown(d, c);
 }
 template <class R>
 AA_INLINE vec3<R> display(const aa::DisplayArgs& d, vec3<R> c) {

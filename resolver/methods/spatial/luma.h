@@ -25,7 +25,5 @@ inline LumaKind shownLuma(LumaKind kind, const DisplayChain& display) {
 }
 // Writes the luma of `color` (encoded or linear as the kind demands) and fills the border. NaN gives a finite value.
 void lumaPlane(const Rgb& color, LumaKind kind, const Exec& exec, PlaneF& luma);
-// BT.709 luma of what `display` shows of linear colours; the encoded picture is not kept.
-void encodedLumaPlane(const Rgb& linear, const DisplayChain& display, const Exec& exec, PlaneF& luma);
 
 }  // namespace aa

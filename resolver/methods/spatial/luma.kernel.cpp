@@ -1,4 +1,3 @@
-#include "kernels/display.h"
 #include "kernels/lanes.h"
 #include "methods/spatial/luma_kernels.h"
 
@@ -65,12 +64,7 @@ AA_INLINE void lumaRowsOf(const LumaArgs& a, int y0, int y1) {
         for (int x = 0; x < a.width; x += N<R>) {
             const long o = long(y) * a.stride + x;
             const vec3<R> c(load<R>(a.in.c[0] + o), load<R>(a.in.c[1] + o), load<R>(a.in.c[2] + o));
-            R luma;
-            if constexpr (kind == LumaKind::rec709)
-                luma = lumaOf(a.encodes ? display(a.display, c) : c, kind);
-            else
-                luma = lumaOf(c, kind);
-            store(luma, a.luma + long(y) * a.lumaStride + x);
+            store(lumaOf(c, kind), a.luma + long(y) * a.lumaStride + x);
         }
 }
 template <class R>

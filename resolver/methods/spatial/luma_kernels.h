@@ -1,5 +1,4 @@
 #pragma once
-#include "kernels/display_args.h"
 #include "kernels/table.h"
 
 namespace aa {
@@ -19,8 +18,6 @@ struct LumaArgs {
     float* luma;
     int stride, lumaStride, width;
     LumaKind kind;
-    bool encodes = false;  // the input is linear and is shown by `display` first
-    DisplayArgs display = {};
 };
 struct LumaKernels {
     RowKernel<LumaArgs> luma;

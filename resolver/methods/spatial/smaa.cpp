@@ -1,6 +1,8 @@
 #include "methods/spatial/smaa.h"
 
-#include "methods/spatial/luma.h"
+#include <algorithm>
+
+#include "image/colour.h"
 #include "methods/spatial/smaa_areas.h"
 
 namespace aa {
@@ -54,12 +56,19 @@ Smaa::Smaa(const Params& p) {
     static_assert(kMaxDiagonal + 2 < kBitRows);
 }
 
+// Rows that are computed together: what they need of their neighbours is a few rows more, computed twice.
+constexpr int kBlockRows = 32;
+
 // Exact areas come from a table where it stays in the second-level cache: 0.5 MB at ULTRA's 32 steps.
 constexpr int kMostTabled = 32;
 
 const Smaa::Tables& Smaa::tablesFor(glm::dvec2 samplePx) {
-    for (const auto& t : tables_)
-        if (t.samplePx == samplePx) return t;
+    const auto found =
+        std::find_if(tables_.begin(), tables_.end(), [&](const Tables& t) { return t.samplePx == samplePx; });
+    if (found != tables_.end()) {
+        tables_.splice(tables_.end(), tables_, found);
+        return tables_.back();
+    }
     Tables t;
     t.samplePx = samplePx;
     if (published_) {
@@ -72,43 +81,51 @@ const Smaa::Tables& Smaa::tablesFor(glm::dvec2 samplePx) {
     if (blend_.diagonalSteps > 0)
         for (const bool falling : {false, true})
             t.diagonal[falling] = diagonalTableAt({samplePx.x, samplePx.y}, falling, published_);
-    if (tables_.size() == 64) tables_.erase(tables_.begin());  // jitter without a period
+    if (tables_.size() == 64) tables_.pop_front();  // jitter without a period
     tables_.push_back(std::move(t));
     return tables_.back();
 }
 
-void Smaa::findEdges(const Frame& frame, const Rgb& colorEncoded, glm::dvec2 samplePx, const Exec& exec) {
-    if (edge_.kind == SmaaEdges::luma) lumaPlane(colorEncoded, LumaKind::rec709, exec, luma_);
-    findEdges(frame, &colorEncoded, colorEncoded.width(), colorEncoded.height(), samplePx, exec);
+void Smaa::findEdges(const Frame& frame, const Rgb& colorEncoded, glm::dvec2 samplePx, const Exec& exec, size_t image) {
+    findEdges(frame, &colorEncoded, false, samplePx, exec, edges_[image]);
 }
-void Smaa::findEdgesOfLinear(const Frame& frame, const Rgb& colorLinear, glm::dvec2 samplePx, const Exec& exec) {
-    if (edge_.kind == SmaaEdges::luma) encodedLumaPlane(colorLinear, frame.display, exec, luma_);
-    if (edge_.kind == SmaaEdges::colour) encode(colorLinear, frame.display, exec, encoded_);
-    findEdges(frame, edge_.kind == SmaaEdges::colour ? &encoded_ : nullptr, colorLinear.width(), colorLinear.height(),
-              samplePx, exec);
+void Smaa::findEdgesOfLinear(const Frame& frame, const Rgb& colorLinear, glm::dvec2 samplePx, const Exec& exec,
+                             size_t image) {
+    const bool colour = edge_.kind == SmaaEdges::colour;
+    if (colour) encode(colorLinear, frame.display, exec, encoded_);
+    findEdges(frame, colour ? &encoded_ : &colorLinear, !colour, samplePx, exec, edges_[image]);
 }
-void Smaa::findEdges(const Frame& frame, const Rgb* colorEncoded, int width, int height, glm::dvec2 samplePx,
-                     const Exec& exec) {
-    width_ = width, height_ = height;
-    samplePx_ = samplePx;
-    top_.resize(width_, height_, border_);
-    left_.resize(width_, height_, border_);
-    topByColumn_.resize(height_, width_, border_);
-    leftByColumn_.resize(height_, width_, border_);
-    SmaaEdgeArgs args = edge_;
-    if (args.kind == SmaaEdges::luma) args.scalar = luma_.row(0);
-    if (args.kind == SmaaEdges::depth) args.scalar = frame.depthView.row(0);
-    if (args.kind == SmaaEdges::colour) args.color = view(*colorEncoded);
-    if (args.predication == SmaaPredication::depth) args.depthView = frame.depthView.row(0);
-    if (args.predication == SmaaPredication::object) args.objectId = frame.objectId.row(0);
-    args.top = top_.row(0);
-    args.left = left_.row(0);
-    args.stride = paddedStride(width_);
-    args.bitStride = top_.stride();
-    args.width = width_;
+void Smaa::findEdges(const Frame& frame, const Rgb* color, bool encodes, glm::dvec2 samplePx, const Exec& exec,
+                     Edges& edges) {
+    width_ = color->width(), height_ = color->height();
+    edges.samplePx = samplePx;
+    edges.top.resize(width_, height_, border_);
+    edges.left.resize(width_, height_, border_);
+    edges.topByColumn.resize(height_, width_, border_);
+    edges.leftByColumn.resize(height_, width_, border_);
+    SmaaEdgeArgs all = edge_;
+    all.color = view(*color);
+    all.encodes = encodes, all.display = displayArgs(frame.display);
+    if (all.kind == SmaaEdges::depth || all.predication == SmaaPredication::depth)
+        all.depthView = frame.depthView.row(0);
+    if (all.predication == SmaaPredication::object) all.objectId = frame.objectId.row(0);
+    all.top = edges.top.row(0);
+    all.left = edges.left.row(0);
+    all.stride = paddedStride(width_);
+    all.bitStride = edges.top.stride();
+    all.width = width_, all.height = height_;
     const auto& kernels = smaaKernelsFor(exec);
-    runKernel(kernels.edges, exec, args, height_);
-    for (auto [from, to] : {std::pair{&top_, &topByColumn_}, {&left_, &leftByColumn_}}) {
+    const auto fn = rowsOf(kernels.edges, exec.precision);
+    Scratch scratch(kSmaaEdgeScratchRows, all.stride);
+    forRows(
+        exec, height_,
+        [&](int y0, int y1) {
+            SmaaEdgeArgs args = all;
+            args.scratch = scratch.local();
+            fn(args, y0, y1);
+        },
+        kBlockRows);
+    for (auto [from, to] : {std::pair{&edges.top, &edges.topByColumn}, std::pair{&edges.left, &edges.leftByColumn}}) {
         from->repeatBorder();
         runKernel(kernels.transpose, exec,
                   SmaaTransposeArgs{from->row(0), to->row(0), from->stride(), to->stride(), height_}, (width_ + 7) / 8);
@@ -116,17 +133,15 @@ void Smaa::findEdges(const Frame& frame, const Rgb* colorEncoded, int width, int
     }
 }
 
-void Smaa::blend(const Rgb& in, Rgb& out, const Exec& exec) { blend(in, out, nullptr, nullptr, false, exec); }
-void Smaa::blend(const Rgb& in, Rgb& out, const PlaneF* const motion[2], PlaneF* const motionOut[2], bool averaged,
-                 const Exec& exec) {
-    const size_t pixels = size_t(width_) * size_t(height_);
+SmaaImage Smaa::imageOf(Edges& e) {
     if (keepDebugLayers) {
-        for (auto* plane : {&topWeights_, &leftWeights_, &topLengths_, &leftLengths_}) plane->assign(2 * pixels, 0);
-        isDiagonal_.assign(pixels, 0);
+        const size_t pixels = size_t(width_) * size_t(height_);
+        for (auto* plane : {&e.topWeights, &e.leftWeights, &e.topLengths, &e.leftLengths}) plane->assign(2 * pixels, 0);
+        e.isDiagonal.assign(pixels, 0);
     }
-    SmaaBlendArgs args = blend_;
-    const Tables& tables = tablesFor(samplePx_);
-    for (size_t k = 0; k < 2; k++) args.diagonalTable[k] = tables.diagonal[k].data();
+    const Tables& tables = tablesFor(e.samplePx);
+    SmaaImage image{};
+    for (size_t k = 0; k < 2; k++) image.diagonalTable[k] = tables.diagonal[k].data();
     const auto debug = [&](std::vector<float>& plane) { return keepDebugLayers ? plane.data() : nullptr; };
     const auto axis = [&](const BitPlane& along, const BitPlane& cross, const BitPlane& crossTransposed,
                           double samplePx, const std::vector<float>& table, std::vector<float>& weights,
@@ -145,52 +160,69 @@ void Smaa::blend(const Rgb& in, Rgb& out, const PlaneF* const motion[2], PlaneF*
                         debug(lengths)};
     };
     const bool oneTable = tables.orthogonal[1].empty();
-    args.top = axis(top_, left_, leftByColumn_, samplePx_.y, tables.orthogonal[0], topWeights_, topLengths_);
-    args.left = axis(leftByColumn_, topByColumn_, top_, samplePx_.x, tables.orthogonal[oneTable ? 0 : 1], leftWeights_,
-                     leftLengths_);
-    args.isDiagonal = keepDebugLayers ? isDiagonal_.data() : nullptr;
-    for (size_t c = 0; c < 3; c++) args.in[c] = in.c[c].row(0), args.out[c] = out.c[c].row(0);
-    args.averaged = averaged;
-    args.channels = 3;
-    for (size_t c = 0; motion && c < 2; c++, args.channels++)
-        args.in[args.channels] = motion[c]->row(0), args.out[args.channels] = motionOut[c]->row(0);
-    args.stride = in.stride();
-    args.width = width_;
-    args.height = height_;
-    const int blocks = (height_ + kSmaaBlockRows - 1) / kSmaaBlockRows;
-    args.scratchSize = 6 * (width_ + 16);        // rows are read a few pixels past their end
-    args.diagonalsSize = 2 * (width_ / 8 + 16);  // and bits by words
-    scratch_.resize(size_t(args.scratchSize) * size_t(blocks));
-    diagonals_.resize(size_t(args.diagonalsSize) * size_t(blocks));
-    args.scratch = scratch_.data();
-    args.diagonals = diagonals_.data();
-    runKernel(smaaBlendKernelsFor(exec).blend, exec, args, blocks, 1);
+    image.top = axis(e.top, e.left, e.leftByColumn, e.samplePx.y, tables.orthogonal[0], e.topWeights, e.topLengths);
+    image.left = axis(e.leftByColumn, e.topByColumn, e.top, e.samplePx.x, tables.orthogonal[oneTable ? 0 : 1],
+                      e.leftWeights, e.leftLengths);
+    image.isDiagonal = keepDebugLayers ? e.isDiagonal.data() : nullptr;
+    return image;
+}
+void Smaa::blend(std::span<const Rgb* const> images, Rgb& out, const Exec& exec, const std::optional<Motion>& motion,
+                 const RowsDone& done) {
+    SmaaBlendArgs all = blend_;
+    all.images = int(images.size());
+    for (size_t k = 0; k < images.size(); k++) {
+        all.image[k] = imageOf(edges_[k]);
+        all.image[k].color = view(*images[k]);
+    }
+    for (size_t c = 0; c < 3; c++) all.out[c] = out.c[c].row(0);
+    for (size_t c = 0; motion && c < 2; c++)
+        all.motion[c] = motion->in[c]->row(0), all.out[3 + c] = motion->out[c]->row(0);
+    all.channels = motion ? kSmaaChannels : 3;
+    all.stride = images[0]->stride();
+    all.width = width_;
+    all.height = height_;
+    const auto fn = rowsOf(smaaBlendKernelsFor(exec).blend, exec.precision);
+    Scratch scratch(kSmaaBlendScratchRows, all.stride);
+    forRows(
+        exec, height_,
+        [&](int begin, int end) {
+            SmaaBlendArgs args = all;
+            args.scratch = scratch.local();
+            for (int y0 = begin; y0 < end; y0 += kBlockRows) {
+                const int y1 = std::min(y0 + kBlockRows, end);
+                fn(args, y0, y1);
+                if (done) done(y0, y1);
+            }
+        },
+        kBlockRows);
 }
 
 size_t Smaa::bytes() const {
-    size_t tables = 0;
+    size_t tables = 0, planes = 0;
     for (const auto& t : tables_)
         for (const auto* v : {&t.orthogonal[0], &t.orthogonal[1], &t.diagonal[0], &t.diagonal[1]}) tables += v->size();
-    return luma_.bytes() + encoded_.bytes() + top_.bytes() + left_.bytes() + topByColumn_.bytes() +
-           leftByColumn_.bytes() + (scratch_.size() + tables) * sizeof(float) + diagonals_.size();
+    for (const Edges& e : edges_)
+        planes += e.top.bytes() + e.left.bytes() + e.topByColumn.bytes() + e.leftByColumn.bytes();
+    return encoded_.bytes() + planes + tables * sizeof(float);
 }
 
-std::vector<DebugLayer> Smaa::debugLayers() const {
+std::vector<DebugLayer> Smaa::debugLayers(size_t image) const {
     if (!keepDebugLayers) return {};
+    const Edges& e = edges_[image];
     DebugLayer edges{"edges", std::vector<PlaneF>(3, PlaneF(width_, height_))};  // left, top, diagonal
     DebugLayer top = {"weights.top", edges.planes}, left = {"weights.left", edges.planes};
     DebugLayer topSearch = {"search.top", edges.planes}, leftSearch = {"search.left", edges.planes};
     for (int y = 0; y < height_; y++)
         for (int x = 0; x < width_; x++) {
             const size_t pixel = size_t(y) * size_t(width_) + size_t(x);
-            edges.planes[0].at(x, y) = left_.at(x, y);
-            edges.planes[1].at(x, y) = top_.at(x, y);
-            edges.planes[2].at(x, y) = isDiagonal_[pixel];
+            edges.planes[0].at(x, y) = e.left.at(x, y);
+            edges.planes[1].at(x, y) = e.top.at(x, y);
+            edges.planes[2].at(x, y) = e.isDiagonal[pixel];
             for (size_t i = 0; i < 2; i++) {  // own, opposite; distance to either end, px
-                top.planes[i].at(x, y) = topWeights_[2 * pixel + i];
-                topSearch.planes[i].at(x, y) = topLengths_[2 * pixel + i];
-                left.planes[i].at(x, y) = leftWeights_[2 * pixel + i];
-                leftSearch.planes[i].at(x, y) = leftLengths_[2 * pixel + i];
+                top.planes[i].at(x, y) = e.topWeights[2 * pixel + i];
+                topSearch.planes[i].at(x, y) = e.topLengths[2 * pixel + i];
+                left.planes[i].at(x, y) = e.leftWeights[2 * pixel + i];
+                leftSearch.planes[i].at(x, y) = e.leftLengths[2 * pixel + i];
             }
         }
     return {edges, top, left, topSearch, leftSearch};
@@ -247,7 +279,8 @@ class Smaa1x : public Method {
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         smaa_.keepDebugLayers = keepDebugLayers;
         smaa_.findEdges(frame, frame.colorEncoded, {0, 0}, exec);
-        smaa_.blend(linear_ ? frame.colorLinear : frame.colorEncoded, out, exec);
+        const Rgb* const images[] = {linear_ ? &frame.colorLinear : &frame.colorEncoded};
+        smaa_.blend(images, out, exec);
     }
     size_t stateBytes() const override { return smaa_.bytes(); }
     std::vector<DebugLayer> debugLayers() const override { return smaa_.debugLayers(); }

@@ -10,6 +10,11 @@
 // Deviations: areas are exact at the integer distances instead of a lookup in an 8-bit texture of square distances
 // (areas=table gives that); left edges are processed as top edges of the transposed edge planes.
 #pragma once
+#include <functional>
+#include <list>
+#include <optional>
+#include <span>
+
 #include "methods/method.h"
 #include "methods/spatial/edge_bits.h"
 #include "methods/spatial/smaa_kernels.h"
@@ -24,23 +29,32 @@ struct SmaaSettings {
 };
 SmaaSettings smaaSettings(const Params& params);
 
-// The three passes, for one image at a time.
+// The three passes, of one image or of two whose results are averaged.
 class Smaa {
   public:
+    // Motion that is blended by the same weights: two planes in, two out.
+    struct Motion {
+        const PlaneF* in[2];
+        PlaneF* out[2];
+    };
+    using RowsDone = std::function<void(int y0, int y1)>;
+
     explicit Smaa(const Params& params);
     // Finds edges in `colorEncoded` (or frame.depthView). The image was sampled at `samplePx` from the pixel centres (y
     // down); its revectorised edges are moved back by that much (decisions 40).
-    void findEdges(const Frame& frame, const Rgb& colorEncoded, glm::dvec2 samplePx, const Exec& exec);
+    void findEdges(const Frame& frame, const Rgb& colorEncoded, glm::dvec2 samplePx, const Exec& exec,
+                   size_t image = 0);
     // The same for linear colours, which the frame's display chain encodes.
-    void findEdgesOfLinear(const Frame& frame, const Rgb& colorLinear, glm::dvec2 samplePx, const Exec& exec);
-    // Blends planes of one stride by the weights of the edges found last: the colour and, when given, the motion.
-    // Borders of the input are filled. `averaged`: the mean of the result and of what `out` and `motionOut` hold.
-    void blend(const Rgb& in, Rgb& out, const Exec& exec);
-    void blend(const Rgb& in, Rgb& out, const PlaneF* const motion[2], PlaneF* const motionOut[2], bool averaged,
-               const Exec& exec);
+    void findEdgesOfLinear(const Frame& frame, const Rgb& colorLinear, glm::dvec2 samplePx, const Exec& exec,
+                           size_t image = 0);
+    // Blends planes of one stride by the weights of the edges found last: the colours of each image and, when given,
+    // the motion. Borders of the input are filled. done(y0, y1) is called when these rows of the output hold their
+    // results, and still lie in the cache.
+    void blend(std::span<const Rgb* const> images, Rgb& out, const Exec& exec, const std::optional<Motion>& motion = {},
+               const RowsDone& done = {});
     size_t bytes() const;
     bool keepDebugLayers = false;
-    std::vector<DebugLayer> debugLayers() const;
+    std::vector<DebugLayer> debugLayers(size_t image = 0) const;
 
   private:
     // Area tables for one sample position: of top and left edges, and of the two diagonal directions.
@@ -48,23 +62,25 @@ class Smaa {
         glm::dvec2 samplePx;
         std::vector<float> orthogonal[2], diagonal[2];
     };
+    struct Edges {
+        glm::dvec2 samplePx{0.0};
+        BitPlane top, left, topByColumn, leftByColumn;
+        std::vector<float> topWeights, leftWeights, topLengths, leftLengths;  // debug
+        std::vector<uint8_t> isDiagonal;
+    };
     const Tables& tablesFor(glm::dvec2 samplePx);  // made on first use
-    // From luma_ where edges are those of luma, and otherwise from `colorEncoded` or the frame's depth.
-    void findEdges(const Frame& frame, const Rgb* colorEncoded, int width, int height, glm::dvec2 samplePx,
-                   const Exec& exec);
+    // `color` is encoded, or linear for edges of luma and `encodes`; null where edges are those of depth.
+    void findEdges(const Frame& frame, const Rgb* color, bool encodes, glm::dvec2 samplePx, const Exec& exec,
+                   Edges& edges);
+    // The image without its colours.
+    SmaaImage imageOf(Edges& edges);
     SmaaEdgeArgs edge_{};
     SmaaBlendArgs blend_{};
-    bool published_;  // areas as in the shader's texture
-    glm::dvec2 samplePx_{0.0};
-    std::vector<Tables> tables_;
+    bool published_;            // areas as in the shader's texture
+    std::list<Tables> tables_;  // the last one was used last
     int width_ = 0, height_ = 0, border_;
-    PlaneF luma_;
+    Edges edges_[kSmaaImages];
     Rgb encoded_;  // of linear colours, where their edges are those of colour
-    BitPlane top_, left_, topByColumn_, leftByColumn_;
-    std::vector<float> scratch_;
-    std::vector<uint8_t> diagonals_;
-    std::vector<float> topWeights_, leftWeights_, topLengths_, leftLengths_;  // debug
-    std::vector<uint8_t> isDiagonal_;
 };
 
 // Parameters of the SMAA family: preset, edges, thresholds, areas.

@@ -45,55 +45,54 @@ std::array<SmaaSamples, 2> smaa4xSamples(const ShotInfo& shot) {
 }
 
 namespace {
+// The motion, which is blended into the two first planes of `velocity`.
+Smaa::Motion motionInto(const Frame& frame, Rgb& velocity) {
+    return {{&frame.motionXPx, &frame.motionYPx}, {&velocity.c[0], &velocity.c[1]}};
+}
 // Two sub-samples of a frame, each through SMAA 1x with its edges moved back, averaged.
 class TwoSamples {
   public:
     explicit TwoSamples(const Params& p) : linear_(p.choice("blendSpace") == "linear"), smaa_(p) {}
-    // Averages into `out` and, when asked, the motion blended with the same weights into `velocity`.
+    // As Smaa::blend().
     void resolve(const Frame& frame, const ShotInfo& shot, SmaaSamples samples, bool debug, const Exec& exec, Rgb& out,
-                 Rgb* velocity) {
-        debugLayers_.clear();
+                 const std::optional<Smaa::Motion>& motion = {}, const Smaa::RowsDone& done = {}) {
         smaa_.keepDebugLayers = debug;
+        const Rgb* images[2];
         for (size_t k = 0; k < 2; k++) {
             const Rgb& color = frame.subSamples[samples[k]].colorLinear;
             const glm::dvec2 samplePx = frame.jitterPx + shot.subSamplePositionsPx[samples[k]];
+            images[k] = linear_ ? &color : &encoded_[k];
             if (linear_) {
-                smaa_.findEdgesOfLinear(frame, color, samplePx, exec);
+                smaa_.findEdgesOfLinear(frame, color, samplePx, exec, k);
             } else {
-                encode(color, frame.display, exec, encoded_);
-                smaa_.findEdges(frame, encoded_, samplePx, exec);
-            }
-            blend(frame, linear_ ? color : encoded_, out, velocity, k == 1, exec);
-            for (auto& layer : smaa_.debugLayers()) {
-                layer.name = "s" + std::to_string(k) + "." + layer.name;
-                debugLayers_.push_back(std::move(layer));
+                encode(color, frame.display, exec, encoded_[k]);
+                smaa_.findEdges(frame, encoded_[k], samplePx, exec, k);
             }
         }
+        smaa_.blend(images, out, exec, motion, done);
     }
-    // By the weights of the edges found last; `velocity` (null: not wanted) gets the motion.
-    void blend(const Frame& frame, const Rgb& in, Rgb& out, Rgb* velocity, bool averaged, const Exec& exec) {
-        const PlaneF* const motion[2] = {&frame.motionXPx, &frame.motionYPx};
-        PlaneF* const blended[2] = {velocity ? &velocity->c[0] : nullptr, velocity ? &velocity->c[1] : nullptr};
-        smaa_.blend(in, out, velocity ? motion : nullptr, blended, averaged, exec);
+    size_t bytes() const { return smaa_.bytes() + encoded_[0].bytes() + encoded_[1].bytes(); }
+    std::vector<DebugLayer> debugLayers() const {
+        std::vector<DebugLayer> layers;
+        for (size_t k = 0; k < 2; k++)
+            for (DebugLayer& layer : smaa_.debugLayers(k)) {
+                layer.name = "s" + std::to_string(k) + "." + layer.name;
+                layers.push_back(std::move(layer));
+            }
+        return layers;
     }
-    Smaa& smaa() { return smaa_; }
-    const Smaa& smaa() const { return smaa_; }
-    bool linear() const { return linear_; }
-    size_t bytes() const { return smaa_.bytes() + encoded_.bytes(); }
-    std::vector<DebugLayer> debugLayers() const { return debugLayers_; }
 
   private:
     bool linear_;
     Smaa smaa_;
-    Rgb encoded_;  // to blend, where that is wanted
-    std::vector<DebugLayer> debugLayers_;
+    Rgb encoded_[2];  // to blend, where that is wanted
 };
 
 class SmaaS2x : public Method {
   public:
     SmaaS2x(const Params& p, const ShotInfo& shot) : shot_(shot), samples_(smaaS2xSamples(shot)), two_(p) {}
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
-        two_.resolve(frame, shot_, samples_, keepDebugLayers, exec, out, nullptr);
+        two_.resolve(frame, shot_, samples_, keepDebugLayers, exec, out);
     }
     size_t stateBytes() const override { return two_.bytes(); }
     std::vector<DebugLayer> debugLayers() const override { return two_.debugLayers(); }
@@ -113,47 +112,54 @@ class VelocityWeightedPair {
           reproject_(p.flag("reproject")),
           pixels1080_(p.choice("velocityUnit") == "px1080"),
           unjitter_(p.flag("unjitter")) {}
-    // First of a frame; then its caller fills these two, then resolve().
-    void begin(const Frame& frame) { history_.begin(frame, method_); }
-    Rgb& color() { return color_.next(); }
-    Rgb& velocity() { return velocity_.next(); }
-    // Mixes the current frame with the previous one and keeps the current one for the next.
-    void resolve(const Frame& frame, bool debug, const Exec& exec, Rgb& out) {
-        Rgb& current = color_.next();
-        const Rgb& velocity = velocity_.next();
-        if (unjitter_) {
-            current.fillBorder();
-            temporal::unjitter(current, frame.jitterPx, exec, unjittered_);
-            std::swap(current, unjittered_);
-        }
-        const bool first = history_.fresh();
-        const Rgb& previous = first ? current : color_.previous();
-        const Rgb& previousVelocity = first ? velocity : velocity_.previous();
+    // current(color, velocity, done) fills both with the current frame, and calls `done` as rows are complete. Mixes it
+    // with the previous one and keeps it for the next.
+    template <class Current>
+    void resolve(const Frame& frame, bool debug, const Exec& exec, Rgb& out, const Current& current) {
+        history_.begin(frame, method_);
         if (debug) weight_ = PlaneF(frame.width, frame.height);
-        const SmaaTemporalArgs args{view(std::as_const(current)),
-                                    view(previous),
-                                    velocity.c[0].row(0),
-                                    velocity.c[1].row(0),
-                                    frame.motionXPx.row(0),
-                                    frame.motionYPx.row(0),
-                                    previousVelocity.c[0].row(0),
-                                    previousVelocity.c[1].row(0),
-                                    pixels1080_ ? 1.0f / 1080 : 1.0f / float(frame.width),
-                                    pixels1080_ ? 1.0f / 1080 : 1.0f / float(frame.height),
-                                    rejection_,
-                                    reproject_ && !first,
-                                    view(out),
-                                    debug ? weight_.row(0) : nullptr,
-                                    out.stride(),
-                                    frame.width,
-                                    frame.height};
-        runKernel(smaaTemporalKernelsFor(exec).resolve, exec, args, frame.height);
+        Rgb &color = color_.next(), &velocity = velocity_.next();
+        const auto fn = rowsOf(smaaTemporalKernelsFor(exec).resolve, exec.precision);
+        if (unjitter_) {
+            current(color, velocity, Smaa::RowsDone());
+            color.fillBorder();
+            temporal::unjitter(color, frame.jitterPx, exec, unjittered_);
+            std::swap(color, unjittered_);
+            runKernel(smaaTemporalKernelsFor(exec).resolve, exec, argsOf(frame, debug, out), frame.height);
+        } else {
+            const SmaaTemporalArgs args = argsOf(frame, debug, out);
+            current(color, velocity, [&](int y0, int y1) { fn(args, y0, y1); });
+        }
         history_.end();
     }
     size_t bytes() const { return history_.bytes() + unjittered_.bytes(); }
     DebugLayer debugLayer() const { return {"weight.previous", {weight_}}; }
 
   private:
+    SmaaTemporalArgs argsOf(const Frame& frame, bool debug, Rgb& out) {
+        const Rgb &current = color_.next(), &velocity = velocity_.next();
+        const bool first = history_.fresh();
+        const Rgb& previous = first ? current : color_.previous();
+        const Rgb& previousVelocity = first ? velocity : velocity_.previous();
+        return {view(current),
+                view(previous),
+                velocity.c[0].row(0),
+                velocity.c[1].row(0),
+                frame.motionXPx.row(0),
+                frame.motionYPx.row(0),
+                previousVelocity.c[0].row(0),
+                previousVelocity.c[1].row(0),
+                pixels1080_ ? 1.0f / 1080 : 1.0f / float(frame.width),
+                pixels1080_ ? 1.0f / 1080 : 1.0f / float(frame.height),
+                rejection_,
+                reproject_ && !first,
+                view(out),
+                debug ? weight_.row(0) : nullptr,
+                out.stride(),
+                frame.width,
+                frame.height};
+    }
+
     std::string_view method_;
     float rejection_;
     bool reproject_, pixels1080_, unjitter_;
@@ -165,26 +171,26 @@ class VelocityWeightedPair {
 
 class SmaaT2x : public Method {
   public:
-    explicit SmaaT2x(const Params& p) : one_(p), pair_("smaaT2x", p) {}
+    explicit SmaaT2x(const Params& p) : linear_(p.choice("blendSpace") == "linear"), smaa_(p), pair_("smaaT2x", p) {}
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
-        pair_.begin(frame);
-        Smaa& smaa = one_.smaa();
-        smaa.keepDebugLayers = keepDebugLayers;
-        smaa.findEdges(frame, frame.colorEncoded, frame.jitterPx, exec);
-        one_.blend(frame, one_.linear() ? frame.colorLinear : frame.colorEncoded, pair_.color(), &pair_.velocity(),
-                   false, exec);
-        pair_.resolve(frame, keepDebugLayers, exec, out);
+        smaa_.keepDebugLayers = keepDebugLayers;
+        smaa_.findEdges(frame, frame.colorEncoded, frame.jitterPx, exec);
+        const Rgb* const images[] = {linear_ ? &frame.colorLinear : &frame.colorEncoded};
+        pair_.resolve(frame, keepDebugLayers, exec, out, [&](Rgb& color, Rgb& velocity, const Smaa::RowsDone& done) {
+            smaa_.blend(images, color, exec, motionInto(frame, velocity), done);
+        });
     }
-    size_t stateBytes() const override { return one_.bytes() + pair_.bytes(); }
+    size_t stateBytes() const override { return smaa_.bytes() + pair_.bytes(); }
     std::vector<DebugLayer> debugLayers() const override {
         if (!keepDebugLayers) return {};
-        auto layers = one_.smaa().debugLayers();
+        auto layers = smaa_.debugLayers();
         layers.push_back(pair_.debugLayer());
         return layers;
     }
 
   private:
-    TwoSamples one_;
+    bool linear_;
+    Smaa smaa_;
     VelocityWeightedPair pair_;
 };
 
@@ -195,10 +201,10 @@ class Smaa4x : public Method {
     Smaa4x(const Params& p, const ShotInfo& shot)
         : shot_(shot), samples_(smaa4xSamples(shot)), two_(p), pair_("smaa4x", p) {}
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
-        pair_.begin(frame);
-        two_.resolve(frame, shot_, samples_[frame.number % 2 == 0 ? 0 : 1], keepDebugLayers, exec, pair_.color(),
-                     &pair_.velocity());
-        pair_.resolve(frame, keepDebugLayers, exec, out);
+        const SmaaSamples& samples = samples_[frame.number % 2 == 0 ? 0 : 1];
+        pair_.resolve(frame, keepDebugLayers, exec, out, [&](Rgb& color, Rgb& velocity, const Smaa::RowsDone& done) {
+            two_.resolve(frame, shot_, samples, keepDebugLayers, exec, color, motionInto(frame, velocity), done);
+        });
     }
     size_t stateBytes() const override { return two_.bytes() + pair_.bytes(); }
     std::vector<DebugLayer> debugLayers() const override {

@@ -1,9 +1,10 @@
+// SMAA's blending weights of one edge pixel: areas, diagonals, lines along rows or columns. Left edges are top edges of
+// the transposed planes. Include from *.kernel.cpp only.
+#pragma once
 #include "methods/spatial/area.kernel.h"
 #include "methods/spatial/edge_bits.kernel.h"
 #include "methods/spatial/smaa_kernels.h"
 
-// SMAA's blending weights, and the blend: block by block of rows, so that the weights stay in the first-level cache.
-// Left edges are top edges of the transposed planes.
 namespace AA_ARCH {
 using namespace aa;
 
@@ -57,17 +58,17 @@ AA_INLINE Pair<T> tableArea(const float* table, int left, int right, int leftPx,
 // ---- diagonals: `top` and `left` are the edge bits of a pixel's upper and left border
 
 struct EdgesAt {
-    const SmaaBlendArgs& a;
-    AA_INLINE bool top(int x, int y) const { return bitAt(a.top.along + long(y) * a.top.stride, x); }
-    AA_INLINE bool left(int x, int y) const { return bitAt(a.top.cross + long(y) * a.top.stride, x); }
+    const SmaaImage& image;
+    AA_INLINE bool top(int x, int y) const { return bitAt(image.top.along + long(y) * image.top.stride, x); }
+    AA_INLINE bool left(int x, int y) const { return bitAt(image.top.cross + long(y) * image.top.stride, x); }
 };
 struct DiagonalEnd {
     int distance;
     bool found;
 };
 // One arm: pixels at n * (dx, dy) as long as both bits of the staircase are set; the left bit is read `leftShift` away.
-AA_INLINE DiagonalEnd diagonalArm(const EdgesAt& e, int x, int y, int dx, int dy, int leftShift, bool countLast) {
-    const int steps = e.a.diagonalSteps;
+AA_INLINE DiagonalEnd diagonalArm(const EdgesAt& e, int steps, int x, int y, int dx, int dy, int leftShift,
+                                  bool countLast) {
     int n = 1, passed = 0;
     bool success = true;
     for (; n <= steps && success; n++) {
@@ -89,10 +90,11 @@ AA_INLINE Pair<T> diagonalLookup(const float* table, bool h1, bool v1, bool foun
 // that, for the pixels from x on. Bottom left to top right, and top left to bottom right.
 struct DiagonalCandidates {
     uint64_t rising, falling;
-    AA_INLINE DiagonalCandidates(const SmaaBlendArgs& a, int x, int y) {
-        const uint8_t *top = a.top.along + long(y) * a.top.stride, *left = a.top.cross + long(y) * a.top.stride;
-        const uint8_t *topAbove = top - a.top.stride, *leftAbove = left - a.top.stride, *topBelow = top + a.top.stride,
-                      *leftBelow = left + a.top.stride;
+    AA_INLINE DiagonalCandidates(const SmaaImage& image, int x, int y) {
+        const long stride = image.top.stride;
+        const uint8_t *top = image.top.along + y * stride, *left = image.top.cross + y * stride;
+        const uint8_t *topAbove = top - stride, *leftAbove = left - stride, *topBelow = top + stride,
+                      *leftBelow = left + stride;
         rising = (bitsFrom(topAbove, x + 1) & bitsFrom(leftAbove, x + 1)) |
                  (bitsFrom(left, x) & bitsFrom(topBelow, x - 1) & bitsFrom(leftBelow, x - 1));
         falling = (bitsFrom(topAbove, x - 1) & bitsFrom(leftAbove, x)) |
@@ -100,25 +102,26 @@ struct DiagonalCandidates {
     }
 };
 template <class T>
-AA_INLINE Pair<T> diagonalWeights(const SmaaBlendArgs& a, int x, int y) {
-    const EdgesAt e{a};
+AA_INLINE Pair<T> diagonalWeights(const SmaaBlendArgs& a, const SmaaImage& image, int x, int y) {
+    const EdgesAt e{image};
+    const int steps = a.diagonalSteps;
     Pair<T> sum{T(0), T(0)};
-    const DiagonalCandidates candidates(a, x, y);
+    const DiagonalCandidates candidates(image, x, y);
     if (candidates.rising & 1) {
-        const DiagonalEnd d1 = e.left(x, y) ? diagonalArm(e, x, y, -1, 1, 0, true) : DiagonalEnd{0, true};
-        const DiagonalEnd d2 = diagonalArm(e, x, y, 1, -1, 0, false);
+        const DiagonalEnd d1 = e.left(x, y) ? diagonalArm(e, steps, x, y, -1, 1, 0, true) : DiagonalEnd{0, true};
+        const DiagonalEnd d2 = diagonalArm(e, steps, x, y, 1, -1, 0, false);
         const int n = d1.distance, m = d2.distance;
         if (n + m > 2)
-            sum = diagonalLookup<T>(a.diagonalTable[0], e.top(x - n - 1, y + n), e.left(x - n, y + n), d1.found,
+            sum = diagonalLookup<T>(image.diagonalTable[0], e.top(x - n - 1, y + n), e.left(x - n, y + n), d1.found,
                                     e.top(x + m + 1, y - m), e.left(x + m + 1, y - m - 1), d2.found, n, m);
     }
     if (candidates.falling & 1) {  // the same shape mirrored, so that own and opposite change places
-        const DiagonalEnd d1 = diagonalArm(e, x, y, -1, -1, 1, false);
-        const DiagonalEnd d2 = e.left(x + 1, y) ? diagonalArm(e, x, y, 1, 1, 1, true) : DiagonalEnd{0, true};
+        const DiagonalEnd d1 = diagonalArm(e, steps, x, y, -1, -1, 1, false);
+        const DiagonalEnd d2 = e.left(x + 1, y) ? diagonalArm(e, steps, x, y, 1, 1, 1, true) : DiagonalEnd{0, true};
         const int n = d1.distance, m = d2.distance;
         if (n + m > 2) {
             const Pair<T> w =
-                diagonalLookup<T>(a.diagonalTable[1], e.top(x - n - 1, y - n), e.left(x - n, y - n - 1), d1.found,
+                diagonalLookup<T>(image.diagonalTable[1], e.top(x - n - 1, y - n), e.left(x - n, y - n - 1), d1.found,
                                   e.top(x + m + 1, y + m), e.left(x + m + 1, y + m), d2.found, n, m);
             sum = sum + Pair<T>{w.opposite, w.own};
         }
@@ -197,138 +200,4 @@ AA_INLINE void keep(const SmaaAxis& axis, long pixel, float own, float opposite)
     axis.weights[2 * pixel + 1] = opposite;
 }
 
-// ---- rows
-
-// The blending weights of a row's edges, 0 where there is none.
-struct RowWeights {
-    float *own, *opposite;
-    AA_INLINE void clear(int width) {
-        __builtin_memset(own, 0, size_t(width) * sizeof(float));
-        __builtin_memset(opposite, 0, size_t(width) * sizeof(float));
-    }
-    template <class T>
-    AA_INLINE void set(int x, Pair<T> w, const SmaaAxis& debug, long pixel) {
-        own[x] = float(w.own), opposite[x] = float(w.opposite);
-        keep(debug, pixel, own[x], opposite[x]);
-    }
-};
-// Of the row's top edges; sets the bits of the pixels that a diagonal took. `own`: the row lies in the block, and is
-// not the one after it.
-template <class T>
-AA_INLINE void topWeights(const SmaaBlendArgs& a, const Corners<T>& corners, int y, bool own, RowWeights weights,
-                          uint8_t* diagonals) {
-    const uint8_t* const top = a.top.along + long(y) * a.top.stride;
-    const auto pixel = [&](int x) { return own ? long(y) * a.width + x : -1; };
-    __builtin_memset(diagonals, 0, size_t(a.width / 8 + 9));
-    weights.clear(a.width);
-    if (a.diagonalSteps > 0)
-        forEachBit(
-            a.width,
-            [&](int x) {
-                const DiagonalCandidates candidates(a, x, y);
-                return bitsFrom(top, x) & (candidates.rising | candidates.falling);
-            },
-            [&](int x) __attribute__((always_inline)) {
-                const Pair<T> w = diagonalWeights<T>(a, x, y);
-                if (!(w.own + w.opposite > T(0))) return;
-                diagonals[x >> 3] = uint8_t(diagonals[x >> 3] | 1 << (x & 7));
-                if (a.isDiagonal && own) a.isDiagonal[pixel(x)] = 1;
-                weights.set(x, stored(a, w), a.top, pixel(x));
-            });
-    forEachBit(
-        a.width, [&](int x) { return bitsFrom(top, x) & ~bitsFrom(diagonals, x); },
-        [&](int x) __attribute__((always_inline)) {
-            weights.set(x, lineWeights<T>(a, a.top, corners, x, y, pixel(x)), a.top, pixel(x));
-        });
-}
-template <class T>
-AA_INLINE void leftWeights(const SmaaBlendArgs& a, const Corners<T>& corners, int y, RowWeights weights,
-                           const uint8_t* diagonals) {
-    const uint8_t* const left = a.top.cross + long(y) * a.top.stride;
-    weights.clear(a.width);
-    forEachBit(
-        a.width, [&](int x) { return bitsFrom(left, x) & ~bitsFrom(diagonals, x); },
-        [&](int x) __attribute__((always_inline)) {
-            const long pixel = long(y) * a.width + x;
-            weights.set(x, lineWeights<T>(a, a.left, corners, y, x, pixel), a.left, pixel);
-        });
-    weights.opposite[a.width] = weights.opposite[a.width - 1];  // the sampler clamps
-}
-template <class R>
-AA_INLINE void put(const SmaaBlendArgs& a, R result, float* out) {
-    if (a.averaged) {
-        const R held = load<R>(out);
-        result = held + (result - held) * R(Elem<R>(0.5));
-    }
-    store(result, out);
-}
-// N<R> pixels with the weights of their four borders.
-template <class R>
-AA_INLINE void blendPixels(const SmaaBlendArgs& a, long o, R right, R left, R bottom, R top) {
-    using T = Elem<R>;
-    const auto active = right + left + bottom + top >= R(T(1e-5));
-    // Symmetric corners weigh both axes alike; they count as vertical in every precision, as equal 8-bit weights do.
-    const auto horizontal = max(right, left) > max(bottom, top) * R(T(1 + 1e-5));
-    const R forward = select(horizontal, right, bottom), backward = select(horizontal, left, top);
-    const R total = select(active, forward + backward, R(T(1)));
-    const R f = forward * forward / total, b = backward * backward / total;
-    for (int c = 0; c < a.channels; c++) {
-        const float* const p = a.in[c] + o;
-        const R own = load<R>(p);
-        const R next = select(horizontal, load<R>(p + 1), load<R>(p + a.stride)),
-                previous = select(horizontal, load<R>(p - 1), load<R>(p - a.stride));
-        put(a, select(active, own + f * (next - own) + b * (previous - own), own), a.out[c] + o);
-    }
-}
-template <class R>
-AA_INLINE void blendRow(const SmaaBlendArgs& a, int y, RowWeights top, RowWeights below, RowWeights left) {
-    const uint8_t *tops = a.top.along + long(y) * a.top.stride, *belows = tops + a.top.stride,
-                  *lefts = a.top.cross + long(y) * a.top.stride;
-    for (int x = 0; x < a.width; x += 8) {
-        const long o = long(y) * a.stride + x;
-        const unsigned edges = unsigned(tops[x >> 3] | belows[x >> 3] | lefts[x >> 3]) | (lefts[(x >> 3) + 1] & 1u);
-        for (int i = 0; i < 8; i += N<R>)
-            if (edges)
-                blendPixels<R>(a, o + i, load<R>(left.opposite + x + i + 1), load<R>(left.own + x + i),
-                               load<R>(below.opposite + x + i), load<R>(top.own + x + i));
-            else
-                for (int c = 0; c < a.channels; c++) put(a, load<R>(a.in[c] + o + i), a.out[c] + o + i);
-    }
-}
-template <class R>
-__attribute__((flatten)) void blendBlocks(const SmaaBlendArgs& a, int b0, int b1) {
-    using T = Elem<R>;
-    const Corners<T> corners(a.cornerRounding);
-    const long rowSize = a.scratchSize / 6;
-    for (int block = b0; block < b1; block++) {
-        float* const scratch = a.scratch + block * a.scratchSize;
-        RowWeights top{scratch, scratch + rowSize}, below{scratch + 2 * rowSize, scratch + 3 * rowSize};
-        const RowWeights left{scratch + 4 * rowSize, scratch + 5 * rowSize};
-        uint8_t* topDiagonals = a.diagonals + block * a.diagonalsSize;
-        uint8_t* belowDiagonals = topDiagonals + a.diagonalsSize / 2;
-        const int y0 = block * kSmaaBlockRows, y1 = y0 + kSmaaBlockRows < a.height ? y0 + kSmaaBlockRows : a.height;
-        topWeights<T>(a, corners, y0, true, top, topDiagonals);
-        for (int y = y0; y < y1; y++) {
-            const bool last = y + 1 == a.height;  // the sampler clamps
-            if (!last) topWeights<T>(a, corners, y + 1, y + 1 < y1, below, belowDiagonals);
-            leftWeights<T>(a, corners, y, left, topDiagonals);
-            blendRow<R>(a, y, top, last ? top : below, left);
-            const RowWeights spare = top;
-            top = below, below = spare;
-            uint8_t* const spareDiagonals = topDiagonals;
-            topDiagonals = belowDiagonals, belowDiagonals = spareDiagonals;
-        }
-    }
-}
-template <class R>
-void areaRows(const SmaaAreaArgs& a, int from, int to) {
-    for (int k = from; k < to; k++) {
-        SmaaAreaQuery& q = a.queries[k];
-        const auto w = orthoArea<Elem<R>>(q.left, q.right, q.leftPx, q.rightPx, Elem<R>(q.offset));
-        q.own = double(w.own);
-        q.opposite = double(w.opposite);
-    }
-}
 }  // namespace AA_ARCH
-
-AA_DEFINE_TABLE(aa::SmaaBlendKernels, smaaBlendKernels) = {AA_ROWS(blendBlocks), AA_ROWS(areaRows)};
