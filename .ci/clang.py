@@ -29,7 +29,7 @@ def command_of(entry: dict) -> tuple[list[str], str]:
         words.pop(0)  # a compiler cache
     kept, header, i = [], "", 1
     while i < len(words):
-        if words[i] in ("-o", "-c", "-MF", "-MT"):
+        if words[i] in ("-o", "-c", "-MF", "-MT", "--param"):
             i += 2
         elif words[i] == "-include" and words[i + 1].endswith("cmake_pch.hxx"):
             header = words[i + 1]

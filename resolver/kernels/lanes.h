@@ -403,5 +403,10 @@ AA_INLINE R luma601(vec3<R> c) {
     using T = Elem<R>;
     return c.x * R(T(0.299)) + c.y * R(T(0.587)) + c.z * R(T(0.114));
 }
+// The colours of N<R> pixels of three planes.
+template <class R>
+AA_INLINE vec3<R> colourAt(const float* const c[3], long o) {
+    return {load<R>(c[0] + o), load<R>(c[1] + o), load<R>(c[2] + o)};
+}
 
 }  // namespace AA_ARCH

@@ -27,7 +27,8 @@ struct Exec {
 };
 
 // A kernel: a function over rows [y0, y1) of its own argument struct, in three precisions. The one-lane forms are the
-// same on every instruction set, so they are built for the first alone and are null in the tables of the others.
+// same on every instruction set, so they are built once, for a table of their own (namespace plain), whose `fast` is
+// null; theirs are null in the tables of the sets.
 template <class Args>
 struct RowKernel {
     void (*fast)(const Args&, int, int);
@@ -41,44 +42,43 @@ inline constexpr int kRingMargin = 16;
 
 }  // namespace aa
 
-// In a method's header: AA_KERNEL_TABLE(FxaaKernels, fxaaKernels) declares v2::, v3:: and v4::fxaaKernels and
+// In a method's header: AA_KERNEL_TABLE(FxaaKernels, fxaaKernels) declares v2::, v3::, v4:: and plain::fxaaKernels and
 // aa::fxaaKernelsFor(exec). In its .kernel.cpp: AA_DEFINE_TABLE(FxaaKernels, fxaaKernels) = {AA_ROWS(fxaaRows), ...};
 // Where the build holds one instruction set alone (AA_ONE_ISA), as every build for Arm does, every isa means that one.
+#define AA_DECLARE_TABLE(set, Type, table) \
+    namespace set {                        \
+    extern const Type table;               \
+    }
 #ifdef AA_ONE_ISA
-#define AA_KERNEL_TABLE(Type, table)                                           \
-    namespace AA_ONE_ISA {                                                     \
-    extern const Type table;                                                   \
-    }                                                                          \
-    namespace aa {                                                             \
-    inline const Type& table##For(const Exec&) { return ::AA_ONE_ISA::table; } \
+#define AA_KERNEL_TABLE(Type, table)                                                     \
+    AA_DECLARE_TABLE(plain, Type, table)                                                 \
+    AA_DECLARE_TABLE(AA_ONE_ISA, Type, table)                                            \
+    namespace aa {                                                                       \
+    inline const Type& table##For(const Exec& exec) {                                    \
+        return exec.precision == Precision::fast ? ::AA_ONE_ISA::table : ::plain::table; \
+    }                                                                                    \
     }
 #else
-#define AA_KERNEL_TABLE(Type, table)                                                      \
-    namespace v2 {                                                                        \
-    extern const Type table;                                                              \
-    }                                                                                     \
-    namespace v3 {                                                                        \
-    extern const Type table;                                                              \
-    }                                                                                     \
-    namespace v4 {                                                                        \
-    extern const Type table;                                                              \
-    }                                                                                     \
-    namespace aa {                                                                        \
-    inline const Type& table##For(const Exec& exec) {                                     \
-        if (exec.precision != Precision::fast || exec.isa == Isa::v2) return ::v2::table; \
-        return exec.isa == Isa::v4 ? ::v4::table : ::v3::table;                           \
-    }                                                                                     \
+#define AA_KERNEL_TABLE(Type, table)                                  \
+    AA_DECLARE_TABLE(plain, Type, table)                              \
+    AA_DECLARE_TABLE(v2, Type, table)                                 \
+    AA_DECLARE_TABLE(v3, Type, table)                                 \
+    AA_DECLARE_TABLE(v4, Type, table)                                 \
+    namespace aa {                                                    \
+    inline const Type& table##For(const Exec& exec) {                 \
+        if (exec.precision != Precision::fast) return ::plain::table; \
+        if (exec.isa == Isa::v2) return ::v2::table;                  \
+        return exec.isa == Isa::v4 ? ::v4::table : ::v3::table;       \
+    }                                                                 \
     }
 #endif
-#define AA_DEFINE_TABLE(Type, table) \
-    namespace AA_ARCH {              \
-    extern const Type table;         \
-    }                                \
+#define AA_DEFINE_TABLE(Type, table)       \
+    AA_DECLARE_TABLE(AA_ARCH, Type, table) \
     const Type AA_ARCH::table
 // AA_WIDE_ROWS: for kernels that compute much per pixel and whose tiles have room for 16 pixels at a time.
-#ifdef AA_ONE_LANE_FORMS
+#ifdef AA_PLAIN_FORMS
 #define AA_FORMS(fast, scalar, oracle) \
-    { fast, scalar, oracle }
+    { nullptr, scalar, oracle }
 #else
 #define AA_FORMS(fast, scalar, oracle) \
     { fast, nullptr, nullptr }

@@ -10,11 +10,8 @@
 #include <fstream>
 
 #include "commit.h"
-#include "image/error.h"
+#include "image/file_hash.h"
 #include "kernels/dispatch.h"
-#define XXH_INLINE_ALL  // nothing to link
-#include <xxhash.h>
-
 namespace aa {
 namespace fs = std::filesystem;
 namespace {
@@ -43,37 +40,6 @@ std::string joined(const std::vector<std::string>& words) {
     std::string line;
     for (const auto& word : words) line += (line.empty() ? "" : " ") + shellQuoted(word);
     return line;
-}
-
-class Hash {
-  public:
-    Hash() : state_(XXH3_createState()) { XXH3_128bits_reset(state_); }
-    ~Hash() { XXH3_freeState(state_); }
-    Hash(const Hash&) = delete;
-    Hash& operator=(const Hash&) = delete;
-    void add(const void* bytes, size_t size) { XXH3_128bits_update(state_, bytes, size); }
-    void add(const std::string& text) { add(text.data(), text.size()); }
-    std::string digits() const {
-        XXH128_canonical_t bytes;
-        XXH128_canonicalFromHash(&bytes, XXH3_128bits_digest(state_));
-        std::string text;
-        for (const unsigned char b : bytes.digest)
-            for (const int half : {b >> 4, b & 15}) text += "0123456789abcdef"[half];
-        return text;
-    }
-
-  private:
-    XXH3_state_t* state_;
-};
-std::string hashOfFile(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    if (!in) throw InputError(file.string() + ": cannot be read; export the frame again");
-    Hash hash;
-    std::vector<char> block(1 << 20);
-    while (in.read(block.data(), std::streamsize(block.size())) || in.gcount() > 0)
-        hash.add(block.data(), size_t(in.gcount()));
-    if (in.bad()) throw InputError(file.string() + ": cannot be read to its end; export the frame again");
-    return hash.digits();
 }
 }  // namespace
 

@@ -5,14 +5,10 @@
 namespace AA_ARCH {
 using namespace aa;
 
-template <class R>
-AA_INLINE vec3<R> colourAt(const RgbIn& in, long o) {
-    return {load<R>(in.c[0] + o), load<R>(in.c[1] + o), load<R>(in.c[2] + o)};
-}
 // The second difference of the colours: both neighbours at `step`, minus twice the centre.
 template <class R>
 AA_INLINE vec3<R> secondDifference(const RgbIn& in, long o, long step, vec3<R> c) {
-    return (colourAt<R>(in, o - step) - c) + (colourAt<R>(in, o + step) - c);
+    return (colourAt<R>(in.c, o - step) - c) + (colourAt<R>(in.c, o + step) - c);
 }
 // The border of a finished row, and of the planes when it is their first or last: its last pixels repeat.
 AA_INLINE void repeatBorder(const DlaaEdgeArgs& a, float* plane, int y) {
@@ -34,7 +30,7 @@ __attribute__((flatten)) void edgeRows(const DlaaEdgeArgs& a, int y0, int y1) {
             unsigned strong = 0, busy = 0;
             for (int i = 0; i < 8; i += N<R>) {
                 const long o = long(y) * a.stride + x + i;
-                const vec3<R> c = colourAt<R>(a.in, o);
+                const vec3<R> c = colourAt<R>(a.in.c, o);
                 const vec3<R> alongX = secondDifference(a.in, o, 1, c), alongY = secondDifference(a.in, o, a.stride, c);
                 const R strength = saturate(luma709(abs(alongX + alongY)) * four);  // 8-bit storage clamped it
                 store(strength, a.edge + o);
@@ -55,8 +51,8 @@ __attribute__((flatten)) void edgeRows(const DlaaEdgeArgs& a, int y0, int y1) {
 // centre, which keeps constants exact.
 template <class R>
 AA_INLINE vec3<R> wideDifference(const DlaaArgs& a, long o, long step, vec3<R> c) {
-    return ((colourAt<R>(a.in, o - step) - c) + (colourAt<R>(a.in, o + step) - c)) +
-           ((colourAt<R>(a.in, o - 2 * step) - c) + (colourAt<R>(a.in, o + 2 * step) - c));
+    return ((colourAt<R>(a.in.c, o - step) - c) + (colourAt<R>(a.in.c, o + step) - c)) +
+           ((colourAt<R>(a.in.c, o - 2 * step) - c) + (colourAt<R>(a.in.c, o + 2 * step) - c));
 }
 // How strongly an edge that runs the other way calls for this blur.
 template <class R>
@@ -97,8 +93,8 @@ AA_INLINE vec3<R> shiftedBy(R missing, vec3<R> before, vec3<R> c, vec3<R> behind
 }
 template <class R>
 AA_INLINE vec3<R> longEdges(const DlaaArgs& a, long o, vec3<R> centre, vec3<R> c, R maskH, R maskV) {
-    const vec3<R> left = colourAt<R>(a.in, o - 1), right = colourAt<R>(a.in, o + 1),
-                  top = colourAt<R>(a.in, o - a.stride), bottom = colourAt<R>(a.in, o + a.stride);
+    const vec3<R> left = colourAt<R>(a.in.c, o - 1), right = colourAt<R>(a.in.c, o + 1),
+                  top = colourAt<R>(a.in.c, o - a.stride), bottom = colourAt<R>(a.in.c, o + a.stride);
     const R own = load<R>(a.luma + o);
     R sum(Elem<R>(0));
     const vec3<R> vertical = shiftedBy(meanOf16<R>(a.luma + o, a.stride) - own, left, centre, right, sum);
@@ -165,7 +161,7 @@ template <class R>
 AA_INLINE void filterPixels(const DlaaArgs& a, long o, uint8_t work) {
     using T = Elem<R>;
     const R sixth(T(1.0 / 6)), zero(T(0)), one(T(1)), two(T(2));
-    const vec3<R> centre = colourAt<R>(a.in, o);
+    const vec3<R> centre = colourAt<R>(a.in.c, o);
     vec3<R> c = centre;
     R maskH = zero, maskV = zero, onlyLong = zero;
     if (work & kShortEdges) {

@@ -7,10 +7,6 @@ namespace AA_ARCH {
 using namespace aa;
 
 template <class R>
-AA_INLINE vec3<R> colourAt(const RgbIn& in, long o) {
-    return {load<R>(in.c[0] + o), load<R>(in.c[1] + o), load<R>(in.c[2] + o)};
-}
-template <class R>
 AA_INLINE vec3<R> fourHighestBits(vec3<R> c) {  // of the 8-bit code
     using T = Elem<R>;
     auto bits = [](R v) __attribute__((always_inline)) {
@@ -32,9 +28,9 @@ __attribute__((flatten)) void mlaaEdgeRows(const MlaaEdgeArgs& a, int y0, int y1
             unsigned left = 0, top = 0;
             for (int i = 0; i < 8; i += N<R>) {
                 const long o = long(y) * a.stride + x + i;
-                const vec3<R> c = colourAt<R>(a.in, o);
-                left |= maskBits<R>(differ(c, colourAt<R>(a.in, o - 1), a.rule)) << i;
-                top |= maskBits<R>(differ(c, colourAt<R>(a.in, o - a.stride), a.rule)) << i;
+                const vec3<R> c = colourAt<R>(a.in.c, o);
+                left |= maskBits<R>(differ(c, colourAt<R>(a.in.c, o - 1), a.rule)) << i;
+                top |= maskBits<R>(differ(c, colourAt<R>(a.in.c, o - a.stride), a.rule)) << i;
             }
             a.left[long(y) * a.bitStride + (x >> 3)] = uint8_t(left);
             a.top[long(y) * a.bitStride + (x >> 3)] = uint8_t(top);
@@ -59,7 +55,7 @@ AA_INLINE int firstOfRun(const uint8_t* row, int p) {
 // pixel (`own`) and the one beyond the crossing edge, if that has a line of its own one row farther, get one luma.
 template <class T>
 AA_INLINE T meetingHeight(const RgbIn& in, long own, long beyond, long across) {
-    const auto luma = [&](long o) __attribute__((always_inline)) { return luma601(colourAt<T>(in, o)); };
+    const auto luma = [&](long o) __attribute__((always_inline)) { return luma601(colourAt<T>(in.c, o)); };
     const T gained = luma(beyond + across) - luma(own), lost = luma(own - across) - luma(beyond);
     const T sum = gained + lost;
     if (!(abs(sum) >= T(2.5 / 255))) return T(0.5);  // within two codes: rounding to 8 bits would decide

@@ -26,5 +26,6 @@ struct SpatialSkeletonKernels {
     RowKernel<SpatialSkeletonArgs> resolve;
 };
 }  // namespace aa
-// Declares v2::, v3:: and v4::spatialSkeletonKernels, and spatialSkeletonKernelsFor(exec) that chooses among them.
+// Declares v2::, v3::, v4:: and plain::spatialSkeletonKernels, and spatialSkeletonKernelsFor(exec) that chooses among
+// them.
 AA_KERNEL_TABLE(aa::SpatialSkeletonKernels, spatialSkeletonKernels)

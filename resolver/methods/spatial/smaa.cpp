@@ -18,12 +18,12 @@ struct Preset {
     int searchSteps, diagonalSteps;
     float cornerRounding;  // percent; negative: off
 };
-const Preset kPresets[] = {{"LOW", 0.15f, 4, 0, -1},  // [Jimenez 2012, v2.8]
-                           {"MEDIUM", 0.10f, 8, 0, -1},
-                           {"HIGH", 0.10f, 16, 8, 25},
-                           {"ULTRA", 0.05f, 32, 16, 25}};
+const Preset kSmaaPresets[] = {{"LOW", 0.15f, 4, 0, -1},  // [Jimenez 2012, v2.8]
+                               {"MEDIUM", 0.10f, 8, 0, -1},
+                               {"HIGH", 0.10f, 16, 8, 25},
+                               {"ULTRA", 0.05f, 32, 16, 25}};
 Preset chosen(const Params& p) {
-    for (const auto& preset : kPresets)
+    for (const auto& preset : kSmaaPresets)
         if (p.choice("preset") == preset.name) return preset;
     return {"custom", p.realf("threshold"), p.integer("searchSteps"), p.integer("diagonalSteps"),
             p.realf("cornerRounding")};

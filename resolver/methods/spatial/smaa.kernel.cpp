@@ -8,11 +8,6 @@
 namespace AA_ARCH {
 using namespace aa;
 
-template <class R>
-AA_INLINE vec3<R> colourAt(const RgbIn& image, long o) {
-    return {load<R>(image.c[0] + o), load<R>(image.c[1] + o), load<R>(image.c[2] + o)};
-}
-
 // ---- what the edge test compares: differences of two pixels, (x, y) beside N<R> ones each
 
 struct Beside {
@@ -34,8 +29,8 @@ struct ColourDifference {
     const SmaaEdgeArgs& a;
     long o;
     AA_INLINE R operator()(Beside p, Beside q) const {
-        return maxComponent(abs(colourAt<R>(a.color, o + long(p.y) * a.stride + p.x) -
-                                colourAt<R>(a.color, o + long(q.y) * a.stride + q.x)));
+        return maxComponent(abs(colourAt<R>(a.color.c, o + long(p.y) * a.stride + p.x) -
+                                colourAt<R>(a.color.c, o + long(q.y) * a.stride + q.x)));
     }
 };
 // Relative difference of depth.
@@ -160,7 +155,7 @@ struct LumaEdges {
             const long o = long(y) * a.stride + x;
             if (x % 16 == 0)
                 for (int c = 0; c < 3; c++) __builtin_prefetch(a.color.c[c] + o + a.stride, 0, 2);
-            store(roughLuma(a.display, colourAt<R>(a.color, o)), row + x);
+            store(roughLuma(a.display, colourAt<R>(a.color.c, o)), row + x);
         }
         roughRows.continueBeyond(y);
     }
@@ -196,7 +191,7 @@ struct LumaEdges {
             forEachByte(
                 wanted, [&](int i) __attribute__((always_inline)) {
                     for (int x = 8 * (g0 + i); x < 8 * (g0 + i + 1); x += N<R>) {
-                        const vec3<R> c = colourAt<R>(a.color, long(y) * a.stride + x);
+                        const vec3<R> c = colourAt<R>(a.color.c, long(y) * a.stride + x);
                         store(luma709(a.encodes ? display(a.display, c) : c), row + x);
                     }
                 });
