@@ -3,9 +3,10 @@
     python3 tests/bench/whole_run.py PROGRAM [OLDER_PROGRAM] [--size 1920x1080] [--frames 16] [--rounds 1] [--threads 1,2]
         [--methods a,b,c] [--cache FOLDER] [--stages]
 
-Both programs run the same methods on the same shot (`synth moving`, made once and kept in the cache), without pictures and
-with EXR pictures of every frame, in turn, so that a busy machine slows both alike. Processor time and peak memory are what
-the system says of the process; of several rounds the least is shown.
+Both programs run the same methods on the same shot (`synth moving`, made once and kept in the cache), without pictures,
+without them and with FLIP and SSIM of RGB, which long runs leave out by themselves, and with EXR pictures of every frame,
+in turn, so that a busy machine slows both alike. Processor time and peak memory are what the system says of the process;
+of several rounds the least is shown.
 
 A run cannot take less than decoding its frames or its methods' kernels on all cores, whichever is more: ratios are to
 that. Kernels are the sum of the methods' times in results.json; decoding is its share of a run on one thread (`--trace`)
@@ -27,6 +28,8 @@ from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
+# What is written of each frame, and what is asked of the program besides.
+RUNS = (("none", ()), ("none", ("--metrics", "flip,ssimRgb")), ("exr", ()))
 METHODS = (
     "noaa,fxaa1,fxaa311,mlaa,smaa1x,cmaa2,dlaa,nfaa,ssssaa,dmsaa,"
     "smaaT2x,taaSimplest,uncharted,master,accumReject,raptor,karis,salvi,inside,fsr2n"
@@ -39,6 +42,7 @@ class Cost:
     wall: float
     peak_mb: float
     kernels: float = 0.0
+    figures: str = ""  # of each frame: the least that a run has, or FLIP and SSIM of RGB besides
 
 
 def measured(command: list[str]) -> Cost:
@@ -61,6 +65,7 @@ def least(costs: list[Cost]) -> Cost:
         min(c.wall for c in costs),
         min(c.peak_mb for c in costs),
         min(c.kernels for c in costs),
+        costs[0].figures,
     )
 
 
@@ -77,6 +82,9 @@ class Bench:
         )  # fmt: skip
         results = json.loads((self.out / "results.json").read_text())
         cost.kernels = sum(f["seconds"] for m in results["methods"] for f in m["frames"])
+        cost.figures = (
+            "more" if "flip" in results["methods"][0]["frames"][-1]["metrics"] else "least"
+        )
         return cost
 
     def stages(self, program: str) -> dict[str, float]:
@@ -129,18 +137,18 @@ def main() -> None:
         stages = bench.stages(newest)
         if arguments.stages:
             print("of a run with pictures on one thread, CPU s: " + ", ".join(f"{k} {v:.2f}" for k, v in stages.items()))  # fmt: skip
-        print(f"{'program':<10} {'write':<5} {'-j':>2} {'CPU s':>8} {'wall s':>8} {'peak MB':>8} {'CPU/limit':>10} {'wall/limit':>10}")  # fmt: skip
+        print(f"{'program':<10} {'write':<5} {'figures':<7} {'-j':>2} {'CPU s':>8} {'wall s':>8} {'peak MB':>8} {'CPU/limit':>10} {'wall/limit':>10}")  # fmt: skip
         for threads in map(int, arguments.threads.split(",")):
-            for write in ("none", "exr"):
+            for write, options in RUNS:
                 costs: dict[str, list[Cost]] = {program: [] for program in arguments.programs}
                 for _ in range(arguments.rounds):
                     for program in arguments.programs:
-                        costs[program].append(bench.run(program, write, threads))
+                        costs[program].append(bench.run(program, write, threads, *options))
                 limit = max(stages["decode"], least(costs[newest]).kernels)
                 for number, program in enumerate(arguments.programs):
                     c = least(costs[program])
                     name = "new" if number == 0 else "old" if number == 1 else f"older {number}"
-                    print(f"{name:<10} {write:<5} {threads:>2} {c.processor:>8.1f} {c.wall:>8.1f} {c.peak_mb:>8.0f} {c.processor / limit:>10.2f} {c.wall * threads / limit:>10.2f}")  # fmt: skip
+                    print(f"{name:<10} {write:<5} {c.figures:<7} {threads:>2} {c.processor:>8.1f} {c.wall:>8.1f} {c.peak_mb:>8.0f} {c.processor / limit:>10.2f} {c.wall * threads / limit:>10.2f}")  # fmt: skip
 
 
 if __name__ == "__main__":
