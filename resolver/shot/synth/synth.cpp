@@ -224,8 +224,7 @@ Frame SynthShot::frame(size_t index, Sampling sampling) const {
     }
     const Sampler sampler(scene_->contents, w, h, time, shiftView);
     const double reachPx = reachOf(samplePx, f.subSamplePositionsPx);
-    // A sub-sample that lies beyond its pixel's row sees the shapes of that row alone: the shots' hashes hold that.
-    const auto shapesByRow = shapesOfRows(placed, h, 0);
+    const auto shapesByRow = shapesOfRows(placed, h, reachPx);
     forRows({}, h, [&](int y0, int y1) {
         for (int y = y0; y < y1; y++) {
             const PlacedRow row(shapesByRow[size_t(y)], y, w, reachPx);
