@@ -91,8 +91,8 @@ void filter(const FilterArguments& o) {
     withThreads(o.work.threads, [&] { seconds = running.resolve(frame, frame.display, exec).wall; });
     const PlaneF* alpha = image.alpha.empty() || toPng != (image.space == FileSpace::encoded) ? nullptr : &image.alpha;
     if (toPng) {
-        if (o.dither) dither8(running.outEncoded, frame.number, exec);
-        LoadedImage shown{running.outEncoded, FileSpace::encoded, false, alpha ? *alpha : PlaneF(), image.shown};
+        if (o.dither) dither8(running.changeShown(), frame.number, exec);
+        LoadedImage shown{running.shown(), FileSpace::encoded, false, alpha ? *alpha : PlaneF(), image.shown};
         showDisplayWindow(shown, o.in);
         writePng(o.out, shown.rgb, alpha ? &shown.alpha : nullptr);
     } else {

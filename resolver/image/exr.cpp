@@ -264,15 +264,15 @@ void ExrFile::read(const ExrPart& part, std::vector<ChannelTarget>& targets) {
                              "': sub-sampled, one value for several pixels, as luminance and chroma are stored; not "
                              "supported, write R, G and B with one value per pixel");
         t.stored = c->type;
-        std::visit([&](auto* p) { *p = std::remove_pointer_t<decltype(p)>(part.width, part.height); }, t.plane);
+        std::visit([&](auto* p) { *p = std::remove_pointer_t<decltype(p)>::unset(part.width, part.height); }, t.plane);
         assert(!samples.findSlice(t.channel));
         if (id && c->type == ChannelType::uint)
             samples.insert(t.channel, slice(Imf::UINT, *std::get<PlaneU*>(t.plane), window));
         else
             samples.insert(
                 t.channel,
-                slice(Imf::FLOAT, id ? numbers[i] = PlaneF(part.width, part.height) : *std::get<PlaneF*>(t.plane),
-                      window));
+                slice(Imf::FLOAT,
+                      id ? numbers[i] = PlaneF::unset(part.width, part.height) : *std::get<PlaneF*>(t.plane), window));
     }
     if (targets.empty()) return;
     if (!readLines(index, samples)) readByOpenExr(index, samples, where);

@@ -20,17 +20,24 @@ ResolveSeconds RunningMethod::again(const Frame& frame, const Exec& exec) {
     const auto start = std::chrono::steady_clock::now();
     const ProcessorTime processor;
     accumulate(frame, exec);
-    return {processor.seconds(), std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+    const ResolveSeconds seconds{processor.seconds(),
+                                 std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()};
+    out.fillBorder();
+    return seconds;
 }
 
 ResolveSeconds RunningMethod::resolve(const Frame& frame, const DisplayChain& chain, const Exec& exec) {
     const ResolveSeconds seconds = again(frame, exec);
-    out.fillBorder();
     if (spec.outputSpace() == Space::linear)
-        encode(out, chain, exec, outEncoded);
+        encode(out, chain, exec, shown_);
     else
-        outEncoded = out;
+        shown_ = Rgb();
     return seconds;
+}
+
+Rgb& RunningMethod::changeShown() {
+    if (shown_.empty()) shown_ = out;
+    return shown_;
 }
 
 ShotInfo shotInfo(const Manifest& m) {

@@ -16,18 +16,23 @@ struct ResolveSeconds {
 struct RunningMethod {
     MethodSpec spec;
     std::unique_ptr<Method> method;
-    Rgb out;         // in the method's output space
-    Rgb outEncoded;  // display-encoded, what the metrics see
+    Rgb out;  // in the method's output space
     RunningMethod(MethodSpec spec, const ShotInfo& shot);
     RunningMethod(MethodSpec spec, std::unique_ptr<Method> form);  // another form of spec's method
     // Resolves one frame. `chain` is frame.display of a frame that was prepared.
     ResolveSeconds resolve(const Frame& frame, const DisplayChain& chain, const Exec& exec);
-    // The same for the history's sake alone: outEncoded stays as it is.
+    // Display-encoded, what the metrics see; of a method that gives encoded colour `out` itself, until it is changed.
+    const Rgb& shown() const { return shown_.empty() ? out : shown_; }
+    Rgb& changeShown();  // the one that is changed leaves `out` as it is
+    // The same for the history's sake alone: no picture is to be shown.
     void accumulate(const Frame& frame, const Exec& exec);
     // Resolves it once more for the time alone. Not of a method that keeps something from frame to frame.
     ResolveSeconds again(const Frame& frame, const Exec& exec);
-    void forgetPicture() { out = Rgb(), outEncoded = Rgb(); }
+    void forgetPicture() { out = Rgb(), shown_ = Rgb(); }
     bool isRepeatable() const { return !spec.method->temporal && spec.stages.empty(); }
+
+  private:
+    Rgb shown_;  // empty: `out`
 };
 
 ShotInfo shotInfo(const Manifest& manifest);

@@ -33,7 +33,7 @@ FrameMetrics figuresOf(const Rgb& test, const Rgb& reference) {
     TileErrors pool;
     Reference r;
     r.linear = r.encoded = reference;
-    return measure(test, &test, r, options, {}, pool);
+    return measure({test, &test}, r, options, {}, pool);
 }
 
 // Values of numpy 1.24 and scikit-image 0.19 for these pictures: structural_similarity with gaussian_weights,

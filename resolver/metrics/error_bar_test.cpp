@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -180,15 +181,42 @@ TEST(Measure, OneCallGivesAllFigures) {
     encode(linear, {}, {}, encoded);
     const Reference reference = makeReference(half, half, {}, {});
     TileErrors pool;
-    const FrameMetrics m = measure(encoded, &linear, reference, measureOptions({"ssimRgb", "relMse"}), {}, pool);
+    const FrameMetrics m = measure({encoded, &linear}, reference, measureOptions({"ssimRgb", "relMse"}), {}, pool);
     EXPECT_EQ(m.mse, squaredError(encoded, reference.encoded, {}).mse);
     EXPECT_EQ(m.psnr, psnr(m.mse));
     EXPECT_EQ(m.figure("ssimLuma"), ssimLuma(encoded, reference.encoded, {}));
     EXPECT_EQ(m.figure("ssimRgb"), ssimRgb(encoded, reference.encoded, {}));
     EXPECT_EQ(m.figure("relMse"), relMse(linear, reference.linear, {}));
     EXPECT_EQ(pool.squaredError().mse, m.mse);
-    EXPECT_FALSE(measure(encoded, nullptr, reference, measureOptions({"relMse"}), {}, pool).figure("relMse"));
+    EXPECT_FALSE(measure({encoded}, reference, measureOptions({"relMse"}), {}, pool).figure("relMse"));
     EXPECT_EQ(pool.totalValues(), 2.0 * 3 * 40 * 30);
+}
+
+TEST(Measure, WhatIsPreparedOfTheReferenceChangesNoFigure) {
+    const Rgb truth = shifted(Rgb(75, 43, 0.3f), 0.2, 7);
+    MeasureOptions options = measureOptions({"ssimRgb", "ssimValid"});
+    options.ofJudged = {findFigure("flip").metric};
+    for (const Precision precision : {Precision::fast, Precision::scalar, Precision::oracle}) {
+        const Exec exec{.precision = precision};
+        const Reference plain = makeReference(truth, truth, {}, exec);
+        Reference prepared = plain;
+        prepare(prepared, options, exec, false);
+        EXPECT_FALSE(prepared.prepared.contains(findFigure("flip").metric)) << "the frame is not judged by it";
+        prepare(prepared, options, exec);
+        EXPECT_TRUE(prepared.prepared.contains(findFigure("flip").metric));
+        for (const unsigned seed : {1u, 2u}) {
+            Rgb encoded;
+            encode(shifted(truth, 0.05, seed), {}, exec, encoded);
+            const PlaneF luma = pictureLuma(encoded, exec);
+            TileErrors pool, other;
+            const FrameMetrics m = measure({encoded, nullptr, &luma}, prepared, options, exec, pool),
+                               expected = measure({encoded}, plain, options, exec, other);
+            EXPECT_EQ(m.mse, expected.mse);
+            EXPECT_EQ(m.snr, expected.snr);
+            EXPECT_TRUE(std::equal(m.others.begin(), m.others.end(), expected.others.begin(), expected.others.end()));
+            EXPECT_EQ(std::distance(m.others.begin(), m.others.end()), 7) << "SSIM of three kinds, FLIP, its quartiles";
+        }
+    }
 }
 
 // Three methods over 16 frames: the second has a quarter of the first's ghost, the third differs from the first by the

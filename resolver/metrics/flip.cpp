@@ -50,38 +50,56 @@ FlipFilters filtersAt(double pixelsPerDegree) {
     }
     return f;
 }
-double flip(const Rgb& test, const Rgb& reference, bool encoded, const Exec& exec, PlaneF* map,
-            double pixelsPerDegree) {
-    assert(test.width() == reference.width() && test.height() == reference.height());
-    assert(pixelsPerDegree >= kLeastFlipPixelsPerDegree && pixelsPerDegree <= kMostFlipPixelsPerDegree);
-    constexpr int kRowsPerBlock = 128;  // each block repeats the loading of 20 rows
-    const int w = test.width(), h = test.height();
-    if (map && (map->width() != w || map->height() != h)) *map = PlaneF(w, h);
-    std::vector<double> rows(static_cast<size_t>(h));
-    const bool usual = pixelsPerDegree == kFlipPixelsPerDegree;
-    const FlipFilters filters = usual ? FlipFilters{} : filtersAt(pixelsPerDegree);
-    const FlipArgs args{.test = view(test),
-                        .reference = view(reference),
-                        .encoded = encoded,
-                        .stride = test.stride(),
-                        .width = w,
-                        .height = h,
-                        .map = map ? map->row(0) : nullptr,
-                        .mapStride = map ? map->stride() : 0,
-                        .rows = rows.data(),
-                        .filters = &filters};
-    const auto& kernels = flipKernelsFor(exec);
-    runKernel(usual ? kernels.flip : kernels.given, exec, args, h, kRowsPerBlock);
-    if (map) map->fillBorder();
-    return std::accumulate(rows.begin(), rows.end(), 0.0) / (double(w) * h);
-}
+// Rows of blocks that a thread takes: each take repeats the loading of 20 rows.
+constexpr int kBlocks = 16;
 }  // namespace
 
+FlipReference::FlipReference(const Rgb& reference, Values values, const Exec& exec, double pixelsPerDegree)
+    : width_(reference.width()), height_(reference.height()), values_(values), precision_(exec.precision) {
+    assert(pixelsPerDegree >= kLeastFlipPixelsPerDegree && pixelsPerDegree <= kMostFlipPixelsPerDegree);
+    if (pixelsPerDegree != kFlipPixelsPerDegree) filters_ = std::make_unique<FlipFilters>(filtersAt(pixelsPerDegree));
+    const int rows = (height_ + kFlipTileRows - 1) / kFlipTileRows, blocks = (width_ + kFlipColumns - 1) / kFlipColumns;
+    const size_t floats = exec.precision == Precision::oracle ? 2 : 1;  // of a value
+    seen_.resize(floats * size_t(rows) * size_t(blocks) * (kFlipTileRows * kFlipColumns * kFlipSeen));
+    const FlipArgs args{.image = view(reference),
+                        .encoded = values == Values::encoded,
+                        .stride = reference.stride(),
+                        .width = width_,
+                        .height = height_,
+                        .filters = filters_.get(),
+                        .seen = seen_.data()};
+    const auto& kernels = flipKernelsFor(exec);
+    runKernel(filters_ ? kernels.seeFrom : kernels.see, exec, args, rows, kBlocks);
+}
+FlipReference::~FlipReference() = default;
+
+double FlipReference::flip(const Rgb& test, const Exec& exec, PlaneF* map) const {
+    assert(test.width() == width_ && test.height() == height_);
+    assert((exec.precision == Precision::oracle) == (precision_ == Precision::oracle));
+    if (map && (map->width() != width_ || map->height() != height_)) *map = PlaneF::unset(width_, height_);
+    std::vector<double> rows(static_cast<size_t>(height_));
+    const FlipArgs args{.image = view(test),
+                        .encoded = values_ == Values::encoded,
+                        .stride = test.stride(),
+                        .width = width_,
+                        .height = height_,
+                        .filters = filters_.get(),
+                        .reference = seen_.data(),
+                        .map = map ? map->row(0) : nullptr,
+                        .mapStride = map ? map->stride() : 0,
+                        .rows = rows.data()};
+    const auto& kernels = flipKernelsFor(exec);
+    runKernel(filters_ ? kernels.judgeFrom : kernels.judge, exec, args, (height_ + kFlipTileRows - 1) / kFlipTileRows,
+              kBlocks);
+    if (map) map->fillBorder();
+    return std::accumulate(rows.begin(), rows.end(), 0.0) / (double(width_) * height_);
+}
+
 double flip(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map, double pixelsPerDegree) {
-    return flip(test, reference, true, exec, map, pixelsPerDegree);
+    return FlipReference(reference, FlipReference::Values::encoded, exec, pixelsPerDegree).flip(test, exec, map);
 }
 double flipOfLight(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map, double pixelsPerDegree) {
-    return flip(test, reference, false, exec, map, pixelsPerDegree);
+    return FlipReference(reference, FlipReference::Values::light, exec, pixelsPerDegree).flip(test, exec, map);
 }
 
 Metric flipMetric() {
@@ -95,11 +113,15 @@ Metric flipMetric() {
             .byDefault = true,
             .nsPerPixel = 45,
             .source = "[Andersson 2020]",
-            .measure = [](const ImagePair& i, const Exec& exec) {
-                PlaneF map;
-                const double mean = flip(i.testEncoded, i.referenceEncoded, exec, &map, i.flipPixelsPerDegree);
-                const FlipStatistics s = flipStatistics(map);
-                return std::vector{mean, s.firstQuartile, s.median, s.thirdQuartile};
+            .prepare = [](const ReferencePicture& r, const Exec& e) -> Measure {
+                const auto reference = std::make_shared<FlipReference>(r.encoded, FlipReference::Values::encoded, e,
+                                                                       r.flipPixelsPerDegree);
+                return [reference](const ImagePair& i, const Exec& exec) {
+                    PlaneF map;
+                    const double mean = reference->flip(i.testEncoded, exec, &map);
+                    const FlipStatistics s = flipStatistics(map);
+                    return std::vector{mean, s.firstQuartile, s.median, s.thirdQuartile};
+                };
             }};
 }
 

@@ -7,9 +7,30 @@
 //
 // All filters are separable (the blue-yellow one is a sum of two), which is exact.
 #pragma once
+#include <memory>
+#include <vector>
+
 #include "metrics/metric.h"
 
 namespace aa {
+
+struct FlipFilters;
+// What is seen of a reference: half of the work, done once for all pictures that are held against it. 20 bytes a pixel.
+class FlipReference {
+  public:
+    enum class Values { encoded, light };  // as flip() and flipOfLight() take them
+    FlipReference(const Rgb& reference, Values values, const Exec& exec, double pixelsPerDegree = kFlipPixelsPerDegree);
+    ~FlipReference();
+    // Mean over the pixels; the map when `map` is given. `exec` of the precision that the reference was seen in.
+    double flip(const Rgb& test, const Exec& exec, PlaneF* map = nullptr) const;
+
+  private:
+    int width_, height_;
+    Values values_;
+    Precision precision_;
+    std::unique_ptr<const FlipFilters> filters_;  // null: those at the usual distance
+    std::vector<float, PlaneAllocator<float>> seen_;
+};
 
 // Encoded images in [0,1]; values outside count as 0 or 1, NaN as 0. They are taken as sRGB codes whatever the transfer
 // of the run: with the identity transfer, too, a screen gets the displayed values as its codes. Mean over the pixels,

@@ -1,7 +1,7 @@
-// What limits it on AVX2: arithmetic, about 1300 operations per 8 pixels, of which 770 are the filters' (19 taps of
-// seven kinds, along either axis, in both images); 2.2 of them per cycle. So nothing waits for memory: light becomes
-// opponent colour once, the rows under a window stay in the second cache, and both passes read whole registers: lanes
-// are columns along y, and rows along x, to which tiles of 8 x 8 px are transposed.
+// What limits it on AVX2: arithmetic, about 1300 operations per 8 pixels of a pair, of which 770 are the filters' (19
+// taps of seven kinds, along either axis, in both images); 2.2 of them per cycle. So nothing waits for memory: light
+// becomes opponent colour once, the rows under a window stay in the second cache, and both passes read whole registers:
+// lanes are columns along y, and rows along x, to which tiles of 8 x 8 px are transposed.
 #include "kernels/math.h"
 #include "kernels/srgb.h"
 #include "kernels/transpose.h"
@@ -14,8 +14,9 @@ using namespace aa;
 using namespace aa::flip_constants;
 
 constexpr int kTile = kTileRows;
-constexpr int kStrip = 256;  // columns that are loaded together
-constexpr int kChunk = 64;   // of these, what is filtered together: its filtered rows fill half of the first cache
+constexpr int kStrip = 256;           // columns that are loaded together
+constexpr int kChunk = kFlipColumns;  // of these, what is filtered together: it fills half of the first cache
+static_assert(kTile == kFlipTileRows && kStrip % kChunk == 0);
 
 // The filters at the usual distance are constants, so that their loops unroll: a third faster.
 struct UsualFilters {
@@ -109,6 +110,7 @@ struct alignas(64) FilteredColumns {
 };
 // And the pass along x: colour as seen, and the strengths of edge and point.
 enum Seen { lightness, hueA, hueB, edgeStrength, pointStrength, kSeen };
+static_assert(kSeen == kFlipSeen);
 template <class T>
 struct alignas(64) SeenColumns {
     T of[kSeen][kChunk * kTile];
@@ -243,49 +245,63 @@ AA_INLINE void sum(const FlipArgs& a, const Elem<R>* flip, int x0, int columns, 
     for (int i = 0; i < N<R>; i++)
         if (y + i >= y0 && y + i < y1) a.rows[y + i] += sums.of(i);
 }
-template <class R, class F>
+// A strip of rows [y0, y1), of which the first begins a block; the last may end beyond the image.
+template <class R, class F, bool kJudges>
 AA_INLINE void flipStrip(const F& f, const FlipArgs& a, int x0, int y0, int y1) {
     using T = Elem<R>;
-    OpponentRow<T, F> kept[2][kKept<F>];
-    FilteredColumns<T, F> filtered[2];
-    SeenColumns<T> seen[2];
+    using Block = SeenColumns<T>;
+    OpponentRow<T, F> kept[kKept<F>];
+    FilteredColumns<T, F> filtered;
+    Block ofTest;
     const OpponentRow<T, F>* rows[kWindow<F>];
-    const int first = y0 / kTile * kTile, columns = a.width - x0 < kStrip ? a.width - x0 : kStrip;
-    int loaded = first - f.csfReach;
-    for (int y = first; y < y1; y += kTile) {
+    const int columns = a.width - x0 < kStrip ? a.width - x0 : kStrip, blocks = (a.width + kChunk - 1) / kChunk;
+    int loaded = y0 - f.csfReach;
+    for (int y = y0; y < y1; y += kTile) {
         for (; loaded < y + kTile + f.csfReach; loaded++)
-            for (int image = 0; image < 2; image++)
-                loadOpponent<R, F>(image ? a.reference : a.test, a, x0, loaded,
-                                   kept[image][unsigned(loaded) % kKept<F>]);
+            loadOpponent<R, F>(a.image, a, x0, loaded, kept[unsigned(loaded) % kKept<F>]);
+        for (int j = 0; j < kTile + 2 * f.csfReach; j++) rows[j] = &kept[unsigned(y - f.csfReach + j) % kKept<F>];
         for (int x = 0; x < columns; x += kChunk) {
             const int count = columns - x < kChunk ? columns - x : kChunk;
             const int places = (count + kTile - 1) / kTile * kTile * kTile;
-            for (int image = 0; image < 2; image++) {
-                auto& of = filtered[image];
-                for (int j = 0; j < kTile + 2 * f.csfReach; j++)
-                    rows[j] = &kept[image][unsigned(y - f.csfReach + j) % kKept<F>];
-                if (x)  // its first columns are the last of the chunk before it
-                    for (auto& filter : of.of)
-                        std::memcpy(filter, filter + kChunk * kTile, 2 * kMargin<F> * kTile * sizeof(T));
-                for (int i = x ? kMargin<F> : -kMargin<F>; i < count + kMargin<F>; i += N<R>)
-                    filterAlongY<R, F>(f, rows, x + i, kMargin<F> + i, of);
-                for (int i = 0; i < places; i += N<R>) filterAlongX<R, F>(f, of, i, seen[image]);
-                seeColours<R>(seen[image], places);
+            const long block = long(y / kTile) * blocks + (x0 + x) / kChunk;
+            if (x)  // its first columns are the last of the chunk before it
+                for (auto& filter : filtered.of)
+                    std::memcpy(filter, filter + kChunk * kTile, 2 * kMargin<F> * kTile * sizeof(T));
+            for (int i = x ? kMargin<F> : -kMargin<F>; i < count + kMargin<F>; i += N<R>)
+                filterAlongY<R, F>(f, rows, x + i, kMargin<F> + i, filtered);
+            Block& seen = kJudges ? ofTest : static_cast<Block*>(a.seen)[block];
+            for (int i = 0; i < places; i += N<R>) filterAlongX<R, F>(f, filtered, i, seen);
+            seeColours<R>(seen, places);
+            if constexpr (kJudges) {
+                judge<R>(seen, static_cast<const Block*>(a.reference)[block], places);
+                for (int row = 0; row < kTile; row += N<R>)
+                    sum<R>(a, seen.of[lightness] + row, x0 + x, count, y + row, y0, y1);
             }
-            judge<R>(seen[0], seen[1], places);
-            for (int row = 0; row < kTile; row += N<R>)
-                sum<R>(a, seen[0].of[lightness] + row, x0 + x, count, y + row, y0, y1);
         }
     }
 }
-template <class R>
-__attribute__((flatten)) void flipRows(const FlipArgs& a, int y0, int y1) {
-    for (int x0 = 0; x0 < a.width; x0 += kStrip) flipStrip<R>(UsualFilters{}, a, x0, y0, y1);
+template <class R, bool kJudges, class F>
+AA_INLINE void flipStrips(const F& f, const FlipArgs& a, int block0, int block1) {
+    const int y0 = block0 * kTile, end = block1 * kTile, y1 = end < a.height ? end : a.height;
+    for (int x0 = 0; x0 < a.width; x0 += kStrip) flipStrip<R, F, kJudges>(f, a, x0, y0, y1);
 }
 template <class R>
-__attribute__((flatten)) void givenFlipRows(const FlipArgs& a, int y0, int y1) {
-    for (int x0 = 0; x0 < a.width; x0 += kStrip) flipStrip<R>(GivenFilters{*a.filters}, a, x0, y0, y1);
+__attribute__((flatten)) void seeBlocks(const FlipArgs& a, int block0, int block1) {
+    flipStrips<R, false>(UsualFilters{}, a, block0, block1);
+}
+template <class R>
+__attribute__((flatten)) void judgeBlocks(const FlipArgs& a, int block0, int block1) {
+    flipStrips<R, true>(UsualFilters{}, a, block0, block1);
+}
+template <class R>
+__attribute__((flatten)) void seeBlocksFrom(const FlipArgs& a, int block0, int block1) {
+    flipStrips<R, false>(GivenFilters{*a.filters}, a, block0, block1);
+}
+template <class R>
+__attribute__((flatten)) void judgeBlocksFrom(const FlipArgs& a, int block0, int block1) {
+    flipStrips<R, true>(GivenFilters{*a.filters}, a, block0, block1);
 }
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::FlipKernels, flipKernels) = {AA_ROWS(flipRows), AA_ROWS(givenFlipRows)};
+AA_DEFINE_TABLE(aa::FlipKernels, flipKernels) = {AA_ROWS(seeBlocks), AA_ROWS(judgeBlocks), AA_ROWS(seeBlocksFrom),
+                                                 AA_ROWS(judgeBlocksFrom)};

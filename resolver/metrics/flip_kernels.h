@@ -10,17 +10,23 @@ struct FlipFilters {
     double gauss[kMostReach + 1], edge[kMostReach + 1], point[kMostReach + 1];
     double czWideShare;
 };
+// What is seen of a picture: blocks of kFlipTileRows rows and kFlipColumns columns, a row of blocks after the other; of
+// each block the kFlipSeen quantities, and of each of these one column after the other. In the arithmetic's own
+// precision.
+inline constexpr int kFlipTileRows = 8, kFlipColumns = 64, kFlipSeen = 5;
 struct FlipArgs {
-    RgbIn test, reference;
+    RgbIn image;
     bool encoded;  // sRGB codes; otherwise linear and display-referred
     int stride, width, height;
-    float* map;  // pixel (0,0) of a plane, or null
-    int mapStride;
-    double* rows;                // [height]: sums, zero at the start
-    const FlipFilters* filters;  // of `given` alone
+    const FlipFilters* filters;       // of `seeFrom` and `judgeFrom`, which look from another distance than usual
+    void* seen = nullptr;             // of the image, to be written: see
+    const void* reference = nullptr;  // what is seen of what the image is held against: judge
+    float* map = nullptr;             // of FLIP: pixel (0,0) of a plane; or null
+    int mapStride = 0;
+    double* rows = nullptr;  // [height]: sums of FLIP, zero at the start
 };
 struct FlipKernels {
-    RowKernel<FlipArgs> flip, given;
+    RowKernel<FlipArgs> see, judge, seeFrom, judgeFrom;  // of rows of blocks
 };
 }  // namespace aa
 AA_KERNEL_TABLE(aa::FlipKernels, flipKernels)

@@ -184,6 +184,20 @@ TEST(Flip, SameBitsEverywhere) {
             EXPECT_TRUE(map.samePixels(first));
         }
 }
+TEST(Flip, OneReferenceServesManyPictures) {
+    const Rgb r = scene(203, 150, 2, 0.2f);
+    for (const double ppd : {kFlipPixelsPerDegree, 40.0})
+        for (const Precision precision : {Precision::fast, Precision::oracle}) {
+            const Exec exec{.precision = precision};
+            const FlipReference reference(r, FlipReference::Values::encoded, exec, ppd);
+            for (const unsigned seed : {1u, 3u, 2u}) {
+                const Rgb t = scene(203, 150, seed, 0.2f);
+                PlaneF map, alone;
+                EXPECT_EQ(reference.flip(t, exec, &map), flip(t, r, exec, &alone, ppd)) << seed;
+                EXPECT_TRUE(map.samePixels(alone)) << seed;
+            }
+        }
+}
 TEST(Flip, CodesAreDecodedAsImagesAre) {
     const Rgb t = scene(90, 40, 1, 0.2f), r = scene(90, 40, 2, 0.2f);
     Rgb linearTest, linearReference;

@@ -7,25 +7,23 @@
 
 namespace aa {
 
-Reference makeReference(const Rgb& halfA, const Rgb& halfB, const DisplayChain& display, const Exec& exec,
-                        bool eightBit) {
-    const int w = halfA.width(), h = halfA.height();
-    Reference r;
-    r.linear = Rgb(w, h);
-    for (size_t c = 0; c < 3; c++)
-        for (int y = 0; y < h; y++) {
-            const float *a = halfA.c[c].row(y), *b = halfB.c[c].row(y);
-            float* mean = r.linear.c[c].row(y);
-            for (int x = 0; x < w; x++) mean[x] = 0.5f * a[x] + 0.5f * b[x];
-        }
-    r.linear.fillBorder();
-    encode(r.linear, display, exec, r.encoded);
-    if (nonFiniteValues(r.linear) > 0) r.broken = r.linear;
-    if (display.transfer == Transfer::identity) {
-        r.clippedPixels = clippedPixels(r.linear, display);
-        r.linear = r.encoded;
-    }
-    if (eightBit) quantise8(r.encoded, exec);
+namespace {
+Rgb meanOf(const Rgb& halfA, const Rgb& halfB, const Exec& exec) {
+    Rgb all = Rgb::unset(halfA.width(), halfA.height());
+    forRows(exec, all.height(), [&](int y0, int y1) {
+        for (size_t c = 0; c < 3; c++)
+            for (int y = y0; y < y1; y++) {
+                const float *a = halfA.c[c].row(y), *b = halfB.c[c].row(y);
+                float* mean = all.c[c].row(y);
+                for (int x = 0; x < all.width(); x++) mean[x] = 0.5f * a[x] + 0.5f * b[x];
+            }
+    });
+    all.fillBorder();
+    return all;
+}
+// Fills what the halves tell, which differ.
+void addHalves(Reference& r, const Rgb& halfA, const Rgb& halfB, const DisplayChain& display, const Exec& exec,
+               bool eightBit) {
     encode(halfA, display, exec, r.encodedA);
     encode(halfB, display, exec, r.encodedB);
     r.noise = truthNoise(squaredError(r.encodedA, r.encodedB, exec).mse);
@@ -35,14 +33,29 @@ Reference makeReference(const Rgb& halfA, const Rgb& halfB, const DisplayChain& 
         quantise8(r.encodedA, exec);
         quantise8(r.encodedB, exec);
     }
+}
+}  // namespace
+
+Reference makeReference(const Rgb& halfA, const Rgb& halfB, const DisplayChain& display, const Exec& exec,
+                        bool eightBit) {
+    Reference r;
+    r.linear = meanOf(halfA, halfB, exec);
+    encode(r.linear, display, exec, r.encoded);
+    if (nonFiniteValues(r.linear) > 0) r.broken = r.linear;
+    if (display.transfer == Transfer::identity) {
+        r.clippedPixels = clippedPixels(r.linear, display);
+        r.linear = r.encoded;
+    }
+    if (eightBit) quantise8(r.encoded, exec);
+    if (!halfA.samePixels(halfB)) addHalves(r, halfA, halfB, display, exec, eightBit);
     return r;
 }
 
 TileErrors tileErrors(const Rgb& encoded, const Reference& reference, const Exec& exec) {
-    TileErrors errors = tileErrors(encoded, reference.encoded, exec);
+    TileErrors errors = tileErrors(encoded, reference.encoded, exec, reference.sumOfSquares);
     if (reference.encodedA.empty()) return errors;
-    errors.againstA = tileErrors(encoded, reference.encodedA, exec).sum;
-    errors.againstB = tileErrors(encoded, reference.encodedB, exec).sum;
+    errors.againstA = tileErrors(encoded, reference.encodedA, exec, 0).sum;
+    errors.againstB = tileErrors(encoded, reference.encodedB, exec, 0).sum;
     return errors;
 }
 
@@ -57,9 +70,11 @@ std::optional<double> FrameMetrics::figure(std::string_view name) const {
     return f->ofSquares(squares());
 }
 
-void addFigures(FrameMetrics& to, const Metric& metric, const ImagePair& images, const Exec& exec) {
-    if (!metric.measure) return;
-    const std::vector<double> values = metric.measure(images, exec);
+void addFigures(FrameMetrics& to, const Metric& metric, const ImagePair& images, const Exec& exec,
+                const Measure* prepared) {
+    if (!metric.measure && !metric.prepare) return;
+    const std::vector<double> values =
+        prepared ? (*prepared)(images, exec) : metric.against(images.reference(), exec)(images, exec);
     for (size_t i = 0; i < values.size(); i++) to.others.emplace(metric.figures[i].name, values[i]);
 }
 
@@ -87,21 +102,40 @@ DefaultMetrics defaultMetrics(const MeasureOptions& asked, double pixels) {
     return d;
 }
 
-FrameMetrics measure(const Rgb& encoded, const Rgb* linear, const Reference& reference, const MeasureOptions& options,
+namespace {
+std::vector<const Metric*> wanted(const MeasureOptions& options, bool judged) {
+    std::vector<const Metric*> all;
+    for (const Metric& metric : metrics())
+        if (metric.always) all.push_back(&metric);
+    all.insert(all.end(), options.metrics.begin(), options.metrics.end());
+    if (judged) all.insert(all.end(), options.ofJudged.begin(), options.ofJudged.end());
+    return all;
+}
+}  // namespace
+
+void prepare(Reference& r, const MeasureOptions& options, const Exec& exec, bool judged) {
+    if (!r.sumOfSquares) r.sumOfSquares = sumOfSquares(r.encoded, exec);
+    const ReferencePicture picture{r.encoded, &r.linear, options.flipPixelsPerDegree};
+    for (const Metric* metric : wanted(options, judged))
+        if (metric->prepare && !r.prepared.contains(metric)) r.prepared[metric] = metric->prepare(picture, exec);
+}
+
+FrameMetrics measure(const MeasuredPicture& picture, const Reference& reference, const MeasureOptions& options,
                      const Exec& exec, TileErrors& pool, bool judged) {
-    const TileErrors errors = tileErrors(encoded, reference, exec);
+    const TileErrors errors = tileErrors(picture.encoded, reference, exec);
     pool += errors;
     FrameMetrics m = frameMetrics(errors.squaredError());
-    const ImagePair images{encoded, reference.encoded, linear, linear ? &reference.linear : nullptr,
-                           options.flipPixelsPerDegree};
-    const auto add = [&](const Metric& metric) {
-        if (metric.isPossible(images)) addFigures(m, metric, images, exec);
-    };
-    for (const Metric& metric : metrics())
-        if (metric.always) add(metric);
-    for (const Metric* metric : options.metrics) add(*metric);
-    if (judged)
-        for (const Metric* metric : options.ofJudged) add(*metric);
+    const ImagePair images{picture.encoded,
+                           reference.encoded,
+                           picture.linear,
+                           picture.linear ? &reference.linear : nullptr,
+                           options.flipPixelsPerDegree,
+                           picture.luma};
+    for (const Metric* metric : wanted(options, judged)) {
+        if (!metric->isPossible(images)) continue;
+        const auto prepared = reference.prepared.find(metric);
+        addFigures(m, *metric, images, exec, prepared == reference.prepared.end() ? nullptr : &prepared->second);
+    }
     return m;
 }
 

@@ -21,7 +21,9 @@ struct FrameMetrics {
 };
 FrameMetrics frameMetrics(const SquaredError& squares);
 // Measures what is not of squared error and adds it. The images must be those that the metric asks for (isPossible).
-void addFigures(FrameMetrics& to, const Metric& metric, const ImagePair& images, const Exec& exec);
+// `prepared`: metric.against() the reference, where somebody has it already.
+void addFigures(FrameMetrics& to, const Metric& metric, const ImagePair& images, const Exec& exec,
+                const Measure* prepared = nullptr);
 
 // Of means over frames: figures that follow from others' means (Figure::ofMeans).
 void deriveFromMeans(FrameMetrics& means);
@@ -33,6 +35,9 @@ struct Reference {
     double noise = 0;     // MSE(encoded a, encoded b) / 4, not rounded
     Rgb encodedA, encodedB;    // the halves as they are compared; empty where they are equal
     size_t clippedPixels = 0;  // of which the mean exceeds what the display shows (counted with the identity transfer)
+    // What prepare() found, which all pictures that are held against it share.
+    std::optional<double> sumOfSquares = {};  // of `encoded`
+    std::map<const Metric*, Measure> prepared = {};
 };
 // Rounded to 8-bit codes: `encoded` alone.
 Reference makeReference(const Rgb& halfA, const Rgb& halfB, const DisplayChain& display, const Exec& exec,
@@ -60,9 +65,14 @@ DefaultMetrics defaultMetrics(const MeasureOptions& asked, double pixels);
 // Of the names in `--metrics`. Throws UsageError.
 MeasureOptions measureOptions(const std::vector<std::string>& names);
 // `judged`: whether the frame counts in the pooled figures (MeasureOptions::ofJudged).
-// `encoded` is the method's image after the display chain; `linear` is null when the method gives encoded colour. The
-// tile errors of the encoded image are added to `pool`.
-FrameMetrics measure(const Rgb& encoded, const Rgb* linear, const Reference& reference, const MeasureOptions& options,
+void prepare(Reference& reference, const MeasureOptions& options, const Exec& exec, bool judged = true);
+struct MeasuredPicture {
+    const Rgb& encoded;            // after the display chain
+    const Rgb* linear = nullptr;   // null when the method gives encoded colour
+    const PlaneF* luma = nullptr;  // pictureLuma(encoded), where somebody has it already
+};
+// The tile errors of the encoded image are added to `pool`.
+FrameMetrics measure(const MeasuredPicture& picture, const Reference& reference, const MeasureOptions& options,
                      const Exec& exec, TileErrors& pool, bool judged = true);
 
 }  // namespace aa

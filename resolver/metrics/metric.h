@@ -36,15 +36,24 @@ struct Figure {
 inline constexpr double kFlipPixelsPerDegree = 67.020643276582;
 inline constexpr double kLeastFlipPixelsPerDegree = 5, kMostFlipPixelsPerDegree = 177;
 
-// Two images of one size with filled borders. The linear ones are null where there is no linear light: 8-bit files,
-// methods that give encoded colour.
+// Images of one size with filled borders. The linear ones are null where there is no linear light: 8-bit files, methods
+// that give encoded colour.
+struct ReferencePicture {
+    const Rgb& encoded;
+    const Rgb* linear = nullptr;
+    double flipPixelsPerDegree = kFlipPixelsPerDegree;
+};
 struct ImagePair {
     const Rgb& testEncoded;
     const Rgb& referenceEncoded;
     const Rgb* testLinear = nullptr;
     const Rgb* referenceLinear = nullptr;
     double flipPixelsPerDegree = kFlipPixelsPerDegree;
+    const PlaneF* testLuma = nullptr;  // pictureLuma() of testEncoded, where somebody has it already
+    ReferencePicture reference() const { return {referenceEncoded, referenceLinear, flipPixelsPerDegree}; }
 };
+// One value per figure, of one frame.
+using Measure = std::function<std::vector<double>(const ImagePair&, const Exec&)>;
 
 struct Metric {
     std::vector<Figure> figures;
@@ -53,11 +62,18 @@ struct Metric {
     bool byDefault = false;  // without being asked for, too, where a run has the time
     int nsPerPixel = 0;      // about, on one AVX2 core: what asking for it costs
     std::string_view source;
-    // One value per figure, of one frame. Empty where every figure is of squared error, which is always there.
-    std::function<std::vector<double>(const ImagePair&, const Exec&)> measure = {};
+    // Empty where every figure is of squared error, which is always there.
+    Measure measure = {};
+    // Instead of it: what the reference alone decides is computed here, once for all pictures that are held against it.
+    // The Measure keeps of the reference what it needs, and takes pairs with it in the precision that `exec` has here.
+    // Several threads may call it.
+    std::function<Measure(const ReferencePicture&, const Exec&)> prepare = {};
     // Of a sequence: its frames are watched in order, and its figures are those of all of them together instead of
     // means.
     std::function<std::unique_ptr<SequenceReference>(const SequenceSetting&)> watch = {};
+    Measure against(const ReferencePicture& reference, const Exec& exec) const {
+        return prepare ? prepare(reference, exec) : measure;
+    }
     bool isPossible(const ImagePair& images) const {
         return space == ColourSpace::encoded || (images.testLinear && images.referenceLinear);
     }

@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
 
 #include "metrics/metric.h"
@@ -15,17 +16,25 @@ double inOrder(const std::vector<double>& v) { return std::accumulate(v.begin(),
 // Rows per block of the windowed kernels: each block repeats 10 rows of the along-x pass.
 constexpr int kWindowRows = 128;
 
-double ssim(const Rgb& test, const Rgb& reference, const Exec& exec, SsimSignal signal, PlaneF* map) {
-    assert(test.width() == reference.width() && test.height() == reference.height());
-    const int w = test.width(), h = test.height();
-    if (map && (map->width() != w || map->height() != h)) *map = PlaneF(w, h);
+double ssim(const RgbIn& test, const RgbIn& reference, const PlaneF& like, const Exec& exec, SsimSignal signal,
+            PlaneF* map) {
+    const int w = like.width(), h = like.height();
+    if (map && (map->width() != w || map->height() != h)) *map = PlaneF::unset(w, h);
     std::vector<double> rows(static_cast<size_t>(h));
     const SsimArgs args{
-        view(test), view(reference), test.stride(), w, h, signal, map ? map->row(0) : nullptr, map ? map->stride() : 0,
+        test,       reference, like.stride(), w, h, signal, map ? map->row(0) : nullptr, map ? map->stride() : 0,
         rows.data()};
     runKernel(metricsKernelsFor(exec).ssim, exec, args, h, kWindowRows);
     if (map) map->fillBorder();
     return inOrder(rows) / (double(w) * h);
+}
+double ssim(const Rgb& test, const Rgb& reference, const Exec& exec, SsimSignal signal, PlaneF* map) {
+    assert(test.width() == reference.width() && test.height() == reference.height());
+    return ssim(view(test), view(reference), test.c[0], exec, signal, map);
+}
+double ssim(const PlaneF& test, const PlaneF& reference, const Exec& exec, PlaneF* map) {
+    assert(test.width() == reference.width() && test.height() == reference.height());
+    return ssim({{test.row(0)}}, {{reference.row(0)}}, test, exec, SsimSignal::red, map);
 }
 }  // namespace
 
@@ -55,14 +64,13 @@ std::vector<double> TileErrors::coarse(size_t tiles) const {
     return sums;
 }
 
-TileErrors tileErrors(const Rgb& test, const Rgb& reference, const Exec& exec) {
+TileErrors tileErrors(const Rgb& test, const Rgb& reference, const Exec& exec, std::optional<double> squares) {
     assert(test.width() == reference.width() && test.height() == reference.height());
     static_assert(TileErrors::kTilePx == kErrorTilePx);
     const int w = test.width(), h = test.height();
     const int tilesX = (w + kErrorTilePx - 1) / kErrorTilePx, tilesY = (h + kErrorTilePx - 1) / kErrorTilePx;
-    std::vector<double> tileRows(size_t(h) * size_t(tilesX)), referenceRows(static_cast<size_t>(h));
-    const SquaredErrorArgs args{view(test), view(reference), test.stride(),       w,
-                                tilesX,     tileRows.data(), referenceRows.data()};
+    std::vector<double> tileRows(size_t(h) * size_t(tilesX));
+    const SquaredErrorArgs args{view(test), view(reference), test.stride(), w, tilesX, tileRows.data()};
     runKernel(metricsKernelsFor(exec).squaredError, exec, args, h);
 
     TileErrors errors;
@@ -75,8 +83,15 @@ TileErrors tileErrors(const Rgb& test, const Rgb& reference, const Exec& exec) {
             errors.sum[i] += tileRows[size_t(y) * size_t(tilesX) + size_t(tile)];
             errors.values[i] += 3.0 * (std::min(w, (tile + 1) * kErrorTilePx) - tile * kErrorTilePx);
         }
-    errors.referenceSum = inOrder(referenceRows);
+    errors.referenceSum = squares ? *squares : sumOfSquares(reference, exec);
     return errors;
+}
+
+double sumOfSquares(const Rgb& image, const Exec& exec) {
+    std::vector<double> rows(static_cast<size_t>(image.height()));
+    const SquaresArgs args{view(image), image.stride(), image.width(), rows.data()};
+    runKernel(metricsKernelsFor(exec).squares, exec, args, image.height());
+    return inOrder(rows);
 }
 
 SquaredError squaredError(const Rgb& test, const Rgb& reference, const Exec& exec) {
@@ -97,14 +112,26 @@ double relMse(const Rgb& test, const Rgb& reference, const Exec& exec) {
     return inOrder(rows) / (3.0 * test.width() * test.height());
 }
 
-double ssimLuma(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map) {
-    return ssim(test, reference, exec, SsimSignal::luma, map);
+PlaneF pictureLuma(const Rgb& encoded, const Exec& exec) {
+    PlaneF out = PlaneF::unset(encoded.width(), encoded.height());
+    const LumaArgs args{view(encoded), out.stride(), encoded.width(), out.row(0)};
+    runKernel(metricsKernelsFor(exec).luma, exec, args, encoded.height());
+    out.fillBorder();
+    return out;
 }
-double ssimValid(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map) {
+
+double ssimLuma(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map, KnownLuma known) {
+    // The luma of doubles is no plane's.
+    if (exec.precision == Precision::oracle) return ssim(test, reference, exec, SsimSignal::luma, map);
+    const PlaneF ofTest = known.test ? PlaneF() : pictureLuma(test, exec),
+                 ofReference = known.reference ? PlaneF() : pictureLuma(reference, exec);
+    return ssim(known.test ? *known.test : ofTest, known.reference ? *known.reference : ofReference, exec, map);
+}
+double ssimValid(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map, KnownLuma known) {
     constexpr int kReach = 5;
     PlaneF own;
     PlaneF& all = map ? *map : own;
-    const double everywhere = ssimLuma(test, reference, exec, &all);
+    const double everywhere = ssimLuma(test, reference, exec, &all, known);
     if (std::min(all.width(), all.height()) <= 2 * kReach) return everywhere;
     double sum = 0;
     for (int y = kReach; y < all.height() - kReach; y++)
@@ -153,33 +180,49 @@ Metric relMseMetric() {
         }};
 }
 namespace {
-Metric ssimMetric(Figure figure, bool always, int nsPerPixel,
-                  double (*measure)(const Rgb&, const Rgb&, const Exec&, PlaneF*)) {
+Metric ssimMetric(Figure figure, int nsPerPixel) {
     figure.form = FigureForm::similarity;
     figure.higherIsBetter = true;
-    return {.figures = {figure},
-            .always = always,
-            .nsPerPixel = nsPerPixel,
-            .source = "conventions 13.2",
-            .measure = [measure](const ImagePair& i, const Exec& exec) {
-                return std::vector{measure(i.testEncoded, i.referenceEncoded, exec, nullptr)};
-            }};
+    return {.figures = {figure}, .nsPerPixel = nsPerPixel, .source = "conventions 13.2"};
+}
+Measure ofColours(double (*measure)(const Rgb&, const Rgb&, const Exec&, PlaneF*)) {
+    return [measure](const ImagePair& i, const Exec& exec) {
+        return std::vector{measure(i.testEncoded, i.referenceEncoded, exec, nullptr)};
+    };
+}
+// Nothing more of a reference serves all pictures: the kernel filters the sum and the difference of a pair.
+std::function<Measure(const ReferencePicture&, const Exec&)> withLuma(double (*measure)(const Rgb&, const Rgb&,
+                                                                                        const Exec&, PlaneF*,
+                                                                                        KnownLuma)) {
+    return [measure](const ReferencePicture& r, const Exec& e) -> Measure {
+        const auto luma = std::make_shared<const PlaneF>(pictureLuma(r.encoded, e));
+        return [measure, luma](const ImagePair& i, const Exec& exec) {
+            return std::vector{measure(i.testEncoded, i.referenceEncoded, exec, nullptr, {i.testLuma, luma.get()})};
+        };
+    };
 }
 }  // namespace
 Metric ssimLumaMetric() {
-    return ssimMetric({"ssimLuma", "SSIM", "structural similarity of luma 601"}, true, 5, ssimLuma);
+    Metric m = ssimMetric({"ssimLuma", "SSIM", "structural similarity of luma 601"}, 5);
+    m.always = true;
+    m.prepare = withLuma(ssimLuma);
+    return m;
 }
 Metric ssimValidMetric() {
-    return ssimMetric({"ssimValid", "SSIM valid", "SSIM of luma 601, windows within the picture alone"}, false, 7,
-                      ssimValid);
+    Metric m = ssimMetric({"ssimValid", "SSIM valid", "SSIM of luma 601, windows within the picture alone"}, 7);
+    m.prepare = withLuma(ssimValid);
+    return m;
 }
 Metric ssimRgbMetric() {
-    Metric m = ssimMetric({"ssimRgb", "SSIM RGB", "SSIM, mean over channels"}, false, 12, ssimRgb);
+    Metric m = ssimMetric({"ssimRgb", "SSIM RGB", "SSIM, mean over channels"}, 12);
     m.byDefault = true;
+    m.measure = ofColours(ssimRgb);
     return m;
 }
 Metric ssimMatlab3DMetric() {
-    return ssimMetric({"ssimMatlab3D", "SSIM 3D", "SSIM as MATLAB filters an RGB array"}, false, 20, ssimMatlab3D);
+    Metric m = ssimMetric({"ssimMatlab3D", "SSIM 3D", "SSIM as MATLAB filters an RGB array"}, 20);
+    m.measure = ofColours(ssimMatlab3D);
+    return m;
 }
 
 void dither8(Rgb& encoded, int frame, const Exec& exec) {

@@ -4,6 +4,7 @@
 // the instruction set. NaN in an image gives a NaN figure: nothing is skipped. (The display encoding maps NaN to 0, so
 // encoded images hold none.)
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "image/plane.h"
@@ -41,14 +42,23 @@ struct TileErrors {
     // Sums over tiles of `tiles` times the side.
     std::vector<double> coarse(size_t tiles) const;
 };
-TileErrors tileErrors(const Rgb& test, const Rgb& reference, const Exec& exec);
+// `squares`: sumOfSquares(reference), where it is known.
+TileErrors tileErrors(const Rgb& test, const Rgb& reference, const Exec& exec, std::optional<double> squares = {});
+double sumOfSquares(const Rgb& image, const Exec& exec);  // over pixels and channels
+
+// BT.601, of encoded images. Border filled.
+PlaneF pictureLuma(const Rgb& encoded, const Exec& exec);
+// Where somebody has it already.
+struct KnownLuma {
+    const PlaneF *test = nullptr, *reference = nullptr;
+};
 
 // SSIM of encoded images: 11x11 Gaussian, sigma 1.5, replicated border, variances about the local mean
 // (conventions 13.2). Each returns the mean over all pixels and writes the per-pixel map when `map` is given.
-double ssimLuma(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr);  // BT.601 luma
+double ssimLuma(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr, KnownLuma known = {});
 // Of luma, over the windows that lie within the picture: the border is not extended, 5 px around it are left out. In a
 // picture that holds none, over all pixels.
-double ssimValid(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr);
+double ssimValid(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr, KnownLuma known = {});
 double ssimRgb(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr);  // mean over channels
 // As MATLAB treats an M x N x 3 array: a volume, filtered across the channels too (replicated). For comparison only.
 double ssimMatlab3D(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map = nullptr);

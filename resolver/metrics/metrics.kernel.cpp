@@ -8,9 +8,17 @@ namespace AA_ARCH {
 using namespace aa;
 
 template <class R>
+__attribute__((flatten)) void pictureLumaRows(const LumaArgs& a, int y0, int y1) {
+    for (int y = y0; y < y1; y++)
+        for (int x = 0; x < a.width; x += N<R>) {
+            const long o = long(y) * a.stride + x;
+            store(luma601(vec3<R>(load<R>(a.in.c[0] + o), load<R>(a.in.c[1] + o), load<R>(a.in.c[2] + o))), a.out + o);
+        }
+}
+
+template <class R>
 __attribute__((flatten)) void squaredErrorRows(const SquaredErrorArgs& a, int y0, int y1) {
-    for (int y = y0; y < y1; y++) {
-        Strands<R> reference;
+    for (int y = y0; y < y1; y++)
         for (int tile = 0; tile < a.tilesX; tile++) {
             Strands<R> error;
             const int begin = tile * kErrorTilePx, tileEnd = begin + kErrorTilePx,
@@ -18,13 +26,24 @@ __attribute__((flatten)) void squaredErrorRows(const SquaredErrorArgs& a, int y0
             for (int c = 0; c < 3; c++)
                 for (int x = begin; x < end; x += N<R>) {
                     const long o = long(y) * a.stride + x;
-                    const R r = load<R>(a.reference.c[c] + o), d = load<R>(a.test.c[c] + o) - r;
+                    const R d = load<R>(a.test.c[c] + o) - load<R>(a.reference.c[c] + o);
                     error.add(d * d, x, end - x);
-                    reference.add(r * r, x, end - x);
                 }
             a.tileRows[long(y) * a.tilesX + tile] = error.total();
         }
-        a.referenceRows[y] = reference.total();
+}
+// In the order of tiles.
+template <class R>
+__attribute__((flatten)) void squaresRows(const SquaresArgs& a, int y0, int y1) {
+    for (int y = y0; y < y1; y++) {
+        Strands<R> sum;
+        for (int begin = 0; begin < a.width; begin += kErrorTilePx)
+            for (int c = 0; c < 3; c++)
+                for (int x = begin; x < begin + kErrorTilePx && x < a.width; x += N<R>) {
+                    const R v = load<R>(a.image.c[c] + long(y) * a.stride + x);
+                    sum.add(v * v, x, a.width - x);
+                }
+        a.rows[y] = sum.total();
     }
 }
 
@@ -258,5 +277,6 @@ __attribute__((flatten)) void ditherRows(const DitherArgs& a, int y0, int y1) {
 }
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::MetricsKernels, metricsKernels) = {AA_ROWS(squaredErrorRows), AA_ROWS(relativeErrorRows),
-                                                       AA_ROWS(ssimRows), AA_ROWS(ditherRows)};
+AA_DEFINE_TABLE(aa::MetricsKernels, metricsKernels) = {AA_ROWS(pictureLumaRows), AA_ROWS(squaredErrorRows),
+                                                       AA_ROWS(squaresRows),     AA_ROWS(relativeErrorRows),
+                                                       AA_ROWS(ssimRows),        AA_ROWS(ditherRows)};

@@ -10,8 +10,17 @@ struct SquaredErrorArgs {
     RgbIn test, reference;
     int stride, width;
     int tilesX;
-    double* tileRows;       // [height][tilesX]: sums of (T-R)^2 of one row of each tile
-    double* referenceRows;  // [height]: sums of R^2
+    double* tileRows;  // [height][tilesX]: sums of (T-R)^2 of one row of each tile
+};
+struct SquaresArgs {
+    RgbIn image;
+    int stride, width;
+    double* rows;  // [height]: sums of squares
+};
+struct LumaArgs {
+    RgbIn in;
+    int stride, width;
+    float* out;  // a plane of the same stride; BT.601
 };
 struct RelativeErrorArgs {
     RgbIn test, reference;
@@ -34,7 +43,9 @@ struct DitherArgs {
     uint32_t frame;
 };
 struct MetricsKernels {
+    RowKernel<LumaArgs> luma;
     RowKernel<SquaredErrorArgs> squaredError;
+    RowKernel<SquaresArgs> squares;
     RowKernel<RelativeErrorArgs> relativeError;
     RowKernel<SsimArgs> ssim;
     RowKernel<DitherArgs> dither;

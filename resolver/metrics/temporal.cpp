@@ -21,12 +21,6 @@ void fit(PlaneU& p, int w, int h) {
 void fit(Rgb& p, int w, int h) {
     if (p.width() != w || p.height() != h) p = Rgb(w, h);
 }
-void luma(const Rgb& encoded, const Exec& exec, PlaneF& out) {
-    fit(out, encoded.width(), encoded.height());
-    const PictureLumaArgs args{view(encoded), out.stride(), encoded.width(), out.row(0)};
-    runKernel(temporalMetricKernelsFor(exec).luma, exec, args, encoded.height());
-    out.fillBorder();
-}
 // Two sums over the rows of `area` in a fixed order, whatever the number of threads.
 template <class Args>
 std::array<double, 2> sumRows(const RowKernel<Args>& kernel, const Exec& exec, const Window& area, Args args) {
@@ -77,7 +71,7 @@ void TemporalScene::advance(const Frame& frame, const Rgb* truthEncoded, const E
     if (static_) return;
 
     std::swap(luma_, previousLuma_);
-    if (truth_) luma(*truth_, exec, luma_);
+    if (truth_) luma_ = pictureLuma(*truth_, exec);
     if (frame.motionXPx.empty() || frame.depthView.empty() || frame.objectId.empty()) return;
     current_ = 1 - current_;
     for (auto& a : age_) fit(a, width_, height_);
@@ -114,8 +108,10 @@ void TemporalScene::followSurfaces(const Frame& frame, const Exec& exec) {
     fit(qx_, width_, height_), fit(qy_, width_, height_);
     const PlaneU& oldAge = age_[1 - current_];
     const Rgb& oldStale = stale_[1 - current_];
+    trail_.resize(size_t(height_));
     forRows(exec, height_, [&](int y0, int y1) {
-        for (int y = y0; y < y1; y++)
+        for (int y = y0; y < y1; y++) {
+            trail_[size_t(y)].clear();
             for (int x = 0; x < width_; x++) {
                 const float px = float(x) + 0.5f - frame.motionXPx.at(x, y),
                             py = float(y) + 0.5f - frame.motionYPx.at(x, y);
@@ -142,14 +138,17 @@ void TemporalScene::followSurfaces(const Frame& frame, const Exec& exec) {
                     for (size_t c = 0; c < 3; c++) stale[c] = oldStale.c[c].at(nx, ny);
                 }
                 age_[current_].at(x, y) = age;
+                if (age > 0) trail_[size_t(y)].push_back(x);
                 for (size_t c = 0; c < 3; c++) stale_[current_].c[c].at(x, y) = stale[c];
                 qx_.at(x, y) = seen ? px : kNan;
                 qy_.at(x, y) = py;
             }
+        }
     });
 }
 
-void TemporalJudge::add(const TemporalScene& scene, const Rgb& encoded, const Exec& exec, std::optional<double> mse) {
+void TemporalJudge::add(const TemporalScene& scene, const Rgb& encoded, const Exec& exec, std::optional<double> mse,
+                        PlaneF y) {
     area_ = region_.value_or(Window{0, 0, scene.width(), scene.height()});
     const bool counts = seen_++ >= warmup_;
     latest_ = {};
@@ -163,15 +162,14 @@ void TemporalJudge::add(const TemporalScene& scene, const Rgb& encoded, const Ex
         psnr_.push_back(psnr(*mse));
         if (counts) squaredError_ += *mse, framesWithTruth_++;
     }
-    PlaneF y;
-    luma(encoded, exec, y);
+    if (y.empty()) y = pictureLuma(encoded, exec);
     const bool hasPrevious = hasPrevious_ && scene.framesSinceReset() > 0;
     if (counts && scene.isStatic()) addStatic(y, hasPrevious, exec);
     if (counts && scene.alongMotion()) {
         if (scene.hasTruthStep() && hasPrevious) addFlicker(scene, y, exec);
         if (truth) addTrail(scene, encoded);
     }
-    std::swap(previousLuma_, y);
+    previousLuma_ = std::move(y);
     hasPrevious_ = true;
 }
 
@@ -202,15 +200,14 @@ void TemporalJudge::addFlicker(const TemporalScene& scene, const PlaneF& y, cons
     latest_.flickerSquares = sums[0], latest_.flickerPixels = sums[1];
 }
 
-// Few pixels lie on a trail: their rows are looked through one by one.
 void TemporalJudge::addTrail(const TemporalScene& scene, const Rgb& encoded) {
     const Rgb& truth = *scene.truth();
     TrailSums frame;
     for (int y = area_.y; y < area_.y + area_.height; y++) {
         TrailSums row;
         const uint32_t* const ages = scene.age().row(y);
-        for (int x = area_.x; x < area_.x + area_.width; x++) {
-            if (ages[x] == 0) continue;
+        for (const int x : scene.trail(y)) {
+            if (x < area_.x || x >= area_.x + area_.width) continue;
             double squares = 0, along = 0, norm = 0;
             for (size_t c = 0; c < 3; c++) {
                 const double r = double(truth.c[c].at(x, y)), e = double(encoded.c[c].at(x, y)) - r;

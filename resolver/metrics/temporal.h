@@ -51,8 +51,10 @@ class TemporalScene {
     bool hasTruthStep() const { return truthStep_; }   // truthStep() holds
     const PlaneF& qx() const { return qx_; }           // previous position, px; NaN where not valid
     const PlaneF& qy() const { return qy_; }
-    const PlaneF& truthStep() const { return step_; }      // D_R
-    const PlaneU& age() const { return age_[current_]; }   // 1..16 on the trail, else 0
+    const PlaneF& truthStep() const { return step_; }     // D_R
+    const PlaneU& age() const { return age_[current_]; }  // 1..16 on the trail, else 0
+    // The columns of row y that are on the trail, in order: few, and the same for all methods.
+    const std::vector<int>& trail(int y) const { return trail_[size_t(y)]; }
     const Rgb& stale() const { return stale_[current_]; }  // O, where age() > 0; NaN when it is not known
 
   private:
@@ -66,6 +68,7 @@ class TemporalScene {
     PlaneF luma_, previousLuma_, qx_, qy_, step_, previousDepth_;
     PlaneU previousId_, age_[2];
     Rgb stale_[2];
+    std::vector<std::vector<int>> trail_;
     size_t current_ = 0;
 };
 
@@ -92,8 +95,9 @@ class TemporalJudge {
   public:
     explicit TemporalJudge(int warmup, std::optional<Window> region = {}) : warmup_(warmup), region_(region) {}
     // After scene.advance() for the same frame. `encoded` has a filled border; `mse`: its squared error against the
-    // truth, of the region where there is one, if that is known.
-    void add(const TemporalScene& scene, const Rgb& encoded, const Exec& exec, std::optional<double> mse = {});
+    // truth, of the region where there is one, if that is known; `luma`: its pictureLuma(), or empty.
+    void add(const TemporalScene& scene, const Rgb& encoded, const Exec& exec, std::optional<double> mse = {},
+             PlaneF luma = {});
     TemporalMetrics result() const;
     const TemporalFrame& latest() const { return latest_; }  // zeros during the warm-up
 

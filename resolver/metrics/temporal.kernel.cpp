@@ -5,15 +5,6 @@
 namespace AA_ARCH {
 using namespace aa;
 
-template <class R>
-__attribute__((flatten)) void pictureLumaRows(const PictureLumaArgs& a, int y0, int y1) {
-    for (int y = y0; y < y1; y++)
-        for (int x = 0; x < a.width; x += N<R>) {
-            const long o = long(y) * a.stride + x;
-            store(luma601(vec3<R>(load<R>(a.in.c[0] + o), load<R>(a.in.c[1] + o), load<R>(a.in.c[2] + o))), a.out + o);
-        }
-}
-
 // Position (x, y) in px inside [0, W] x [0, H]; the border is filled, so the taps need no clamp. A tap of weight 0 is
 // not read into the result: it may be NaN.
 template <class R>
@@ -82,5 +73,4 @@ __attribute__((flatten)) void spreadRows(const SpreadArgs& a, int y0, int y1) {
 }
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::TemporalMetricKernels, temporalMetricKernels) = {AA_ROWS(pictureLumaRows), AA_ROWS(stepRows),
-                                                                     AA_ROWS(spreadRows)};
+AA_DEFINE_TABLE(aa::TemporalMetricKernels, temporalMetricKernels) = {AA_ROWS(stepRows), AA_ROWS(spreadRows)};

@@ -3,11 +3,6 @@
 
 namespace aa {
 
-struct PictureLumaArgs {
-    RgbIn in;
-    int stride, width;
-    float* out;  // a plane of the same stride; BT.601
-};
 // Planes of one stride; pixel (0,0). Columns [first, end) count.
 struct StepArgs {
     const float *luma, *previous;  // now and one frame ago, its border filled
@@ -25,7 +20,6 @@ struct SpreadArgs {
     double* rows = nullptr;  // [height][2]: sums of |luma - previous| and of its square
 };
 struct TemporalMetricKernels {
-    RowKernel<PictureLumaArgs> luma;
     RowKernel<StepArgs> step;
     RowKernel<SpreadArgs> spread;
 };

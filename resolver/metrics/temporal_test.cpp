@@ -148,7 +148,8 @@ TEST(TemporalMetrics, SameFiguresEverywhere) {
                 Rgb image = truths[size_t(n)];
                 for (int x = 0; x < kW; x++) image.c[0].at(x, 3) += 0.01f * float((x * 7 + n * 5) % 11);
                 image.fillBorder();
-                judge.add(scene, image, exec);
+                // Its luma is told, or not.
+                judge.add(scene, image, exec, {}, exec.parallel ? pictureLuma(image, exec) : PlaneF());
             }
             (isStatic ? still : moving).push_back(judge.result());
         }

@@ -120,7 +120,7 @@ struct RunOnDisk {
             Rgb encoded;
             encode(image, {}, {}, encoded);
             if (truth)
-                f.metrics = measure(encoded, &image, makeReference(exact, exact, {}, {}), {}, {}, errors[size_t(k)]);
+                f.metrics = measure({encoded, &image}, makeReference(exact, exact, {}, {}), {}, {}, errors[size_t(k)]);
             m.frames.push_back(f);
             run.methods.push_back(m);
         }

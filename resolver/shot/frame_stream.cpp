@@ -26,26 +26,25 @@ FrameStream::~FrameStream() {
 
 void FrameStream::startDecoding() {
     if (started_ == indices_.size()) return;
-    pending_ = std::async(whenToDecode(),
-                          [this, index = indices_[started_], last = Last{centre_, truth_, centreFile_, truthFile_}] {
-                              return decode(index, last);
-                          });
+    const size_t index = indices_[started_];
+    const FrameEntry& entry = reader_.manifest().frames.at(index);
+    Shared shared;
+    if (entry.centre == centreFile_) shared.centre = centre_;
+    if (entry.truth == truthFile_) shared.truth = truth_;
+    pending_ = std::async(whenToDecode(), [this, index, shared] { return decode(index, shared); });
     started_++;
 }
 
-FrameStream::Decoded FrameStream::decode(size_t index, const Last& last) const {
+FrameStream::Decoded FrameStream::decode(size_t index, const Shared& shared) const {
     const FrameEntry& entry = reader_.manifest().frames.at(index);
     const Trace::Span span(trace_, "decode", std::to_string(entry.frame));
     Decoded d;
     d.frame = reader_.read(index, wanted_, &d.counts);
     if (!wantedOfCentre_.empty())
-        d.centre = last.centre && entry.centre == last.centreFile
-                       ? last.centre
-                       : std::make_shared<Frame>(reader_.readCentre(index, wantedOfCentre_, &d.counts));
+        d.centre = shared.centre ? shared.centre
+                                 : std::make_shared<Frame>(reader_.readCentre(index, wantedOfCentre_, &d.counts));
     if (withTruth_ && !entry.truth.empty())
-        d.truth = last.truth && entry.truth == last.truthFile
-                      ? last.truth
-                      : std::make_shared<const Truth>(*reader_.readTruth(index, &d.counts));
+        d.truth = shared.truth ? shared.truth : std::make_shared<const Truth>(*reader_.readTruth(index, &d.counts));
     return d;
 }
 

@@ -23,12 +23,13 @@ class FrameStream {
 
     // The next frame; nullopt after the last. Ends after an error.
     std::optional<Frame> next();
-    // The centre-sampled frame of the same instant; null when nothing of it was wanted. Frames that share a file (a
-    // static shot) share one Frame. The caller may add to it (colorEncoded).
-    const std::shared_ptr<Frame>& centre() const { return centre_; }
-    // Truth of the frame that next() returned; null when it has none or none was asked for. Frames that share a truth
-    // file (a static shot) share one Truth.
-    const std::shared_ptr<const Truth>& truth() const { return truth_; }
+    // What belongs to the frame that next() returned, once; afterwards the caller alone has it, unless the next frame
+    // is in the same file (a static shot): these share it.
+    // The centre-sampled frame of the same instant; null when nothing of it was wanted. The caller may add to it
+    // (colorEncoded).
+    std::shared_ptr<Frame> takeCentre() { return std::move(centre_); }
+    // Truth; null when the frame has none or none was asked for.
+    std::shared_ptr<const Truth> takeTruth() { return std::move(truth_); }
     // What the sanitiser replaced in all frames returned so far.
     const SanitiseCounts& counts() const { return counts_; }
 
@@ -40,13 +41,12 @@ class FrameStream {
         SanitiseCounts counts;
     };
     void startDecoding();
-    // What the last frame holds, so that a shared file is decoded once.
-    struct Last {
+    // What the last frame has of the next one's files, so that they are decoded once; else null.
+    struct Shared {
         std::shared_ptr<Frame> centre;
         std::shared_ptr<const Truth> truth;
-        std::string centreFile, truthFile;
     };
-    Decoded decode(size_t index, const Last& last) const;
+    Decoded decode(size_t index, const Shared& shared) const;
 
     const ShotReader& reader_;
     std::vector<size_t> indices_;

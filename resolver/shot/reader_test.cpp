@@ -417,11 +417,15 @@ TEST_F(ReaderTest, StreamDeliversInOrderAndSharesTheTruth) {
     const ShotReader reader(folder);
     FrameStream stream(reader, {0, 2, 1}, Pass::color | Pass::depth, true);
     std::vector<int> numbers;
-    std::shared_ptr<const Truth> first;
+    std::shared_ptr<const Truth> first, last;
     while (const auto frame = stream.next()) {
         numbers.push_back(frame->number);
         EXPECT_TRUE(frame->colorLinear.samePixels(fullFrame(frame->number).colorLinear));
-        if (!first) first = stream.truth();
+        const auto truth = stream.takeTruth();
+        EXPECT_EQ(stream.takeTruth(), nullptr) << "it has been taken";
+        EXPECT_TRUE(!last || truth == last) << "they are in one file";
+        last = truth;
+        if (!first) first = truth;
     }
     EXPECT_EQ(numbers, (std::vector<int>{1, 3, 2}));
     EXPECT_TRUE(first->a.samePixels(rgb(1)));

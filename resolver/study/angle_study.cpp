@@ -51,7 +51,7 @@ class Pictures {
         RunningMethod running(spec, shotInfo(shot.manifest()));
         for (size_t i = 0; i < (jittered ? size_t(o_.frames) : 1); i++)
             running.resolve(frame(shot, subsamples, i, jittered), {}, exec_);
-        return squaredError(running.outEncoded, truth_);
+        return squaredError(running.shown(), truth_);
     }
 
   private:

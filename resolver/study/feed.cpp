@@ -16,10 +16,11 @@ void Feed::stop() {
 std::optional<Feed::Item> Feed::make() {
     auto frame = stream_.next();
     if (!frame) return {};
-    Item item{std::make_shared<Frame>(std::move(*frame)), stream_.centre(), stream_.truth()};
+    Item item{std::make_shared<Frame>(std::move(*frame)), stream_.takeCentre(), stream_.takeTruth()};
     prepare_(index_++, *item.frame);
-    if (item.centre && item.centre != centre_) prepare_(-1, *item.centre);
-    if (device_ && item.centre) device_->share(*item.centre, item.centre != centre_);
+    const bool isNew = item.centre && item.centre != centre_.lock();
+    if (isNew) prepare_(-1, *item.centre);
+    if (device_ && item.centre) device_->share(*item.centre, isNew);
     if (device_) device_->share(*item.frame);
     centre_ = item.centre;
     return item;

@@ -34,7 +34,7 @@ class Feed {
     Prepare prepare_;
     gpu::Session* device_;
     int index_ = 0;
-    std::shared_ptr<Frame> centre_;  // of the last frame; shared by those of a static shot, and prepared once
+    std::weak_ptr<Frame> centre_;  // of the last frame; shared by those of a static shot, and prepared once
     std::future<std::optional<Item>> upcoming_;
 };
 

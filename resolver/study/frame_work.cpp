@@ -1,6 +1,7 @@
 #include "study/frame_work.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "gpu/method.h"
 #include "shot/pass_table.h"
@@ -42,24 +43,49 @@ bool FrameWork::isWritten(size_t i) const {
     return judge_.reference() && (!manifest_.isStatic || i + 1 == options_.frames.size());
 }
 
-void FrameWork::operator()(const Feed::Item& item, size_t i) {
+void FrameWork::operator()(Feed::Item& item, size_t i) {
     if (reference_)
         work(*reference_, item, i);
     else
         lookAtTruth(item, i);
-    std::vector<size_t> others;
-    for (size_t k = 0; k < methods_.size(); k++)
-        if (k != reference_) others.push_back(k);
+    const Order others = order();
+    std::atomic<size_t> stillReading = others.readers;
     // A device does one thing after the other.
     const Exec side{.parallel = options_.exec.parallel && !options_.device};
-    sideBySide(side, others.size(), [&](size_t n) { work(others[n], item, i); });
+    sideBySide(side, others.methods.size(), [&](size_t n) {
+        work(others.methods[n], item, i);
+        if (n < others.readers && --stillReading == 0) forgetSubSamples(item, i);
+    });
     judge_.judgeRejected(methods_, results_.methods);
     for (RunningMethod& m : methods_) m.forgetPicture();
 }
 
-void FrameWork::lookAtTruth(const Feed::Item& item, size_t i) {
+FrameWork::Order FrameWork::order() const {
+    Order o;
+    for (size_t k = 0; k < methods_.size(); k++)
+        if (k != reference_) o.methods.push_back(k);
+    const auto readsSubSamples = [&](size_t k) {
+        const PassSet passes = methods_[k].spec.passes();
+        return passes.has(Pass::subsamples) || passes.has(Pass::subsampleColor);
+    };
+    const auto others = std::stable_partition(o.methods.begin(), o.methods.end(), readsSubSamples);
+    o.readers = size_t(others - o.methods.begin());
+    return o;
+}
+
+// They are most of a frame's memory, which the next one takes that is being decoded.
+void FrameWork::forgetSubSamples(Feed::Item& item, size_t i) const {
+    if (options_.device) return;  // it shares them
+    item.frame->subSamples.clear();
+    const auto file = [&](size_t n) { return manifest_.frames[options_.frames[n]].centre; };
+    const bool isNeeded = i + 1 < options_.frames.size() && file(i) == file(i + 1);  // it is the next one's, too
+    if (item.centre && !isNeeded) item.centre->subSamples.clear();
+}
+
+void FrameWork::lookAtTruth(Feed::Item& item, size_t i) {
     const Trace::Span truth(options_.trace.get(), "truth");
     judge_.look(*item.frame, item.truth, nullptr);
+    item.truth.reset();
     if (!judge_.reference() || !isWritten(i)) return;
     const int number = item.frame->number;
     const std::string image = writeTruthImage(*judge_.reference(), number, options_);
@@ -76,7 +102,7 @@ ResolveSeconds FrameWork::resolve(size_t k, const Frame& input, const FrameResul
         for (size_t n = options_.frames.size(); n < kTimings; n += options_.frames.size())
             results_.methods[k].moreSeconds.push_back(method.again(input, options_.exec).processor);
     if (!timed_.empty() && isOurs) timed_[k]->resolve(input, options_.exec, unused_);
-    if (options_.protocol.eightBit) quantise8(method.outEncoded, options_.exec);
+    if (options_.protocol.eightBit) quantise8(method.changeShown(), options_.exec);
     return seconds;
 }
 

@@ -15,12 +15,19 @@ class FrameWork {
   public:
     FrameWork(const ShotReader& shot, const RunOptions& options, const InputPlan& plan, Judge& judge,
               std::vector<RunningMethod>& methods, RunResults& results);
-    // Frame `i` of the run.
-    void operator()(const Feed::Item& item, size_t i);
+    // Frame `i` of the run. Of the item, what nobody reads any more is given back.
+    void operator()(Feed::Item& item, size_t i);
 
   private:
     bool isWritten(size_t i) const;
-    void lookAtTruth(const Feed::Item& item, size_t i);
+    // The methods but the reference: those that read sub-samples first.
+    struct Order {
+        std::vector<size_t> methods;
+        size_t readers = 0;  // of sub-samples
+    };
+    Order order() const;
+    void forgetSubSamples(Feed::Item& item, size_t i) const;
+    void lookAtTruth(Feed::Item& item, size_t i);
     void work(size_t k, const Feed::Item& item, size_t i);
     ResolveSeconds resolve(size_t k, const Frame& input, const FrameResult* known);
     void writePictures(size_t k, const Frame& frame, bool isReference, FrameResult& result);

@@ -21,11 +21,11 @@ std::string writeImage(const RunningMethod& m, int frame, const RunOptions& o) {
     if (o.writePng) {
         written = (folder / frameName(frame, ".png")).string();
         if (o.dither) {
-            Rgb dithered = m.outEncoded;
+            Rgb dithered = m.shown();
             dither8(dithered, frame, o.exec);
             writePng(o.out / written, dithered);
         } else {
-            writePng(o.out / written, m.outEncoded);
+            writePng(o.out / written, m.shown());
         }
     }
     if (o.writeExr) {
@@ -49,7 +49,7 @@ void writeMaps(const RunningMethod& m, const Reference& measured, int frame, con
                const std::function<PlaneF(const MapKind&)>& sequenceMap) {
     if (o.maps.empty()) return;
     const auto& region = o.protocol.region;
-    const Rgb part = region ? cropped(m.outEncoded, *region) : Rgb();
+    const Rgb part = region ? cropped(m.shown(), *region) : Rgb();
     for (const MapKind* kind : o.maps) {
         const PlaneF values = kind->drawValues ? sequenceMap(*kind) : PlaneF();
         if (kind->drawValues && values.empty()) continue;
@@ -57,7 +57,7 @@ void writeMaps(const RunningMethod& m, const Reference& measured, int frame, con
         if (!fs::is_directory(folder)) makeWritableFolder(folder);
         writePng(folder / frameName(frame, ".png"),
                  kind->drawValues ? kind->drawValues(values)
-                                  : kind->draw(region ? part : m.outEncoded, measured.encoded, o.exec));
+                                  : kind->draw(region ? part : m.shown(), measured.encoded, o.exec));
     }
 }
 

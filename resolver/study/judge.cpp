@@ -17,14 +17,16 @@ Judge::Judge(const Manifest& manifest, const RunOptions& o, bool overTime)
       scene_(manifest.isStatic),
       overTimeOf_(o.methods.size(), TemporalJudge(temporalWarmup(o.frames.size()), o.protocol.region)) {}
 
-void Judge::lookAtTruth() {
+void Judge::lookAtTruth(const std::shared_ptr<const Truth>& truth) {
+    if (truth && truth == truth_.lock()) return;
+    truth_ = truth;
     reference_.reset();
     region_.reset();
-    if (!truth_) return;
+    if (!truth) return;
     const Protocol& p = options_.protocol;
-    reference_ = makeReference(truth_->a, truth_->b, p.display, options_.exec, p.eightBit);
+    reference_ = makeReference(truth->a, truth->b, p.display, options_.exec, p.eightBit);
     if (p.region)
-        region_ = makeReference(cropped(truth_->a, *p.region), cropped(truth_->b, *p.region), p.display, options_.exec,
+        region_ = makeReference(cropped(truth->a, *p.region), cropped(truth->b, *p.region), p.display, options_.exec,
                                 p.eightBit);
     if (p.display.transfer == Transfer::identity) {
         if (!clipped_) clipped_.emplace();
@@ -37,9 +39,9 @@ void Judge::lookAtTruth() {
 void Judge::lookAtMethod(const RunningMethod& m) {
     const Protocol& p = options_.protocol;
     reference_.emplace();
-    reference_->encoded = m.outEncoded;
+    reference_->encoded = m.shown();
     if (p.display.transfer == Transfer::identity)
-        reference_->linear = m.outEncoded;
+        reference_->linear = m.shown();
     else if (m.spec.outputSpace() == Space::linear)
         reference_->linear = m.out;
     else
@@ -57,16 +59,16 @@ void Judge::look(const Frame& frame, const std::shared_ptr<const Truth>& truth, 
     number_ = frame.number;
     reset_ = frame.reset;
     standIn_ = standIn;
-    if (standIn) {
+    if (standIn)
         lookAtMethod(*standIn);
-    } else if (truth != truth_) {
-        truth_ = truth;
-        lookAtTruth();
+    else
+        lookAtTruth(truth);
+    if (reference_) {
+        noise_ += measured().noise, withTruth_++;
+        prepare(region_ ? *region_ : *reference_, options_.measure, options_.exec, isJudged());
+        watchReference();
     }
-    if (reference_) noise_ += measured().noise, withTruth_++;
-    if (reference_) watchReference();
     if (overTime_) scene_.advance(frame, reference_ ? &reference_->encoded : nullptr, options_.exec);
-    // A static shot is judged at its last frame, as the published protocol does: there every history is longest.
     if (manifest_.isStatic) errors_.assign(errors_.size(), {});
 }
 
@@ -86,7 +88,7 @@ Rgb Judge::farthest(const RunningMethod& method, uint64_t& nonFinite) const {
     nonFinite = nonFiniteValues(method.out);
     if (nonFinite == 0 && broken) nonFinite = nonFiniteValues(*broken);
     if (nonFinite == 0 || !reference_) return {};
-    Rgb picture = method.outEncoded;
+    Rgb picture = method.shown();
     putFarthest(method.out.empty() ? nullptr : &method.out, broken, reference_->encoded, picture);
     return picture;
 }
@@ -98,6 +100,9 @@ void Judge::noLinearFigures(FrameMetrics& to) const {
         if (m.space == ColourSpace::linear && (m.always || std::find(wanted.begin(), wanted.end(), &m) != wanted.end()))
             for (const Figure& f : m.figures) to.others[f.name] = NAN;
 }
+
+// A static shot is judged at its last frame, as the published protocol does: there every history is longest.
+bool Judge::isJudged() const { return !manifest_.isStatic || seen_ == options_.frames.size(); }
 
 void Judge::watchReference() {
     if (seen_ == 1)
@@ -142,16 +147,16 @@ FrameResult Judge::judge(size_t k, const RunningMethod& method, const ResolveSec
     if (&method == standIn_) return result;
     const Rgb picture = farthest(method, result.nonFinite);
     const bool broken = !picture.empty();
-    const Rgb& encoded = broken ? picture : method.outEncoded;
+    const Rgb& encoded = broken ? picture : method.shown();
+    PlaneF luma = overTime_ ? pictureLuma(encoded, options_.exec) : PlaneF();
     if (reference_) {
-        const bool last = seen_ == options_.frames.size();
         const bool linear = method.spec.outputSpace() == Space::linear;
+        const auto& region = options_.protocol.region;
         const auto take = [&](const Rgb& shown, const Rgb& out) {
             if (known && known->metrics) return again(*known->metrics, shown, measured(), errors_[k]);
-            return measure(shown, linear && !broken ? &out : nullptr, measured(), options_.measure, options_.exec,
-                           errors_[k], !manifest_.isStatic || last);
+            return measure({shown, linear && !broken ? &out : nullptr, luma.empty() || region ? nullptr : &luma},
+                           measured(), options_.measure, options_.exec, errors_[k], isJudged());
         };
-        const auto& region = options_.protocol.region;
         const Rgb encodedPart = region ? cropped(encoded, *region) : Rgb(),
                   part = region ? cropped(method.out, *region) : Rgb();
         const Rgb &seen = region ? encodedPart : encoded, &out = region ? part : method.out;
@@ -161,7 +166,7 @@ FrameResult Judge::judge(size_t k, const RunningMethod& method, const ResolveSec
     }
     if (overTime_) {
         overTimeOf_[k].add(scene_, encoded, options_.exec,
-                           result.metrics ? std::optional(result.metrics->mse) : std::nullopt);
+                           result.metrics ? std::optional(result.metrics->mse) : std::nullopt, std::move(luma));
         if (int(seen_) > temporalWarmup(options_.frames.size())) result.temporal = overTimeOf_[k].latest();
     }
     return result;
@@ -194,7 +199,7 @@ void Judge::judgeRejected(const std::vector<RunningMethod>& methods, std::vector
                 if (mask.at(x, y) != 0)
                     for (size_t c = 0; c < 3; c++, sum.count++) {
                         const double e =
-                            double(methods[k].outEncoded.c[c].at(x, y)) - double(reference_->encoded.c[c].at(x, y));
+                            double(methods[k].shown().c[c].at(x, y)) - double(reference_->encoded.c[c].at(x, y));
                         sum.sum += e * e;
                     }
         results[k].frames.back().rejected = sum;

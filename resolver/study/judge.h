@@ -40,8 +40,9 @@ class Judge {
   private:
     FrameMetrics again(const FrameMetrics& known, const Rgb& encoded, const Reference& reference,
                        TileErrors& pool) const;
-    void lookAtTruth();
+    void lookAtTruth(const std::shared_ptr<const Truth>& truth);
     void lookAtMethod(const RunningMethod& standIn);
+    bool isJudged() const;  // whether the latest frame counts in the pooled figures
     // The method's displayed picture, with the largest difference wherever it or the reference holds no number; empty
     // where neither does, or there is no reference.
     Rgb farthest(const RunningMethod& method, uint64_t& nonFinite) const;
@@ -59,7 +60,7 @@ class Judge {
     const Manifest& manifest_;
     const RunOptions& options_;
     bool overTime_;
-    std::shared_ptr<const Truth> truth_;
+    std::weak_ptr<const Truth> truth_;             // that reference_ is made of
     std::optional<Reference> reference_, region_;  // region_: the protocol's, where it has one
     const RunningMethod* standIn_ = nullptr;
     std::vector<TileErrors> errors_;

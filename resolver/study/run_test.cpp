@@ -210,7 +210,7 @@ TEST(Study, FiguresOfARegionAreThoseOfItsPixelsAsAPicture) {
         Reference reference;
         reference.encoded = truth;
         TileErrors tiles;
-        const FrameMetrics expected = measure(test, nullptr, reference, o.measure, {}, tiles);
+        const FrameMetrics expected = measure({test}, reference, o.measure, {}, tiles);
         for (const char* figure : {"mse", "psnr", "snr", "ssimLuma", "fmagMse", "flip"})
             EXPECT_EQ(*m.frames[3].metrics->figure(figure), *expected.figure(figure)) << figure;
         EXPECT_EQ(m.tileSquares.size(), 2u);  // 35 x 20 px in tiles of 32

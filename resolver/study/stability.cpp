@@ -165,7 +165,7 @@ double stallCodes(const MethodSpec& form, const std::vector<glm::dvec2>& subSamp
     };
     for (int n = 1; n <= kBefore; n++) see(stepped, before, n, kLanes);
     for (int n = 1; n <= kSettlingFrames; n++) see(stepped, after, kBefore + n, kLanes), see(target, after, n, kDouble);
-    const Rgb shown = lookedAt(stepped.outEncoded), wanted = lookedAt(target.outEncoded);
+    const Rgb shown = lookedAt(stepped.shown()), wanted = lookedAt(target.shown());
     double sum = 0;
     forValues(wanted, [&](int x, int y, size_t c) {
         sum += std::abs(double(shown.c[c].at(x, y)) - double(wanted.c[c].at(x, y)));
@@ -182,7 +182,7 @@ double bandingCodes(const MethodSpec& form, const std::vector<glm::dvec2>& subSa
         becomeNth(f, n);
         narrow.resolve(f, f.display, kLanes), exact.resolve(f, f.display, kDouble);
     }
-    const Rgb found = lookedAt(narrow.outEncoded), wanted = lookedAt(exact.outEncoded);
+    const Rgb found = lookedAt(narrow.shown()), wanted = lookedAt(exact.shown());
     Rgb shown = clean;
     forValues(shown,
               [&](int x, int y, size_t c) { shown.c[c].at(x, y) += found.c[c].at(x, y) - wanted.c[c].at(x, y); });
@@ -238,8 +238,8 @@ Recovery recovery(const MethodSpec& method, int longFrames) {
         const Frame& f = nth(period, kFilled + n);
         spared.resolve(f, f.display, kLanes), struck.resolve(f, f.display, kLanes);
         bool differs = false;
-        forValues(spared.outEncoded, [&](int x, int y, size_t c) {
-            const double d = double(struck.outEncoded.c[c].at(x, y)) - double(spared.outEncoded.c[c].at(x, y));
+        forValues(spared.shown(), [&](int x, int y, size_t c) {
+            const double d = double(struck.shown().c[c].at(x, y)) - double(spared.shown().c[c].at(x, y));
             differs |= !(std::abs(d) <= 0.5 / 255);
         });
         if (differs) r.frames = n;

@@ -126,7 +126,7 @@ size_t bytesOf(const MethodSpec& spec, const ShotReader& shot, const RunOptions&
         bytes = std::max(bytes, probe[0].method->stateBytes());
     }
     constexpr size_t kJudgePlanes = 2;  // metrics/temporal.h keeps a mean and a spread, or the last luma
-    return bytes + probe[0].out.bytes() + probe[0].outEncoded.bytes() + kJudgePlanes * probe[0].out.c[0].bytes();
+    return bytes + probe[0].out.bytes() + probe[0].shown().bytes() + kJudgePlanes * probe[0].out.c[0].bytes();
 }
 }  // namespace
 

@@ -48,6 +48,11 @@ BENCHMARK_CAPTURE(measure, ssimLuma, [](auto& t, auto& r, auto& e) { return ssim
 BENCHMARK_CAPTURE(measure, ssimRgb, [](auto& t, auto& r, auto& e) { return ssimRgb(t, r, e); });
 BENCHMARK_CAPTURE(measure, ssimMatlab3D, [](auto& t, auto& r, auto& e) { return ssimMatlab3D(t, r, e); });
 BENCHMARK_CAPTURE(measure, flip, [](auto& t, auto& r, auto& e) { return flip(t, r, e); });
+// Of a reference that other pictures were held against before, as in a run.
+BENCHMARK_CAPTURE(measure, flipAgain, [](auto& t, auto& r, auto& e) {
+    static const FlipReference reference(r, FlipReference::Values::encoded, e);
+    return reference.flip(t, e);
+});
 BENCHMARK_CAPTURE(measure, hdrFlip, [](auto& t, auto& r, auto& e) { return hdrFlip(t, r, e); });
 // A frame of a sequence at 30 per second: the reference's part, which all methods share, and a method's.
 BENCHMARK_CAPTURE(measure, cvvdp, [](auto& t, auto& r, auto& e) {

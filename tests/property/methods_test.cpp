@@ -92,7 +92,7 @@ TEST_P(EveryMethod, DisplayedValuesAreOneSpace) {
         for (size_t c = 0; c < 3; c++)
             for (int y = 0; y < 24; y++)
                 for (int x = 0; x < 40; x++)
-                    ASSERT_NEAR(s.running.outEncoded.c[c].at(x, y),
+                    ASSERT_NEAR(s.running.shown().c[c].at(x, y),
                                 c == 0   ? 0.25f
                                 : c == 1 ? 0.5f
                                          : 0.125f,

@@ -64,7 +64,7 @@ Rgb filtered(const std::string& id, const Rgb& encoded) {
     f.colorEncoded.fillBorder();
     decode(f.colorEncoded, {}, {}, f.colorLinear);
     s.running.resolve(f, {}, {});
-    return s.running.outEncoded;
+    return s.running.shown();
 }
 // Share of pixels of the pictures that end otherwise when the picture is transformed first.
 double asymmetry(const std::string& id, Rgb (*transform)(const Rgb&)) {

@@ -35,7 +35,7 @@ TEST(Fill, SpacesAreConverted) {
     const Frame f = temporalFrame(0, w, h, [](int x, int, int) { return x < 15 ? 0.1f : 0.8f; });
     filled.resolve(f, {}, {});
     filler.resolve(f, {}, {});
-    for (int x = 0; x < w; x++) EXPECT_NEAR(filled.outEncoded.c[0].at(x, 8), filler.outEncoded.c[0].at(x, 8), 1e-6);
+    for (int x = 0; x < w; x++) EXPECT_NEAR(filled.shown().c[0].at(x, 8), filler.shown().c[0].at(x, 8), 1e-6);
 }
 TEST(Fill, RefusesWhatCannotBeFilled) {
     EXPECT_THROW(running("fxaa311+fill=fxaa311", 8, 8), UsageError);

@@ -59,7 +59,7 @@ TEST(Uncharted, AGhostOutsideTheBoxIsClippedAway) {
             Frame f = temporalFrame(n, w, h, [&](int x, int, int) { return x / 4 == n * 2 ? 0.9f : 0.05f; });
             m.resolve(f, {}, {});
         }
-        return m.outEncoded.c[0].at(25, 8) - m.outEncoded.c[0].at(45, 8);  // the bar's place two frames ago
+        return m.shown().c[0].at(25, 8) - m.shown().c[0].at(45, 8);  // the bar's place two frames ago
     };
     EXPECT_LT(std::fabs(ghost("unchartedNoSharpen")), 1e-5f);
     EXPECT_GT(ghost("taaSimplest"), 0.05f);
