@@ -45,6 +45,7 @@ class FigureValues {
         if (at == values_.end() || at->first != name) at = values_.insert(at, {name, value});
         return at->second;
     }
+    bool operator==(const FigureValues&) const = default;
     template <class Is>
     void eraseIf(const Is& is) {
         std::erase_if(values_, is);
