@@ -84,7 +84,7 @@ TEST(Study, MethodsSideBySideGiveWhatTheyGiveAlone) {
                 for (const auto& f : m.frames) {
                     if (f.metrics) all += std::to_string(f.metrics->mse) + " " + std::to_string(f.metrics->psnr) + " ";
                     for (const auto& [name, value] : f.metrics ? f.metrics->others : FrameMetrics().others)
-                        all += name + " " + std::to_string(value) + " ";
+                        all += std::string(name) + " " + std::to_string(value) + " ";
                     all += std::to_string(f.rejected ? f.rejected->sum : -1) + "\n";
                     pictures[parallel][f.image] = *textOf(o.out / f.image);
                 }
