@@ -50,8 +50,8 @@ std::vector<Pair> pairs(Size size) {
 }
 double measuredHere(std::string_view figure, const Rgb& test, const Rgb& reference, PlaneF& map) {
     if (figure == "flip") return flip(test, reference, {}, &map);
-    const auto ssim = figure == "ssimLuma" ? ssimLuma : figure == "ssimRgb" ? ssimRgb : ssimMatlab3D;
-    return ssim(test, reference, {}, &map);
+    if (figure == "ssimLuma") return ssimLuma(test, reference, {}, &map);
+    return figure == "ssimRgb" ? ssimRgb(test, reference, {}, &map) : ssimMatlab3D(test, reference, {}, &map);
 }
 double largestDifference(const PlaneF& a, const PlaneF& b) {
     double largest = 0;

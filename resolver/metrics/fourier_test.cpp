@@ -8,19 +8,12 @@
 #include <random>
 
 #include "metrics/measure.h"
+#include "metrics/metrics_testing.h"
 
 namespace aa {
 namespace {
 using std::numbers::pi;
 
-Rgb noise(int w, int h, unsigned seed) {
-    std::mt19937 random(seed);
-    Rgb image(w, h);
-    for (auto& p : image.c)
-        for (int y = 0; y < h; y++)
-            for (int x = 0; x < w; x++) p.at(x, y) = float(random() >> 8) * 0x1p-24f;
-    return image;
-}
 // `image` plus a wave of amplitude a at (fx, fy) cycles per px.
 Rgb withWave(Rgb image, double a, double fx, double fy) {
     for (auto& p : image.c)

@@ -4,20 +4,13 @@
 
 #include <cmath>
 #include <functional>
-#include <random>
+
+#include "metrics/metrics_testing.h"
 
 namespace aa {
 namespace {
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-Rgb noise(int w, int h, unsigned seed, float lo = 0, float hi = 1) {
-    std::mt19937 random(seed);
-    Rgb image(w, h);
-    for (auto& p : image.c)
-        for (int y = 0; y < h; y++)
-            for (int x = 0; x < w; x++) p.at(x, y) = lo + (hi - lo) * float(random() >> 8) * 0x1p-24f;
-    return image;
-}
 // Smooth waves with a little noise: like an image and its anti-aliased form.
 Rgb waves(int w, int h, unsigned seed, float grain) {
     Rgb image = noise(w, h, seed, -grain, grain);
