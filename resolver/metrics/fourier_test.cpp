@@ -37,7 +37,7 @@ TEST(Fourier, AnyLengthAgreesWithTheDefinition) {
 }
 TEST(Fourier, ParsevalForAnySize) {
     for (const auto& [w, h] : {std::pair{1, 1}, {1, 9}, {16, 8}, {15, 7}, {31, 20}, {48, 27}}) {
-        const Rgb t = noise(w, h, 1), r = noise(w, h, 2);
+        const Rgb t = noisePicture(w, h, 1), r = noisePicture(w, h, 2);
         const FourierError e = fourierError(t, r, {});
         const double mse = squaredError(t, r, {}).mse;
         EXPECT_NEAR(e.fmse, mse, 1e-6 * mse) << w << "x" << h;
@@ -46,7 +46,7 @@ TEST(Fourier, ParsevalForAnySize) {
     }
 }
 TEST(Fourier, AWaveFallsIntoItsBand) {
-    const Rgb r = noise(64, 64, 3);
+    const Rgb r = noisePicture(64, 64, 3);
     const double frequencies[4][2] = {{4.0 / 64, 0}, {8.0 / 64, 8.0 / 64}, {0, 20.0 / 64}, {28.0 / 64, 28.0 / 64}};
     for (size_t b = 0; b < 4; b++) {
         const FourierError e = fourierError(withWave(r, 0.1, frequencies[b][0], frequencies[b][1]), r, {});
@@ -54,7 +54,7 @@ TEST(Fourier, AWaveFallsIntoItsBand) {
     }
 }
 TEST(Fourier, PhaseBlindAndThesisForms) {
-    const Rgb r = noise(32, 16, 4);
+    const Rgb r = noisePicture(32, 16, 4);
     Rgb moved(32, 16), shiftedDc = r;
     for (size_t c = 0; c < 3; c++)
         for (int y = 0; y < 16; y++)
@@ -68,7 +68,7 @@ TEST(Fourier, PhaseBlindAndThesisForms) {
     const FourierError dc = fourierError(shiftedDc, r, {});
     EXPECT_NEAR(dc.fmagMse, 0.0625, 1e-6);
     // The printed formula equals the mean of D(x) D(-x).
-    const Rgb t = noise(32, 16, 5);
+    const Rgb t = noisePicture(32, 16, 5);
     double mirrored = 0;
     for (size_t c = 0; c < 3; c++)
         for (int y = 0; y < 16; y++)
@@ -110,7 +110,7 @@ TEST(Fourier, FourPixelsByHand) {
     EXPECT_NEAR(*m.figure("fmagMse"), 0.25, 1e-12);
 }
 TEST(Fourier, IdenticalIsZero) {
-    const Rgb a = noise(20, 10, 6);
+    const Rgb a = noisePicture(20, 10, 6);
     EXPECT_NEAR(fourierError(a, a, {}).fmse, 0, 1e-30);
 }
 }  // namespace

@@ -13,7 +13,7 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 
 // Smooth waves with a little noise: like an image and its anti-aliased form.
 Rgb waves(int w, int h, unsigned seed, float grain) {
-    Rgb image = noise(w, h, seed, -grain, grain);
+    Rgb image = noisePicture(w, h, seed, -grain, grain);
     for (size_t c = 0; c < 3; c++)
         for (int y = 0; y < h; y++)
             for (int x = 0; x < w; x++)
@@ -60,7 +60,7 @@ const Pixel kChannel = [](const Rgb& i, int x, int y, int z) {
 
 TEST(SquaredError, AgreesWithTheDefinition) {
     for (const auto& [w, h] : {std::pair{1, 1}, {7, 3}, {31, 40}, {33, 33}, {100, 65}}) {
-        const Rgb t = noise(w, h, 1), r = noise(w, h, 2);
+        const Rgb t = noisePicture(w, h, 1), r = noisePicture(w, h, 2);
         double mse = 0, power = 0, rel = 0;
         for (size_t c = 0; c < 3; c++)
             for (int y = 0; y < h; y++)
@@ -93,7 +93,7 @@ TEST(SquaredError, PublishedTriples) {  // MSE in 8-bit units, RMSD and PSNR of 
     EXPECT_NEAR(psnr(149.271 / 65025), 26.391, 5e-4);
 }
 TEST(SquaredError, InfinitiesAndNan) {
-    const Rgb a = noise(9, 9, 3), black(9, 9);
+    const Rgb a = noisePicture(9, 9, 3), black(9, 9);
     EXPECT_EQ(psnr(squaredError(a, a, {}).mse), kInf);
     EXPECT_EQ(snr(squaredError(a, a, {})), kInf);
     EXPECT_EQ(snr(squaredError(a, black, {})), -kInf);
@@ -105,7 +105,7 @@ TEST(SquaredError, InfinitiesAndNan) {
     EXPECT_TRUE(std::isnan(ssimLuma(broken, a, {})));
 }
 TEST(SquaredError, PaddingDoesNotCount) {
-    Rgb t = noise(13, 5, 4), r = noise(13, 5, 5);
+    Rgb t = noisePicture(13, 5, 4), r = noisePicture(13, 5, 5);
     const double clean = squaredError(t, r, {}).mse, ssim = ssimRgb(t, r, {});
     for (auto* image : {&t, &r})
         for (auto& p : image->c)
@@ -116,7 +116,7 @@ TEST(SquaredError, PaddingDoesNotCount) {
     EXPECT_EQ(ssimRgb(t, r, {}), ssim);
 }
 TEST(SquaredError, TilesSumToTheWhole) {
-    const Rgb t = noise(70, 40, 6), r = noise(70, 40, 7);
+    const Rgb t = noisePicture(70, 40, 6), r = noisePicture(70, 40, 7);
     const TileErrors tiles = tileErrors(t, r, {});
     ASSERT_EQ(tiles.sum.size(), 9u * 5);
     EXPECT_EQ(tiles.columns, 9u);

@@ -7,7 +7,7 @@
 namespace aa {
 
 // Each value by itself, from lo to hi.
-inline Rgb noise(int w, int h, unsigned seed, float lo = 0, float hi = 1) {
+inline Rgb noisePicture(int w, int h, unsigned seed, float lo = 0, float hi = 1) {
     std::mt19937 random(seed);
     Rgb image(w, h);
     for (auto& p : image.c)
