@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 #include <span>
+#include <stdexcept>
 
 #include "image/colour.h"
 #include "metrics/flip_kernels.h"
@@ -75,7 +76,8 @@ FlipReference::~FlipReference() = default;
 
 double FlipReference::flip(const Rgb& test, const Exec& exec, PlaneF* map) const {
     assert(test.width() == width_ && test.height() == height_);
-    assert((exec.precision == Precision::oracle) == (precision_ == Precision::oracle));
+    if ((exec.precision == Precision::oracle) != (precision_ == Precision::oracle))
+        throw std::logic_error("FlipReference::flip: the reference was seen in another precision");
     if (map && (map->width() != width_ || map->height() != height_)) *map = PlaneF::unset(width_, height_);
     std::vector<double> rows(static_cast<size_t>(height_));
     const FlipArgs args{.image = view(test),
