@@ -168,8 +168,8 @@ def write_page(document: dict, docs: Path) -> None:
     runs = [found[f"frames {n}"] for n in FRAMES]
     base = runs[0]
     page.say(
-        "All figures of all frames are kept until the end, which is what memory grows by: about 350 bytes for a method and frame. "
-        "Results are written anew every five seconds as they grow.",
+        "All figures of all frames are kept until the end, and the shot's list of frames is read as a whole: that is what memory "
+        "grows by. Results are written anew every five seconds as they grow.",
         f"Whole runs (`aaresolve run {' '.join(RUN)}`) at {SMALL}, reading and metrics with them, on one thread. A frame: what each costs above "
         f"the run of {FRAMES[0]}, whose start is most of it.",
     )
