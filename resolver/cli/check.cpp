@@ -11,22 +11,17 @@
 
 namespace aa {
 namespace {
-std::string passList(PassSet passes) {
-    std::string s;
-    for (auto n : names(passes)) s += (s.empty() ? "" : " ") + std::string(n);
-    return s;
-}
 void print(const CheckReport& r) {
     for (const auto& f : r.findings) std::printf("%s\n", onOneLine(f.line()).c_str());
     for (const auto& m : r.measured) std::printf("  %-32s %.4g\n", m.name.c_str(), m.value);
     for (const auto& v : r.variants) std::printf("  labelled variant: %s\n", v.c_str());
     for (const auto& n : r.notChecked) std::printf("  not checked: %s\n", n.c_str());
-    const std::string centre = r.centrePasses.empty() ? "" : "; at the pixel centres: " + passList(r.centrePasses);
+    const std::string centre = r.centrePasses.empty() ? "" : "; at the pixel centres: " + listOf(r.centrePasses);
     std::printf("%s: %s; %zu frames; passes: %s%s\n", onOneLine(r.name).c_str(),
                 r.clean()
                     ? (r.variants.empty() ? "clean" : "clean as the labelled variant that it is")
                     : (std::to_string(r.findings.size()) + (r.findings.size() == 1 ? " finding" : " findings")).c_str(),
-                r.frames, passList(r.passes).c_str(), centre.c_str());
+                r.frames, listOf(r.passes).c_str(), centre.c_str());
 }
 }  // namespace
 

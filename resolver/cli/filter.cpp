@@ -68,10 +68,8 @@ void filter(const FilterArguments& o) {
         throw UsageError("filter: expected one method, found '" + o.method + "'");
     const MethodSpec spec = parseMethod(o.method);
     if (const PassSet missing = spec.passes().without(Pass::color); !missing.empty()) {
-        std::string list;
-        for (auto n : names(missing)) list += (list.empty() ? "" : ", ") + std::string(n);
-        throw UsageError("filter: " + std::string(spec.method->id) + " needs more than one image (" + list +
-                         "); use `aaresolve run` on a shot");
+        throw UsageError("filter: " + std::string(spec.method->id) + " needs more than one image (" +
+                         listOf(missing, ", ") + "); use `aaresolve run` on a shot");
     }
     if (std::filesystem::path(o.out).extension() != ".exr" && !isPng(o.out))
         throw UsageError("filter: expected an output name ending in .png or .exr, found '" + o.out + "'");

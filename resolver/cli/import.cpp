@@ -50,11 +50,9 @@ void print(const ImportReport& r, const ImportArguments& o) {
     }
     for (const auto& n : r.notes) std::printf("note: %s\n", onOneLine(n).c_str());
     const Manifest& m = r.manifest;
-    std::string passes;
-    for (auto n : names(r.passes)) passes += " " + std::string(n);
-    std::printf("%s: %zu frames of %s, %dx%d, %s, passes:%s (%zu imported, %zu kept) -> %s\n",
+    std::printf("%s: %zu frames of %s, %dx%d, %s, passes: %s (%zu imported, %zu kept) -> %s\n",
                 r.complete ? "done" : "stopped", m.frames.size(), onOneLine(m.name).c_str(), m.width, m.height,
-                m.isStatic ? "static" : "moving", passes.c_str(), r.imported, r.kept, o.out.c_str());
+                m.isStatic ? "static" : "moving", listOf(r.passes).c_str(), r.imported, r.kept, o.out.c_str());
 }
 nlohmann::ordered_json toJson(const ImportReport& r) {
     nlohmann::ordered_json j = {{"shot", r.manifest.name},   {"frames", r.manifest.frames.size()},

@@ -43,11 +43,6 @@ std::string range(const ParamSpec& p) {
             return all;
     }
 }
-std::string passList(PassSet passes) {
-    std::string s;
-    for (auto n : names(passes)) s += (s.empty() ? "" : " ") + std::string(n);
-    return s;
-}
 PassSet passesWith(const MethodDescriptor& m, const std::vector<std::pair<std::string, std::string>>& given) {
     return m.morePasses ? m.passes | m.morePasses(Params(m.id, m.params, given)) : m.passes;
 }
@@ -60,7 +55,7 @@ void printMarkdown() {
         if (m.family != family) std::printf("## %s\n\n", std::string(family = m.family).c_str());
         std::printf("### `%s`: %s\n\n%s\n\n", std::string(m.id).c_str(), std::string(m.title).c_str(),
                     std::string(m.summary).c_str());
-        std::printf("Passes: %s. Input %s, output %s%s. Source: %s.\n\n", passList(passesAtDefaults(m)).c_str(),
+        std::printf("Passes: %s. Input %s, output %s%s. Source: %s.\n\n", listOf(passesAtDefaults(m)).c_str(),
                     std::string(name(m.input)).c_str(), std::string(name(m.output)).c_str(),
                     m.temporal ? ", keeps history" : "", std::string(m.source).c_str());
         if (const auto asymmetry = knownAsymmetry(m.id); !asymmetry.empty())
@@ -137,12 +132,11 @@ void printStages() {
     for (const auto& s : stages())
         std::printf("  %-18s %-28s %s [%s]%s%s\n", std::string(s.value.name).c_str(),
                     s.valueIsMethod ? "METHOD" : range(s.value).c_str(), std::string(s.value.help).c_str(),
-                    std::string(s.value.source).c_str(), s.passes.empty() ? "" : "; needs ",
-                    passList(s.passes).c_str());
+                    std::string(s.value.source).c_str(), s.passes.empty() ? "" : "; needs ", listOf(s.passes).c_str());
 }
 void printMethod(const MethodDescriptor& m, bool detail) {
     std::printf("%-18s %-10s %-44s %s\n", std::string(m.id).c_str(), std::string(m.family).c_str(),
-                std::string(m.title).c_str(), passList(passesAtDefaults(m)).c_str());
+                std::string(m.title).c_str(), listOf(passesAtDefaults(m)).c_str());
     if (!detail) return;
     std::printf("  %s\n  source: %s; input %s, output %s%s\n", std::string(m.summary).c_str(),
                 std::string(m.source).c_str(), std::string(name(m.input)).c_str(), std::string(name(m.output)).c_str(),
@@ -360,8 +354,8 @@ void addPlan(CommandLine& line, Context&) {
             std::cout << jsonText(j) << "\n";
             return;
         }
-        for (const auto& s : specs) std::printf("%-28s %s\n", s.text.c_str(), passList(s.passes()).c_str());
-        std::printf("%-28s %s\n", "together", passList(needed).c_str());
+        for (const auto& s : specs) std::printf("%-28s %s\n", s.text.c_str(), listOf(s.passes()).c_str());
+        std::printf("%-28s %s\n", "together", listOf(needed).c_str());
     });
 }
 

@@ -16,6 +16,11 @@ std::vector<std::string_view> names(PassSet set) {
         if (set.has(p.pass)) r.push_back(p.name);
     return r;
 }
+std::string listOf(PassSet set, std::string_view between) {
+    std::string all;
+    for (const std::string_view n : names(set)) all.append(all.empty() ? "" : between).append(n);
+    return all;
+}
 
 std::optional<Pass> passByName(std::string_view name) {
     for (const auto& p : allPasses())

@@ -49,6 +49,7 @@ inline PassSet operator|(Pass a, Pass b) { return PassSet(a) | PassSet(b); }
 
 std::string_view name(Pass pass);
 std::vector<std::string_view> names(PassSet set);
+std::string listOf(PassSet set, std::string_view between = " ");
 std::optional<Pass> passByName(std::string_view name);
 // Channel of the subsamples part: "s00.Z", "s00.N.X", "s00.id", "s00.R" ...
 std::string subSampleChannel(size_t k, std::string_view quantity);
