@@ -8,6 +8,7 @@
 // A labelled variant (premultiplied jitter) is named, with what was found of it, instead of being a finding.
 // What cannot be tested with the passes at hand is listed as such.
 #pragma once
+#include <filesystem>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
