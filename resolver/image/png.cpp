@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <limits>
 #include <memory>
@@ -42,6 +43,22 @@ int orientationOf(std::span<const unsigned char> exif) {
     return 1;
 }
 
+// Whether what stands before the pixels is as long as it says: libpng makes room for it before it reads.
+bool chunksFit(const fs::path& file) {
+    constexpr std::streamoff kSignature = 8, kAround = 12;  // length, name; sum
+    std::ifstream in(file, std::ios::binary);
+    in.seekg(0, std::ios::end);
+    const std::streamoff size = in.tellg();
+    for (std::streamoff at = kSignature; at + kAround <= size;) {
+        unsigned char head[8];
+        if (!in.seekg(at).read(reinterpret_cast<char*>(head), sizeof head)) return false;
+        if (std::memcmp(head + 4, "IDAT", 4) == 0) return true;
+        const std::streamoff length = std::streamoff(head[0]) << 24 | head[1] << 16 | head[2] << 8 | head[3];
+        if (length > size - at - kAround) return false;
+        at += length + kAround;
+    }
+    return true;  // libpng says what is missing
+}
 class Reader {
   public:
     explicit Reader(const fs::path& file) : file_(std::fopen(file.c_str(), "rb"), std::fclose) {
@@ -155,6 +172,9 @@ StoredPicture readPng(const fs::path& file) {
     const auto damaged = [&](const char* what) {
         return InputError(file.string() + ": " + what + " (" + in.why() + "); write the file again");
     };
+    if (!chunksFit(file))
+        throw InputError(file.string() +
+                         ": damaged PNG header (a chunk is longer than the file); write the file again");
     if (!in.readHeader()) throw damaged("damaged PNG header");
     if (in.width() > kLargestSide || in.height() > kLargestSide)
         throw InputError(file.string() + ": " + std::to_string(in.width()) + " x " + std::to_string(in.height()) +

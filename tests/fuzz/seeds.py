@@ -282,6 +282,9 @@ def write_pictures(keep: Keep, scratch: Path) -> None:
         keep("png", f"turned-{name}.png", _png(5, 1, (b"eXIf", exif)))
     keep("png", "odd.png", _png(5, 1, (b"eXIf", b"II*\0" + bytes(20))))
     keep("png", "bad-cut.png", _png(5, 3)[:-30])
+    long = _png(5, 1, (b"eXIf", b"MM\0*"))
+    at = long.index(b"eXIf") - 4
+    keep("png", "bad-long.png", long[:at] + struct.pack(">I", 0x60000000) + long[at + 4 :])
     keep("png", "bad-rows.png", _png(5, 3))
     keep("png", "bad-large.png", _png(16385, 1))
     keep("png", "bad-huge.png", _png(16384, 16384))
