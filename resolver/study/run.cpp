@@ -73,6 +73,7 @@ class KeepsResults {
     void operator()(RunResults& sofar) {
         if (!goesOn_ && !earlier_) earlier_.emplace(options_);
         if (earlier_ && !earlier_->mayBeReplacedBy(sofar)) return;
+        sofar.complete = false;  // after the last frame, too: what methods are compared by comes after it
         aa::finish(sofar, {});
         write(sofar);
         written_ = std::chrono::steady_clock::now();
