@@ -43,22 +43,6 @@ int orientationOf(std::span<const unsigned char> exif) {
     return 1;
 }
 
-// Whether what stands before the pixels is as long as it says: libpng makes room for it before it reads.
-bool chunksFit(const fs::path& file) {
-    constexpr std::streamoff kSignature = 8, kAround = 12;  // length, name; sum
-    std::ifstream in(file, std::ios::binary);
-    in.seekg(0, std::ios::end);
-    const std::streamoff size = in.tellg();
-    for (std::streamoff at = kSignature; at + kAround <= size;) {
-        unsigned char head[8];
-        if (!in.seekg(at).read(reinterpret_cast<char*>(head), sizeof head)) return false;
-        if (std::memcmp(head + 4, "IDAT", 4) == 0) return true;
-        const std::streamoff length = std::streamoff(head[0]) << 24 | head[1] << 16 | head[2] << 8 | head[3];
-        if (length > size - at - kAround) return false;
-        at += length + kAround;
-    }
-    return true;  // libpng says what is missing
-}
 class Reader {
   public:
     explicit Reader(const fs::path& file) : file_(std::fopen(file.c_str(), "rb"), std::fclose) {
@@ -72,6 +56,24 @@ class Reader {
     Reader& operator=(const Reader&) = delete;
 
     // Codes of 8 or 16 bits in the machine's order, palette as colours, transparent colours as alpha.
+    // Whether what stands before the pixels is as long as it says: libpng makes room for it before it reads.
+    bool chunksFit() {
+        constexpr long kSignature = 8, kAround = 12;  // length, name; sum
+        std::FILE* const file = file_.get();
+        std::fseek(file, 0, SEEK_END);
+        const long size = std::ftell(file);
+        bool fit = true;
+        for (long at = kSignature; fit && at + kAround <= size;) {
+            unsigned char head[8];
+            fit = std::fseek(file, at, SEEK_SET) == 0 && std::fread(head, sizeof head, 1, file) == 1;
+            if (!fit || std::memcmp(head + 4, "IDAT", 4) == 0) break;
+            const long length = long(png_get_uint_32(head));
+            fit = length <= size - at - kAround;
+            at += length + kAround;
+        }
+        std::rewind(file);
+        return fit;  // where there are no pixels, libpng says so
+    }
     bool readHeader() {
         if (setjmp(png_jmpbuf(png_))) return false;
         png_init_io(png_, file_.get());
@@ -172,7 +174,7 @@ StoredPicture readPng(const fs::path& file) {
     const auto damaged = [&](const char* what) {
         return InputError(file.string() + ": " + what + " (" + in.why() + "); write the file again");
     };
-    if (!chunksFit(file))
+    if (!in.chunksFit())
         throw InputError(file.string() +
                          ": damaged PNG header (a chunk is longer than the file); write the file again");
     if (!in.readHeader()) throw damaged("damaged PNG header");

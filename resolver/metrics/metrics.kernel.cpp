@@ -12,7 +12,7 @@ __attribute__((flatten)) void pictureLumaRows(const LumaArgs& a, int y0, int y1)
     for (int y = y0; y < y1; y++)
         for (int x = 0; x < a.width; x += N<R>) {
             const long o = long(y) * a.stride + x;
-            store(luma601(vec3<R>(load<R>(a.in.c[0] + o), load<R>(a.in.c[1] + o), load<R>(a.in.c[2] + o))), a.out + o);
+            store(luma601(colourAt<R>(a.in.c, o)), a.out + o);
         }
 }
 
@@ -138,7 +138,7 @@ AA_INLINE void momentsAlongY(const SsimArgs& a, int signal, int x0, int y0, int 
     const int reach = columns + kMargin, inside = a.width - x0, end = reach < inside ? reach : inside;
     const auto pixel = [&](const RgbIn& image, long o) __attribute__((always_inline)) {
         if (signal < 3) return load<R>(image.c[signal] + o);
-        return luma601(vec3<R>(load<R>(image.c[0] + o), load<R>(image.c[1] + o), load<R>(image.c[2] + o)));
+        return luma601(colourAt<R>(image.c, o));
     };
     for (int x = x0 ? kMargin : 0; x < end; x += N<R>) {  // the last lanes may lie beyond the image, in its padding
         R value[2][kWindow];

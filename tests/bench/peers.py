@@ -31,6 +31,8 @@ for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 import numpy as np
 import OpenImageIO as oiio
 
+from whole_run import processor_name
+
 HERE = Path(__file__).parent / "peers"
 FLAGS = ["-O3", "-march=x86-64-v3", "-w"]
 
@@ -181,11 +183,6 @@ def pairs_of(bench: Bench) -> list[Pair]:
     return pairs
 
 
-def processor() -> str:
-    told_of = (line.split(":")[1].strip() for line in open("/proc/cpuinfo") if "model name" in line)
-    return next(told_of, "unknown processor")
-
-
 def table(bench: Bench, pairs: list[Pair], load: float) -> str:
     o = bench.options
 
@@ -197,7 +194,7 @@ def table(bench: Bench, pairs: list[Pair], load: float) -> str:
         "# Beside others' programs",
         "",
         "Made by `make peers`; `tests/bench/peers.py` says what is held against what. "
-        f"{processor()}, load {load:.1f} before; {o.size}, one thread, ns of processor time per pixel, median of "
+        f"{processor_name()}, load {load:.1f} before; {o.size}, one thread, ns of processor time per pixel, median of "
         f"{o.rounds} rounds (least to largest); ours x86-64-{o.isa}, theirs `{' '.join(FLAGS[:2])}`.",
         "",
         "| | ours | theirs | whose | share | goal |",

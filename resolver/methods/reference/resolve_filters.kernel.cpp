@@ -9,7 +9,7 @@ AA_INLINE vec3<R> radiance(const ResolveArgs& a, const ResolveTap& tap, long o) 
     const RgbIn& s = a.samples[tap.sample];
     const long p = o + long(tap.dy) * a.stride + tap.dx;
     const vec3<R> zero(R(Elem<R>(0)));
-    return max(zero, vec3<R>(load<R>(s.c[0] + p), load<R>(s.c[1] + p), load<R>(s.c[2] + p)));
+    return max(zero, colourAt<R>(s.c, p));
 }
 // Mean of the pixel's own sub-samples.
 template <class R>
