@@ -155,3 +155,11 @@ inline RgbIn view(const Rgb& i) { return {{i.c[0].row(0), i.c[1].row(0), i.c[2].
 inline RgbOut view(Rgb& i) { return {{i.c[0].row(0), i.c[1].row(0), i.c[2].row(0)}}; }
 
 }  // namespace aa
+
+// Compiled in plane.cpp alone, for speed: of what every source compiles, and some with little optimisation, the linker
+// would take any.
+extern template class std::vector<float, aa::PlaneAllocator<float>>;
+extern template class std::vector<uint32_t, aa::PlaneAllocator<uint32_t>>;
+extern template class aa::Plane<float>;
+extern template class aa::Plane<float, 4>;
+extern template class aa::Plane<uint32_t>;
