@@ -30,24 +30,40 @@ void toDifferences(const uint8_t* __restrict bytes, size_t count, uint8_t* __res
     differences[0] = bytes[0];
     for (size_t i = 1; i < count; i++) differences[i] = uint8_t(bytes[i] - bytes[i - 1] + 128);
 }
-// The sums of differences, eight bytes at a time: those at even and at odd places each in lanes of 16 bits, where a
-// multiplication adds up what stands before.
+using SixteenBytes = uint8_t __attribute__((vector_size(16)));
+
+// `v`, its bytes that many places further on, behind zeros.
+template <int kPlaces>
+SixteenBytes moved(SixteenBytes v) {
+    constexpr auto from = [](int to) { return to < kPlaces ? 0 : 16 + to - kPlaces; };
+    return __builtin_shufflevector(SixteenBytes{}, v, from(0), from(1), from(2), from(3), from(4), from(5), from(6),
+                                   from(7), from(8), from(9), from(10), from(11), from(12), from(13), from(14),
+                                   from(15));
+}
+SixteenBytes lastEverywhere(SixteenBytes v) {
+    return __builtin_shufflevector(v, v, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 15);
+}
+
+// The sums of differences, 16 bytes at a time: each adds what stands one, two, four and eight places before, then the
+// sum of all bytes before them.
 void fromDifferences(uint8_t* bytes, size_t count) {
-    constexpr uint64_t kLow = 0x00ff00ff00ff00ff, kOnes = 0x0001000100010001, kOffset = 0x8080808080808080;
     bytes[0] ^= 128;  // the first is no difference
-    uint64_t before = 0;
+    SixteenBytes before{};
     size_t i = 0;
-    for (; i + 8 <= count; i += 8) {
-        uint64_t x;
-        std::memcpy(&x, bytes + i, 8);
-        x ^= kOffset;
-        const uint64_t even = (x & kLow) * kOnes, odd = (x >> 8 & kLow) * kOnes, start = before * kOnes;
-        before = (before + (even >> 48) + (odd >> 48)) & 0xff;
-        const uint64_t atEven = even + (odd << 16) + start, atOdd = even + odd + start;
-        x = (atEven & kLow) | (atOdd & kLow) << 8;
-        std::memcpy(bytes + i, &x, 8);
+    for (; i + 16 <= count; i += 16) {
+        SixteenBytes sums;
+        std::memcpy(&sums, bytes + i, 16);
+        sums ^= 128;
+        sums += moved<1>(sums);
+        sums += moved<2>(sums);
+        sums += moved<4>(sums);
+        sums += moved<8>(sums);
+        const SixteenBytes all = sums + before;
+        before += lastEverywhere(sums);
+        std::memcpy(bytes + i, &all, 16);
     }
-    for (; i < count; i++) bytes[i] = uint8_t(before += bytes[i] ^ 128u);
+    uint8_t sum = before[0];
+    for (; i < count; i++) bytes[i] = sum = uint8_t(sum + (bytes[i] ^ 128u));
 }
 }  // namespace
 

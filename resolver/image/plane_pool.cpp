@@ -38,13 +38,14 @@ class Pool {
     void* take(size_t bytes) {
         {
             const std::lock_guard one(mutex_);
+            bytes_.used += bytes;
             // The last one given back may still be in the cache.
             const auto found =
                 std::find_if(unused_.rbegin(), unused_.rend(), [&](const Block& b) { return b.bytes == bytes; });
             if (found != unused_.rend()) {
                 void* const memory = found->memory;
                 unused_.erase(std::next(found).base());
-                unusedBytes_ -= bytes;
+                bytes_.unused -= bytes;
                 return memory;
             }
         }
@@ -55,18 +56,18 @@ class Pool {
         {
             const std::lock_guard one(mutex_);
             unused_.push_back({memory, bytes});
-            unusedBytes_ += bytes;
-            while (unusedBytes_ > kMostUnusedPlaneBytes) {
+            bytes_.used -= bytes, bytes_.unused += bytes;
+            while (bytes_.unused > std::max(kUnusedPlaneBytes, bytes_.used)) {
                 leaving.push_back(unused_.front());
-                unusedBytes_ -= unused_.front().bytes;
+                bytes_.unused -= unused_.front().bytes;
                 unused_.pop_front();
             }
         }
         for (const Block& b : leaving) ::munmap(b.memory, b.bytes);
     }
-    size_t unusedBytes() {
+    PlaneBytes bytes() {
         const std::lock_guard one(mutex_);
-        return unusedBytes_;
+        return bytes_;
     }
 
   private:
@@ -76,7 +77,7 @@ class Pool {
     };
     std::mutex mutex_;
     std::deque<Block> unused_;
-    size_t unusedBytes_ = 0;
+    PlaneBytes bytes_;
 };
 
 // Never ended: planes of static lifetime give back their memory after everything else.
@@ -100,6 +101,6 @@ void givePlaneMemory(void* memory, size_t bytes) {
     else
         pool().give(memory, bytes);
 }
-size_t unusedPlaneBytes() { return pool().unusedBytes(); }
+PlaneBytes planeBytes() { return pool().bytes(); }
 
 }  // namespace aa

@@ -1,16 +1,20 @@
 // Memory of planes: what one plane gives back the next of its size takes. The system would hand out pages one by one
 // and clear each of them, which was a seventh of a run's time.
 //
-// What lies unused is bounded; of it the oldest goes back to the system first.
+// What lies unused is bounded: as much as is in use, or a small share of any machine, whichever is more. What one frame
+// of a run gives back, the next will take. Of the unused the oldest goes back to the system first.
 #pragma once
 #include <cstddef>
 
 namespace aa {
 
-inline constexpr size_t kMostUnusedPlaneBytes = size_t(256) << 20;
+inline constexpr size_t kUnusedPlaneBytes = size_t(256) << 20;  // that may lie unused whatever is in use
 
 void* takePlaneMemory(size_t bytes);  // of a cache line's alignment, with any content
 void givePlaneMemory(void* memory, size_t bytes);
-size_t unusedPlaneBytes();
+struct PlaneBytes {
+    size_t used = 0, unused = 0;
+};
+PlaneBytes planeBytes();
 
 }  // namespace aa

@@ -36,7 +36,7 @@ class Method {
     // Resolves one frame into `out` (same size as the frame, in the method's output space; its border need not be
     // filled). Temporal methods drop their history when frame.reset is set.
     virtual void resolve(const Frame& frame, const Exec& exec, Rgb& out) = 0;
-    virtual size_t stateBytes() const { return 0; }  // history and scratch kept between frames
+    virtual size_t stateBytes() const { return 0; }  // history and working memory, of the last frame
     // Of the last frame: at least one when keepDebugLayers was set, none otherwise. Only the family `reference` may
     // have none at all: what a method found (an edge, a weight, a reason) is what `--debug-layers` is asked for.
     virtual std::vector<DebugLayer> debugLayers() const { return {}; }

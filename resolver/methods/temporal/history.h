@@ -45,7 +45,7 @@ class History {
     bool fresh() const { return frames_ == 0; }       // nothing is known of earlier frames
     int width() const { return width_; }
     int height() const { return height_; }
-    size_t bytes() const;  // of all its planes
+    size_t bytes() const;  // of all its planes, those that a frame writes included
 
   private:
     friend class HistoryPart;
@@ -78,12 +78,15 @@ class Kept : HistoryPart {
 
     // Between begin() and end().
     const P& previous(size_t slot = 0) { return sized(slots_[slot].planes); }
-    // What will replace previous(slot), still with what an earlier frame wrote there: the frame writes every pixel.
-    // Without this call the slot stays as it is.
+    // What will replace previous(slot), with any content: the frame writes every pixel. Without this call the slot
+    // stays as it is. Between frames nobody has it: of twenty methods side by side, one or two resolve at a time.
     P& next(size_t slot = 0) {
         assert(!written_ || written_ == slot);
-        written_ = slot, replaced_ = true;
-        return sized(spare_);
+        assert(history_.framesSinceReset() >= 0);
+        written_ = slot;
+        if (!std::exchange(replaced_, true)) next_ = P::unset(history_.width(), history_.height());
+        nextBytes_ = next_.bytes();
+        return next_;
     }
     // The same plane as previous(slot), for a frame that writes it when everything has read it: saves the second one.
     P& inPlace(size_t slot = 0) {
@@ -115,21 +118,22 @@ class Kept : HistoryPart {
     void end() override {
         if (!written_) return;
         Slot& slot = slots_[*written_];
-        if (replaced_) std::swap(slot.planes, spare_);
+        if (replaced_) slot.planes = std::exchange(next_, P());
         slot.planes.fillBorder();
         slot.writtenIn = history_.framesSinceReset();
         written_.reset(), replaced_ = false;
     }
     size_t bytes() const override {
-        size_t sum = spare_.bytes();
+        size_t sum = nextBytes_;
         for (const Slot& slot : slots_) sum += slot.planes.bytes();
         return sum;
     }
 
     std::vector<Slot> slots_;
-    P spare_;
+    P next_;
+    size_t nextBytes_ = 0;           // of the latest
     std::optional<size_t> written_;  // by this frame
-    bool replaced_ = false;          // in spare_
+    bool replaced_ = false;          // in next_
 };
 
 // How colours are kept from one frame to the next: parameters historyBits and dither.
