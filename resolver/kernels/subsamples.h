@@ -40,18 +40,18 @@ AA_INLINE SurfacePoint<R> samplePoint(const aa::GeometryArgs& g, int k, long o) 
 }
 // From the point seen (fromX, fromY) px beside the centre sample of pixel (x, y) to the one seen (dx, dy) px farther.
 template <class R>
-AA_INLINE Separation<R> separation(const aa::GeometryArgs& g, R x, int y, float fromX, float fromY, float dx,
-                                   float dy) {
+AA_INLINE Separation<R> separation(const aa::GeometryArgs& g, R x, std::type_identity_t<R> y, float fromX, float fromY,
+                                   float dx, float dy) {
     using T = Elem<R>;
     const R sx{T(dx)}, sy{T(dy)};
     return {
-        broadcast3<R>(g.ray) + broadcast3<R>(g.rayX) * (x + R(T(fromX))) + broadcast3<R>(g.rayY) * R(T(y) + T(fromY)),
+        broadcast3<R>(g.ray) + broadcast3<R>(g.rayX) * (x + R(T(fromX))) + broadcast3<R>(g.rayY) * (y + R(T(fromY))),
         broadcast3<R>(g.rayX) * sx + broadcast3<R>(g.rayY) * sy,
         broadcast3<R>(g.originX) * sx + broadcast3<R>(g.originY) * sy};
 }
 // From the centre sample of pixel (x, y) to its sub-sample k.
 template <class R>
-AA_INLINE Separation<R> toSample(const aa::GeometryArgs& g, R x, int y, int k) {
+AA_INLINE Separation<R> toSample(const aa::GeometryArgs& g, R x, std::type_identity_t<R> y, int k) {
     return separation(g, x, y, 0.0f, 0.0f, g.sample[k].offsetPx[0], g.sample[k].offsetPx[1]);
 }
 
