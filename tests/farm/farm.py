@@ -3,7 +3,7 @@
     python3 tests/farm/farm.py PROGRAM [--only NAME ...] [--config KEY=VALUE ...]
 
 Each way is a study in an empty folder; those after the first are held against it. Needs snakemake and, for Slurm, its
-daemons: `make farm` installs them.
+daemons: `make test-farm` installs them.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ import slurm
 
 ROOT = Path(__file__).resolve().parents[2]
 _MIDWAY = 3  # jobs that are done by then
+_TERMINATED = 143  # exit code after SIGTERM
 _WAIT_SECONDS = 3600.0  # for a picture that is being made, on a machine with other work
 
 
@@ -33,24 +34,32 @@ class Farm:
 
     def __init__(self, program: Path, folder: Path, config: list[str]) -> None:
         self.folder, self.config = folder, config
+        self.seconds: dict[
+            str, float
+        ] = {}  # of the workflow alone, by way, where it was not interrupted
         self._started: list[subprocess.Popen] = []
         self.environment = {
             **os.environ,
             "AARESOLVE": str(program),
             "XDG_CACHE_HOME": str(folder / "cache"),
+            "CI": "true",  # Snakemake 7 looks after jobs of a cluster each second then, else every ten
         }
 
-    def start(self, name: str, *options: str, **more: str) -> subprocess.Popen:
+    def start(self, name: str, *options: str, **environment: str) -> subprocess.Popen:
         """The workflow in the way's folder, whose output is the study `study`."""
         work = self.folder / name
         work.mkdir(exist_ok=True)
-        config = [*self.config, "out=study", *(f"{k}={v}" for k, v in more.items() if k.islower())]
-        command = ["snakemake", "-s", str(ROOT / "scenes/Snakefile"), *options, "--config", *config]
-        log = open(work / "log", "ab")
-        environment = {**self.environment, **{k: v for k, v in more.items() if k.isupper()}}
-        process = subprocess.Popen(
-            command, cwd=work, env=environment, stdout=log, stderr=log, start_new_session=True
-        )
+        command = ["snakemake", "-s", str(ROOT / "scenes/Snakefile"), *options]
+        command += ["--config", *self.config, "out=study"]
+        with open(work / "log", "ab") as log:
+            process = subprocess.Popen(
+                command,
+                cwd=work,
+                env={**self.environment, **environment},
+                stdout=log,
+                stderr=log,
+                start_new_session=True,
+            )
         self._started.append(process)
         return process
 
@@ -61,9 +70,11 @@ class Farm:
                 os.killpg(process.pid, signal.SIGKILL)
                 process.wait()
 
-    def run(self, name: str, *options: str, **more: str) -> None:
+    def run(self, name: str, *options: str, **environment: str) -> None:
         """The same to its end, which must be a good one."""
-        self.ends_well(name, self.start(name, *options, **more))
+        started = time.monotonic()
+        self.ends_well(name, self.start(name, *options, **environment))
+        self.seconds[name] = time.monotonic() - started
 
     def ends_well(self, name: str, process: subprocess.Popen) -> None:
         if process.wait() != 0:
@@ -120,13 +131,7 @@ def stopped(farm: Farm) -> str:
     os.killpg(first.pid, signal.SIGKILL)
     first.wait()
     done = farm.marks("stopped")
-    subprocess.run(
-        ["snakemake", "-s", str(ROOT / "scenes/Snakefile"), "--unlock", "--config", "out=study"],
-        cwd=farm.folder / "stopped",
-        env=farm.environment,
-        capture_output=True,
-        check=True,
-    )
+    farm.run("stopped", "--unlock")
     farm.run("stopped", "--cores", "2", "--rerun-incomplete")
     return f"killed after {done} jobs, while {claim} was made"
 
@@ -149,10 +154,16 @@ def elsewhere(farm: Farm) -> str:
     for mark in (shot.parent / "jobs").glob("frames.*"):
         mark.unlink()
     (work / "log").unlink()
-    farm.run("elsewhere", "--cores", "1", claim_timeout="12")
-    if "being made elsewhere" not in (work / "log").read_text():
-        raise SystemExit("farm: elsewhere: expected the job to wait for another machine's picture")
-    return "waited 12 s, then made it"
+    process = farm.start("elsewhere", "--cores", "1")
+    log = work / "log"
+    wait_for(
+        "the job waiting for that machine",
+        lambda: "being made elsewhere" in log.read_text(errors="replace"),
+        process,
+    )
+    os.utime(claim, (0.0, 0.0))  # as if claim_timeout had passed
+    farm.ends_well("elsewhere", process)
+    return "waited for it, then made it"
 
 
 def slurm_one(farm: Farm) -> str:
@@ -212,42 +223,56 @@ def main(argv: list[str]) -> int:
     a = parser.parse_args(argv)
     lacks = [n for n in ("snakemake",) if not shutil.which(n)] + slurm.missing()
     if lacks:
-        print(f"farm: {', '.join(lacks)}: not here; `make farm` installs them", file=sys.stderr)
+        print(
+            f"farm: {', '.join(lacks)}: not here; `make test-farm` installs them", file=sys.stderr
+        )
         return 3
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that nothing stays behind
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(_TERMINATED))  # ends what runs
     folder = a.keep.absolute() if a.keep else Path(tempfile.mkdtemp(prefix="aa_farm_"))
     folder.mkdir(exist_ok=True)
-    farm = Farm(a.program.resolve(), folder, a.config)
-    failed, seconds, wanted = 0, {}, {}
+    kept = bool(a.keep)
+    try:
+        failed = tried(Farm(a.program.resolve(), folder, a.config), {"one", *a.only})
+        kept = kept or failed
+    except SystemExit as stop:
+        kept = kept or stop.code != _TERMINATED
+        raise
+    finally:
+        if kept:
+            print(f"farm: what was made lies in {folder}", file=sys.stderr)
+        else:
+            shutil.rmtree(folder)
+    return int(failed)
+
+
+def tried(farm: Farm, names: set[str]) -> bool:
+    """Goes the ways of these names and says how each went; true where one has other bytes than the first."""
+    failed, wanted = False, {}
     for name, way in WAYS.items():
-        if name not in ("one", *a.only):
+        if name not in names:
             continue
         started = time.monotonic()
         try:
             said = way(farm)
         finally:
             farm.end()
-        seconds[name] = time.monotonic() - started
+        seconds = time.monotonic() - started
         found = same.content(farm.study(name))
         wanted = wanted or found
         different = same.differences(wanted, found)
-        failed += bool(different)
+        failed = failed or bool(different)
         verdict = (
             f"DIFFERENT: {', '.join(different[:5])}"
             if different
             else "same bytes" * (name != "one")
         )
         words = ", ".join(filter(None, (f"{len(found)} files", verdict, said)))
-        print(f"farm: {way.__doc__}: {seconds[name]:.0f} s, {words}", flush=True)
-    if {"slurm_one", "slurm_two"} <= seconds.keys():
-        ratio = seconds["slurm_two"] / seconds["slurm_one"]
-        load = os.getloadavg()[1]
-        print(f"farm: two workers took {ratio:.2f} of the time of one (load {load:.1f})")
-    if not failed and not a.keep:
-        shutil.rmtree(folder)
-    elif failed:
-        print(f"farm: what was made lies in {folder}", file=sys.stderr)
-    return 1 if failed else 0
+        print(f"farm: {way.__doc__}: {seconds:.0f} s, {words}", flush=True)
+    for what, one, two in (("jobs at once", "one", "two"), ("workers of Slurm", "slurm_one", "slurm_two")):  # fmt: skip
+        if {one, two} <= names:
+            share, load = farm.seconds[two] / farm.seconds[one], os.getloadavg()[1]
+            print(f"farm: two {what} took {share:.2f} of the time of one (load {load:.1f})")
+    return failed
 
 
 if __name__ == "__main__":
