@@ -25,7 +25,6 @@ import slurm
 
 ROOT = Path(__file__).resolve().parents[2]
 _MIDWAY = 3  # jobs that are done by then
-_TERMINATED = 143  # exit code after SIGTERM
 _WAIT_SECONDS = 3600.0  # for a picture that is being made, on a machine with other work
 
 
@@ -227,15 +226,16 @@ def main(argv: list[str]) -> int:
             f"farm: {', '.join(lacks)}: not here; `make test-farm` installs them", file=sys.stderr
         )
         return 3
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(_TERMINATED))  # ends what runs
+    for number in (signal.SIGINT, signal.SIGTERM):  # ends what runs, and leaves nothing
+        signal.signal(number, lambda caught, _: sys.exit(128 + caught))
     folder = a.keep.absolute() if a.keep else Path(tempfile.mkdtemp(prefix="aa_farm_"))
     folder.mkdir(exist_ok=True)
     kept = bool(a.keep)
     try:
         failed = tried(Farm(a.program.resolve(), folder, a.config), {"one", *a.only})
         kept = kept or failed
-    except SystemExit as stop:
-        kept = kept or stop.code != _TERMINATED
+    except BaseException as stop:
+        kept = kept or not (isinstance(stop, SystemExit) and isinstance(stop.code, int))
         raise
     finally:
         if kept:
