@@ -171,7 +171,7 @@ peers: build
 STUDY ?=
 farm: program
 	@CI_PACKAGES=snakemake .ci/bootstrap
-	@AARESOLVE=$(CURDIR)/$(BUILD)/aaresolve snakemake -s scenes/Snakefile --cores $(JOBS) --rerun-incomplete \
+	@AARESOLVE=$(CURDIR)/$(BUILD)/aaresolve snakemake -s scenes/Snakefile --cores $(JOBS) --rerun-incomplete --keep-going \
 	  $(if $(PLAN),-n) $(if $(STUDY),--configfile $(STUDY))
 
 test-farm: program
