@@ -1,7 +1,9 @@
 #include "metrics/temporal.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "metrics/metrics.h"
 #include "metrics/temporal_kernels.h"
@@ -10,16 +12,9 @@ namespace aa {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kSameDepth = 0.02f;  // conventions 13.5
 
 void fit(PlaneF& p, int w, int h) {
     if (p.width() != w || p.height() != h) p = PlaneF(w, h);
-}
-void fit(PlaneU& p, int w, int h) {
-    if (p.width() != w || p.height() != h) p = PlaneU(w, h);
-}
-void fit(Rgb& p, int w, int h) {
-    if (p.width() != w || p.height() != h) p = Rgb(w, h);
 }
 // Two sums over the rows of `area` in a fixed order, whatever the number of threads.
 template <class Args>
@@ -73,11 +68,8 @@ void TemporalScene::advance(const Frame& frame, const Rgb* truthEncoded, const E
     std::swap(luma_, previousLuma_);
     if (truth_) luma_ = pictureLuma(*truth_, exec);
     if (frame.motionXPx.empty() || frame.depthView.empty() || frame.objectId.empty()) return;
-    current_ = 1 - current_;
-    for (auto& a : age_) fit(a, width_, height_);
-    for (auto& s : stale_) fit(s, width_, height_);
     if (fresh)
-        age_[current_] = PlaneU(width_, height_);
+        age_ = PlaneU(width_, height_), trail_.assign(size_t(height_), {});
     else
         followSurfaces(frame, exec);
     alongMotion_ = !fresh;
@@ -103,48 +95,49 @@ void TemporalScene::advance(const Frame& frame, const Rgb* truthEncoded, const E
         previousPicture_ = Rgb();
 }
 
-// Was the surface seen at (x, y) visible one frame ago, and since when is it?
+// Was the surface of each pixel visible one frame ago, and since when is it?
 void TemporalScene::followSurfaces(const Frame& frame, const Exec& exec) {
     fit(qx_, width_, height_), fit(qy_, width_, height_);
-    const PlaneU& oldAge = age_[1 - current_];
-    const Rgb& oldStale = stale_[1 - current_];
-    trail_.resize(size_t(height_));
+    const PlaneU previousAge = std::exchange(age_, PlaneU::unset(width_, height_));
+    const FollowArgs args{.motionXPx = frame.motionXPx.row(0),
+                          .motionYPx = frame.motionYPx.row(0),
+                          .depth = frame.depthView.row(0),
+                          .previousDepth = previousDepth_.row(0),
+                          .id = frame.objectId.row(0),
+                          .previousId = previousId_.row(0),
+                          .previousAge = previousAge.row(0),
+                          .oldest = kGhostAges,
+                          .stride = age_.stride(),
+                          .width = width_,
+                          .height = height_,
+                          .qx = qx_.row(0),
+                          .qy = qy_.row(0),
+                          .age = age_.row(0)};
+    runKernel(temporalMetricKernelsFor(exec).follow, exec, args, height_);
+    const Trail before = std::exchange(trail_, Trail(size_t(height_)));
     forRows(exec, height_, [&](int y0, int y1) {
-        for (int y = y0; y < y1; y++) {
-            trail_[size_t(y)].clear();
-            for (int x = 0; x < width_; x++) {
-                const float px = float(x) + 0.5f - frame.motionXPx.at(x, y),
-                            py = float(y) + 0.5f - frame.motionYPx.at(x, y);
-                const bool inside = px >= 0 && px <= float(width_) && py >= 0 && py <= float(height_);
-                const int nx = inside ? std::min(int(px), width_ - 1) : 0,
-                          ny = inside ? std::min(int(py), height_ - 1) : 0;
-                const float z = frame.depthView.at(x, y);
-                const auto same = [&](int i, int j) {
-                    return previousId_.at(nx + i, ny + j) == frame.objectId.at(x, y) &&
-                           std::fabs(previousDepth_.at(nx + i, ny + j) - z) <= kSameDepth * z;
-                };
-                const bool seenHere = inside && same(0, 0);
-                bool seen = seenHere;
-                for (int n = 0; inside && !seen && n < 9; n++) seen = same(n % 3 - 1, n / 3 - 1);
-                uint32_t age = 0;
-                std::array<float, 3> stale{kNan, kNan, kNan};
-                if (inside && !seen) {
-                    age = 1;
-                    if (!previousPicture_.empty())
-                        for (size_t c = 0; c < 3; c++) stale[c] = bilinear(previousPicture_.c[c], px, py);
-                } else if (seenHere && oldAge.at(nx, ny) > 0 && oldAge.at(nx, ny) < kGhostAges) {
-                    // Only from its own surface: seen beside q alone, it takes no age from what covered it.
-                    age = oldAge.at(nx, ny) + 1;
-                    for (size_t c = 0; c < 3; c++) stale[c] = oldStale.c[c].at(nx, ny);
-                }
-                age_[current_].at(x, y) = age;
-                if (age > 0) trail_[size_t(y)].push_back(x);
-                for (size_t c = 0; c < 3; c++) stale_[current_].c[c].at(x, y) = stale[c];
-                qx_.at(x, y) = seen ? px : kNan;
-                qy_.at(x, y) = py;
-            }
-        }
+        for (int y = y0; y < y1; y++)
+            for (int x = 0; x < width_; x++)
+                if (const uint32_t age = age_.at(x, y); age > 0)
+                    trail_[size_t(y)].push_back({x, age, staleAt(frame, x, y, age, before)});
     });
+}
+
+// What was to be seen where the pixel comes from; carried along the motion once it is on the trail.
+std::array<float, 3> TemporalScene::staleAt(const Frame& frame, int x, int y, uint32_t age, const Trail& before) const {
+    constexpr std::array kUnknown{kNan, kNan, kNan};
+    const float px = float(x) + 0.5f - frame.motionXPx.at(x, y), py = float(y) + 0.5f - frame.motionYPx.at(x, y);
+    if (age > 1) {
+        const auto& row = before[size_t(std::min(int(py), height_ - 1))];
+        const int column = std::min(int(px), width_ - 1);
+        const auto at = std::lower_bound(row.begin(), row.end(), column,
+                                         [](const TrailPixel& p, int sought) { return p.x < sought; });
+        // In double precision it may have come from the pixel beside.
+        return at != row.end() && at->x == column ? at->stale : kUnknown;
+    }
+    if (previousPicture_.empty()) return kUnknown;
+    const auto channel = [&](size_t c) { return bilinear(previousPicture_.c[c], px, py); };
+    return {channel(0), channel(1), channel(2)};
 }
 
 void TemporalJudge::add(const TemporalScene& scene, const Rgb& encoded, const Exec& exec, std::optional<double> mse,
@@ -205,17 +198,16 @@ void TemporalJudge::addTrail(const TemporalScene& scene, const Rgb& encoded) {
     TrailSums frame;
     for (int y = area_.y; y < area_.y + area_.height; y++) {
         TrailSums row;
-        const uint32_t* const ages = scene.age().row(y);
-        for (const int x : scene.trail(y)) {
+        for (const auto& [x, age, stale] : scene.trail(y)) {
             if (x < area_.x || x >= area_.x + area_.width) continue;
             double squares = 0, along = 0, norm = 0;
             for (size_t c = 0; c < 3; c++) {
                 const double r = double(truth.c[c].at(x, y)), e = double(encoded.c[c].at(x, y)) - r;
-                const double o = double(scene.stale().c[c].at(x, y)) - r;
+                const double o = double(stale[c]) - r;
                 squares += e * e, along += e * o, norm += o * o;
             }
             row.squares += squares, row.pixels++;
-            if (norm == norm) row.along[ages[x] - 1] += along, row.norm[ages[x] - 1] += norm;
+            if (norm == norm) row.along[age - 1] += along, row.norm[age - 1] += norm;
         }
         frame += row;
     }

@@ -21,6 +21,7 @@
 #pragma once
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "image/colour.h"
 #include "image/window.h"
@@ -51,14 +52,19 @@ class TemporalScene {
     bool hasTruthStep() const { return truthStep_; }   // truthStep() holds
     const PlaneF& qx() const { return qx_; }           // previous position, px; NaN where not valid
     const PlaneF& qy() const { return qy_; }
-    const PlaneF& truthStep() const { return step_; }     // D_R
-    const PlaneU& age() const { return age_[current_]; }  // 1..16 on the trail, else 0
-    // The columns of row y that are on the trail, in order: few, and the same for all methods.
-    const std::vector<int>& trail(int y) const { return trail_[size_t(y)]; }
-    const Rgb& stale() const { return stale_[current_]; }  // O, where age() > 0; NaN when it is not known
+    const PlaneF& truthStep() const { return step_; }  // D_R
+    // A pixel on the trail: few are, and the same for all methods.
+    struct TrailPixel {
+        int x;
+        uint32_t age;                // 1 to 16
+        std::array<float, 3> stale;  // O; NaN when it is not known
+    };
+    const std::vector<TrailPixel>& trail(int y) const { return trail_[size_t(y)]; }  // of row y, by x
 
   private:
+    using Trail = std::vector<std::vector<TrailPixel>>;
     void followSurfaces(const Frame& frame, const Exec& exec);
+    std::array<float, 3> staleAt(const Frame& frame, int x, int y, uint32_t age, const Trail& before) const;
 
     bool static_;
     int width_ = 0, height_ = 0, frames_ = -1;
@@ -66,10 +72,8 @@ class TemporalScene {
     const Rgb* truth_ = nullptr;
     Rgb previousPicture_;  // encoded; its truth or, where there is none, its sampled colours
     PlaneF luma_, previousLuma_, qx_, qy_, step_, previousDepth_;
-    PlaneU previousId_, age_[2];
-    Rgb stale_[2];
-    std::vector<std::vector<int>> trail_;
-    size_t current_ = 0;
+    PlaneU previousId_, age_;
+    Trail trail_;
 };
 
 struct TemporalMetrics {

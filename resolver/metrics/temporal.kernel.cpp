@@ -5,19 +5,24 @@
 namespace AA_ARCH {
 using namespace aa;
 
+template <class R>
+AA_INLINE Offsets<R> offsets(R x, R y, int stride) {
+    Offsets<R> at;
+    if constexpr (N<R> == 1) {
+        at.k[0] = int(y) * stride + int(x), at.together = true;
+    } else {
+        using I = typename IntsOf<N<R>>::type;
+        at.set(__builtin_convertvector(y.v, I) * stride + __builtin_convertvector(x.v, I));
+    }
+    return at;
+}
 // Position (x, y) in px inside [0, W] x [0, H]; the border is filled, so the taps need no clamp. A tap of weight 0 is
 // not read into the result: it may be NaN.
 template <class R>
 AA_INLINE R bilinear(const float* p, int stride, R x, R y) {
     const R half(Elem<R>(0.5)), zero(Elem<R>(0));
     const R u = x - half, v = y - half, fu = floor(u), fv = floor(v), s = u - fu, t = v - fv;
-    Offsets<R> at;
-    if constexpr (N<R> == 1) {
-        at.k[0] = int(fv) * stride + int(fu), at.together = true;
-    } else {
-        using I = typename IntsOf<N<R>>::type;
-        at.set(__builtin_convertvector(fv.v, I) * stride + __builtin_convertvector(fu.v, I));
-    }
+    const Offsets<R> at = offsets(fu, fv, stride);
     const auto row = [&](const float* q) __attribute__((always_inline)) {
         const R a = gather<R>(q, at), b = gather<R>(q + 1, at);
         return select(s == zero, a, a + (b - a) * s);
@@ -29,6 +34,64 @@ AA_INLINE R bilinear(const float* p, int stride, R x, R y) {
 template <class R>
 AA_INLINE Mask<R> first(int count) {
     return iota<R>() < R(Elem<R>(count));
+}
+constexpr float kSameDepth = 0.02f;  // conventions 13.5
+
+// Lane mask of what differs from ids[o], `found` being where each pixel was.
+template <class R>
+AA_INLINE Mask<R> idsDiffer(const uint32_t* ids, const uint32_t* previous, const Offsets<R>& found) {
+    if (found.together) return idsDiffer<R>(ids, previous + found.k[0]);
+    uint32_t of[N<R>];
+    for (int i = 0; i < N<R>; i++) of[i] = previous[found.k[i]];
+    return idsDiffer<R>(ids, of);
+}
+// A pixel whose surface was not seen where it comes from, or comes with an age: few.
+template <class T>
+AA_INLINE void followOne(const FollowArgs& a, long o, int x, int y) {
+    const T px = T(x) + T(0.5) - T(a.motionXPx[o]), py = T(y) + T(0.5) - T(a.motionYPx[o]);
+    if (!(px >= 0 && px <= T(a.width) && py >= 0 && py <= T(a.height))) return;
+    const int nx = int(px) < a.width ? int(px) : a.width - 1, ny = int(py) < a.height ? int(py) : a.height - 1;
+    const T z(a.depth[o]);
+    const auto isSame = [&](int i, int j) __attribute__((always_inline)) {
+        const long n = long(ny + j) * a.stride + nx + i;
+        return a.previousId[n] == a.id[o] && abs(T(a.previousDepth[n]) - z) <= T(kSameDepth) * z;
+    };
+    if (isSame(0, 0)) {
+        // Only from its own surface: seen beside q alone, it takes no age from what covered it.
+        const uint32_t before = a.previousAge[long(ny) * a.stride + nx];
+        a.age[o] = before > 0 && before < a.oldest ? before + 1 : 0;
+        return;
+    }
+    bool isSeen = false;
+    for (int n = 0; !isSeen && n < 9; n++) isSeen = isSame(n % 3 - 1, n / 3 - 1);
+    if (isSeen)
+        a.qx[o] = float(px);
+    else
+        a.age[o] = 1;
+}
+template <class R>
+__attribute__((flatten)) void followRows(const FollowArgs& a, int y0, int y1) {
+    using T = Elem<R>;
+    const R half(T(0.5)), zero(T(0)), w{T(a.width)}, h{T(a.height)}, one(T(1)), nan(T(__builtin_nanf("")));
+    const uint32_t none[N<R>] = {};
+    for (int y = y0; y < y1; y++)
+        for (int x = 0; x < a.width; x += N<R>) {
+            const long o = long(y) * a.stride + x;
+            const R px = R(T(x)) + iota<R>() + half - load<R>(a.motionXPx + o),
+                    py = R(T(y)) + half - load<R>(a.motionYPx + o), z = load<R>(a.depth + o);
+            const auto inside = both(both(px >= zero, px <= w), both(py >= zero, py <= h));
+            const Offsets<R> at = offsets(min(floor(select(inside, px, zero)), w - one),
+                                          min(floor(select(inside, py, zero)), h - one), a.stride);
+            const auto isSeen = both(both(inside, negate(idsDiffer<R>(a.id + o, a.previousId, at))),
+                                     abs(gather<R>(a.previousDepth, at) - z) <= R(T(kSameDepth)) * z);
+            const auto isOld = idsDiffer<R>(none, a.previousAge, at);
+            store(select(isSeen, px, nan), a.qx + o);
+            store(py, a.qy + o);
+            for (int i = 0; i < N<R>; i++) a.age[o + i] = 0;
+            const unsigned rest = maskBits<R>(both(inside, either(negate(isSeen), isOld)));
+            for (int i = 0; rest >> i && i < N<R> && x + i < a.width; i++)
+                if (rest >> i & 1) followOne<T>(a, o + i, x + i, y);
+        }
 }
 template <class R>
 __attribute__((flatten)) void stepRows(const StepArgs& a, int y0, int y1) {
@@ -73,4 +136,5 @@ __attribute__((flatten)) void spreadRows(const SpreadArgs& a, int y0, int y1) {
 }
 }  // namespace AA_ARCH
 
-AA_DEFINE_TABLE(aa::TemporalMetricKernels, temporalMetricKernels) = {AA_ROWS(stepRows), AA_ROWS(spreadRows)};
+AA_DEFINE_TABLE(aa::TemporalMetricKernels, temporalMetricKernels) = {AA_ROWS(followRows), AA_ROWS(stepRows),
+                                                                     AA_ROWS(spreadRows)};

@@ -12,6 +12,16 @@ struct StepArgs {
     const float* truthStep = nullptr;  // the same of the truth; or null
     double* rows = nullptr;            // [height][2]: sums of (step - truthStep)^2, and how many; needed with truthStep
 };
+struct FollowArgs {
+    const float *motionXPx, *motionYPx;
+    const float *depth, *previousDepth;  // now and one frame ago, its border filled
+    const uint32_t *id, *previousId;
+    const uint32_t* previousAge;  // one frame ago, 0 where nothing was on the trail
+    uint32_t oldest;              // age from which a pixel leaves the trail
+    int stride, width, height;
+    float *qx, *qy;  // where a pixel was, px; qx: NaN where it was not to be seen
+    uint32_t* age;   // 1: it came into view; more: since when it is, carried along the motion; else 0
+};
 struct SpreadArgs {
     const float *luma, *previous;  // previous: null where there is none
     int stride, first = 0, end = 0;
@@ -20,6 +30,7 @@ struct SpreadArgs {
     double* rows = nullptr;  // [height][2]: sums of |luma - previous| and of its square
 };
 struct TemporalMetricKernels {
+    RowKernel<FollowArgs> follow;
     RowKernel<StepArgs> step;
     RowKernel<SpreadArgs> spread;
 };
