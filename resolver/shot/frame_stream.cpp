@@ -18,14 +18,14 @@ FrameStream::FrameStream(const ShotReader& reader, std::vector<size_t> indices, 
       withTruth_(withTruth),
       wantedOfCentre_(wantedOfCentre),
       trace_(trace) {
-    startDecoding();
+    decodeAhead();
 }
 FrameStream::~FrameStream() {
     if (pending_.valid() && pending_.wait_for(std::chrono::seconds(0)) != std::future_status::deferred) pending_.wait();
 }
 
-void FrameStream::startDecoding() {
-    if (started_ == indices_.size()) return;
+void FrameStream::decodeAhead() {
+    if (pending_.valid() || started_ == indices_.size()) return;
     const size_t index = indices_[started_];
     const FrameEntry& entry = reader_.manifest().frames.at(index);
     Shared shared;
@@ -48,7 +48,8 @@ FrameStream::Decoded FrameStream::decode(size_t index, const Shared& shared) con
     return d;
 }
 
-std::optional<Frame> FrameStream::next() {
+std::optional<Frame> FrameStream::next(Ahead ahead) {
+    decodeAhead();
     if (!pending_.valid()) return std::nullopt;
     Decoded d;
     try {
@@ -63,7 +64,7 @@ std::optional<Frame> FrameStream::next() {
     truth_ = std::move(d.truth);
     truthFile_ = entry.truth;
     counts_ += d.counts;
-    startDecoding();
+    if (ahead == Ahead::now) decodeAhead();
     return std::move(d.frame);
 }
 

@@ -21,8 +21,11 @@ class FrameStream {
     FrameStream(const FrameStream&) = delete;
     FrameStream& operator=(const FrameStream&) = delete;
 
+    // When the frame after the next is decoded: at once, or when the caller has given back what is large of the next.
+    enum class Ahead { now, whenTold };
     // The next frame; nullopt after the last. Ends after an error.
-    std::optional<Frame> next();
+    std::optional<Frame> next(Ahead ahead = Ahead::now);
+    void decodeAhead();  // unless that has begun
     // What belongs to the frame that next() returned, once; afterwards the caller alone has it, unless the next frame
     // is in the same file (a static shot): these share it.
     // The centre-sampled frame of the same instant; null when nothing of it was wanted. The caller may add to it
@@ -40,7 +43,6 @@ class FrameStream {
         std::shared_ptr<const Truth> truth;
         SanitiseCounts counts;
     };
-    void startDecoding();
     // What the last frame has of the next one's files, so that they are decoded once; else null.
     struct Shared {
         std::shared_ptr<Frame> centre;
