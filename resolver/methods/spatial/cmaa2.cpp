@@ -3,6 +3,7 @@
 #include "methods/method.h"
 #include "methods/spatial/edge_plane.h"
 #include "methods/spatial/luma.h"
+#include "methods/working.h"
 
 namespace aa {
 namespace {
@@ -65,12 +66,13 @@ class Cmaa2 : public Method {
 
   private:
     void findEdges(const Frame& frame, const Exec& exec) {
-        lumaPlane(frame.colorLinear, shownLuma(LumaKind::linearOfSqrt, frame.display), exec, luma_);
+        const auto luma = luma_.take();
+        lumaPlane(frame.colorLinear, shownLuma(LumaKind::linearOfSqrt, frame.display), exec, *luma);
         edges_.resize(width_, height_, 4);
         all_.resize(width_, height_, 4);
         const auto& kernels = cmaa2KernelsFor(exec);
         runKernel(kernels.edges, exec,
-                  Cmaa2EdgeArgs{luma_.row(0), edges_.row(0), luma_.stride(), edges_.stride(), width_,
+                  Cmaa2EdgeArgs{luma->row(0), edges_.row(0), luma->stride(), edges_.stride(), width_,
                                 settings_.threshold, settings_.localContrast},
                   height_);
         edges_.clearBesideTheRows();
@@ -114,7 +116,7 @@ class Cmaa2 : public Method {
     Cmaa2Settings settings_;
     bool linear_;
     int width_ = 0, height_ = 0;
-    PlaneF luma_;
+    Working<PlaneF> luma_;
     EdgePlane edges_, all_;
     std::vector<uint16_t> stored_, verticals_;
     std::vector<int> verticalCount_, columnStart_, columnRows_;

@@ -2,6 +2,7 @@
 
 #include "methods/method.h"
 #include "methods/spatial/luma.h"
+#include "methods/working.h"
 
 namespace aa {
 namespace {
@@ -12,8 +13,9 @@ class EdgeBlur : public Method {
         : args_(args), kind_(kind), kernel_(kernel) {}
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         const Rgb& in = frame.colorEncoded;
-        lumaPlane(in, kind_, exec, luma_);
-        args_.luma = luma_.row(0);
+        const auto luma = luma_.take();
+        lumaPlane(in, kind_, exec, *luma);
+        args_.luma = luma->row(0);
         args_.in = view(in);
         args_.out = view(out);
         args_.stride = in.stride();
@@ -35,7 +37,8 @@ class EdgeBlur : public Method {
     EdgeBlurArgs args_;
     LumaKind kind_;
     RowKernel<EdgeBlurArgs> EdgeBlurKernels::*kernel_;
-    PlaneF luma_, directionX_, directionY_;
+    Working<PlaneF> luma_;
+    PlaneF directionX_, directionY_;
 };
 
 }  // namespace

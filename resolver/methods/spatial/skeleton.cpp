@@ -2,6 +2,7 @@
 
 #include "methods/method.h"
 #include "methods/spatial/luma.h"
+#include "methods/working.h"
 
 namespace aa {
 namespace {
@@ -18,11 +19,12 @@ class SpatialSkeleton : public Method {
           strength_(p.realf("strength")) {}
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
-        const Rgb& in = frame.colorEncoded;  // filled because .input below says encoded
-        lumaPlane(in, luma_, exec, lumaPlane_);
+        const Rgb& in = frame.colorEncoded;   // filled because .input below says encoded
+        const auto luma = lumaPlane_.take();  // this frame's alone: the next one makes it anew
+        lumaPlane(in, luma_, exec, *luma);
         SpatialSkeletonArgs args{.in = view(in),
                                  .out = view(out),
-                                 .luma = lumaPlane_.row(0),
+                                 .luma = luma->row(0),
                                  .contrast = nullptr,
                                  .stride = in.stride(),
                                  .width = in.width(),
@@ -43,7 +45,8 @@ class SpatialSkeleton : public Method {
   private:
     LumaKind luma_;
     float threshold_, strength_;
-    PlaneF lumaPlane_, contrast_;
+    Working<PlaneF> lumaPlane_;
+    PlaneF contrast_;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "methods/method.h"
 #include "methods/temporal/temporal.h"
+#include "methods/working.h"
 
 namespace aa {
 namespace {
@@ -19,9 +20,10 @@ class Asaa : public Method {
         const glm::vec2 phi = asaaOffsetPx(quadrant);
         AsaaArgs args{};
         args.in = temporal::frameView(frame, frame.colorEncoded);
+        const auto unjittered = unjittered_.take();
         if (params_.flag("unjitter")) {  // to where the quadrant's buffer has its samples
-            temporal::unjitter(frame.colorEncoded, frame.jitterPx - glm::dvec2(phi), exec, unjittered_);
-            args.in.color = view(std::as_const(unjittered_));
+            temporal::unjitter(frame.colorEncoded, frame.jitterPx - glm::dvec2(phi), exec, *unjittered);
+            args.in.color = view(std::as_const(*unjittered));
         }
         args.in.out = view(out);
         args.in.next = buffers_.next(quadrant).row(0);
@@ -61,7 +63,7 @@ class Asaa : public Method {
     Kept<RgbaPlane> buffers_{history_, 4};
     Kept<PlaneF> count_{history_};
     std::optional<Camera> cameras_[4];  // of the frames that wrote the buffers
-    Rgb unjittered_;
+    Working<Rgb> unjittered_;
     TemporalDebugLayers debug_;
 };
 }  // namespace

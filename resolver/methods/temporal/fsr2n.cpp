@@ -6,6 +6,7 @@
 
 #include "methods/method.h"
 #include "methods/temporal/temporal.h"
+#include "methods/working.h"
 
 namespace aa {
 namespace {
@@ -46,13 +47,14 @@ class Fsr2n : public Method {
         history_.begin(frame, "fsr2n", args.in);
         args.in.feedbackCeiling = temporal::feedbackCeiling(p, history_.framesSinceReset());
         args.in.dilation = Dilation::closest3x3;
-        fitted(nearest_, frame.width, frame.height);
+        const auto nearest = nearest_.take();
+        *nearest = PlaneF::unset(frame.width, frame.height);
         if (args.in.history) {
-            for (int y = 0; y < frame.height; y++) std::fill(nearest_.row(y), nearest_.row(y) + frame.width, kNoDepth);
-            runKernel(kernels.scatter, exec, Fsr2nScatterArgs{args.in, nearest_.row(0), exec.parallel}, frame.height);
-            nearest_.fillBorder();
+            for (int y = 0; y < frame.height; y++) std::fill(nearest->row(y), nearest->row(y) + frame.width, kNoDepth);
+            runKernel(kernels.scatter, exec, Fsr2nScatterArgs{args.in, nearest->row(0), exec.parallel}, frame.height);
+            nearest->fillBorder();
         }
-        args.nearest = nearest_.row(0);
+        args.nearest = nearest->row(0);
         args.previousLuma = luma_.previous().row(0);
         args.nextLuma = luma_.next().row(0);
         setFsr2nFrame(args, frame, args.in.jitterXPx, args.in.jitterYPx);
@@ -84,7 +86,7 @@ class Fsr2n : public Method {
     float lockDecay_;
     ColourHistory history_;
     Kept<PlaneF> luma_{history_};
-    PlaneF nearest_;  // scratch
+    Working<PlaneF> nearest_;
     TemporalDebugLayers debug_;
     PlaneF depthClip_, lock_;
 };

@@ -7,6 +7,7 @@
 #include "methods/method.h"
 #include "methods/sharpen.h"
 #include "methods/temporal/temporal.h"
+#include "methods/working.h"
 
 namespace aa {
 namespace {
@@ -60,7 +61,9 @@ class Raptor : public Method {
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         const Params& p = params_;
         const float sharpen = p.realf("sharpen");
-        Rgb& blend = sharpen > 0 ? fitted(blend_, frame.width, frame.height) : out;
+        const auto unsharpened = blend_.take();
+        if (sharpen > 0) *unsharpened = Rgb::unset(frame.width, frame.height);
+        Rgb& blend = sharpen > 0 ? *unsharpened : out;
         RaptorArgs args{};
         args.in = temporal::frameView(frame, frame.colorLinear);
         if (p.flag("unjitter")) temporal::unjitter(frame, args.in);
@@ -84,8 +87,8 @@ class Raptor : public Method {
         temporal::runTemporal(raptorKernelsFor(exec).resolve, exec, args);
         history_.end(temporal::historyStorage(p), exec);
         if (sharpen > 0) {
-            blend_.fillBorder();
-            sharpenLuma(blend_, sharpen, exec, out);
+            blend.fillBorder();
+            sharpenLuma(blend, sharpen, exec, out);
         }
     }
     size_t stateBytes() const override { return history_.bytes() + blend_.bytes(); }
@@ -95,7 +98,7 @@ class Raptor : public Method {
   private:
     Params params_;
     ColourHistory history_;
-    Rgb blend_;  // before sharpening
+    Working<Rgb> blend_;  // before sharpening
     TemporalDebugLayers debug_;
 };
 }  // namespace

@@ -5,6 +5,7 @@
 #include "methods/spatial/smaa.h"
 #include "methods/temporal/smaa_temporal_kernels.h"
 #include "methods/temporal/temporal.h"
+#include "methods/working.h"
 
 namespace aa {
 namespace {
@@ -123,8 +124,9 @@ class VelocityWeightedPair {
         if (unjitter_) {
             current(color, velocity, Smaa::RowsDone());
             color.fillBorder();
-            temporal::unjitter(color, frame.jitterPx, exec, unjittered_);
-            std::swap(color, unjittered_);
+            const auto unjittered = unjittered_.take();
+            temporal::unjitter(color, frame.jitterPx, exec, *unjittered);
+            std::swap(color, *unjittered);
             runKernel(smaaTemporalKernelsFor(exec).resolve, exec, argsOf(frame, debug, out), frame.height);
         } else {
             const SmaaTemporalArgs args = argsOf(frame, debug, out);
@@ -165,7 +167,7 @@ class VelocityWeightedPair {
     bool reproject_, pixels1080_, unjitter_;
     History history_;
     Kept<Rgb> color_{history_}, velocity_{history_};  // velocity: two of the three planes
-    Rgb unjittered_;
+    Working<Rgb> unjittered_;
     PlaneF weight_;
 };
 

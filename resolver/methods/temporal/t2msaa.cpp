@@ -5,6 +5,7 @@
 #include "image/error.h"
 #include "methods/method.h"
 #include "methods/temporal/temporal.h"
+#include "methods/working.h"
 
 namespace aa {
 namespace {
@@ -20,6 +21,7 @@ class T2msaa : public Method {
         args.in.out = view(out);
         history_.begin(frame, "t2msaa", args.in);
         const auto pair = t2msaaSamples(frame, offsetPx_, history_.framesSinceReset());
+        const std::array unjittered{unjittered_[0].take(), unjittered_[1].take()};
         for (size_t i = 0; i < 2; i++) {
             const SubSample& s = frame.subSamples[pair[i]];
             args.sample[i] = view(s.colorLinear);
@@ -28,8 +30,8 @@ class T2msaa : public Method {
             // Their mean lies here from the pixel's centre.
             const auto& at = frame.subSamplePositionsPx;
             const glm::dvec2 placePx = frame.jitterPx + 0.5 * (at[pair[0]] + at[pair[1]]);
-            temporal::unjitter(s.colorLinear, placePx, exec, unjittered_[i]);
-            args.sample[i] = view(std::as_const(unjittered_[i]));
+            temporal::unjitter(s.colorLinear, placePx, exec, *unjittered[i]);
+            args.sample[i] = view(std::as_const(*unjittered[i]));
             const glm::ivec2 texel = temporal::unjitteredTexel(frame);
             args.sampleDepth[i] += ptrdiff_t(texel.y) * args.in.stride + texel.x;
         }
@@ -59,7 +61,7 @@ class T2msaa : public Method {
     double offsetPx_;
     ColourHistory history_;
     Kept<PlaneF> count_{history_};
-    Rgb unjittered_[2];
+    Working<Rgb> unjittered_[2];
     TemporalDebugLayers debug_;
 };
 
