@@ -52,19 +52,25 @@ inline ColourCounts sanitiseColour(Rgb& colour, bool storedAsHalf, InputPolicy p
 }
 
 inline bool isFinite(float v) { return (std::bit_cast<uint32_t>(v) & 0x7f800000u) != 0x7f800000u; }
-// Whether `bad` holds anywhere, row-parallel; give it integer tests only, so that the compiler makes lanes of it.
+// Whether `bad` holds anywhere in rows [y0, y1); give it integer tests only, so that the compiler makes lanes of it.
+template <class Bad>
+bool anyValueIn(const PlaneF& plane, int y0, int y1, const Bad& bad) {
+    for (int y = y0; y < y1; y++) {
+        const float* row = plane.row(y);
+        uint32_t rowBad = 0;
+        for (int x = 0; x < plane.width(); x++) rowBad |= uint32_t(bad(row[x]));
+        if (rowBad) return true;
+    }
+    return false;
+}
+// Anywhere, row-parallel.
 template <class Bad>
 bool anyValue(const PlaneF& plane, const Bad& bad) {
     std::atomic<bool> found = false;
     forRows(
         {}, plane.height(),
         [&](int y0, int y1) {
-            for (int y = y0; y < y1; y++) {
-                const float* row = plane.row(y);
-                uint32_t rowBad = 0;
-                for (int x = 0; x < plane.width(); x++) rowBad |= uint32_t(bad(row[x]));
-                if (rowBad) found.store(true, std::memory_order_relaxed);
-            }
+            if (anyValueIn(plane, y0, y1, bad)) found.store(true, std::memory_order_relaxed);
         },
         32);
     return found;

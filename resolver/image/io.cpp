@@ -1,5 +1,6 @@
 #include "image/io.h"
 
+#include <fcntl.h>
 #include <signal.h>
 #include <unistd.h>
 
@@ -182,6 +183,15 @@ PlaneF shownOf(const PlaneF& in, const Window& shown) {
 
 bool LoadedImage::isOpaque() const {
     return alpha.empty() || !anyValue(alpha, [](float v) { return v != 1; });
+}
+
+void willRead(const fs::path& file) {
+#ifdef POSIX_FADV_WILLNEED
+    const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) return;
+    ::posix_fadvise(descriptor, 0, 0, POSIX_FADV_WILLNEED);
+    ::close(descriptor);
+#endif
 }
 
 LoadedImage readImage(const fs::path& file, const ReadOptions& o) {

@@ -41,6 +41,9 @@ struct ReadOptions {
     ColourUse use = ColourUse::measured;
 };
 
+// Lets the system read a file ahead that will be opened soon, and goes on; one that is not there is left alone.
+void willRead(const std::filesystem::path& file);
+
 // Reads one picture of the file; of one or two channels the first is repeated. What the file is, its content says, not
 // its name. Integer files are taken as sRGB codes, float files as linear. A picture that its file says lies turned is
 // turned upright. Throws InputError: missing, not an image, truncated, no pixels, larger than kLargestSide; deep or

@@ -1,5 +1,5 @@
-// Working memory of one frame: planes that the next frame makes anew. Between frames nobody has them, so that of a run's
-// methods only those that resolve at the time hold any.
+// Working memory of one frame: planes that the next frame makes anew. Between frames nobody has them, so that of a
+// run's methods only those that resolve at the time hold any.
 //
 //     Working<PlaneF> luma_;
 //

@@ -51,12 +51,27 @@ Reference makeReference(const Rgb& halfA, const Rgb& halfB, const DisplayChain& 
     return r;
 }
 
-TileErrors tileErrors(const Rgb& encoded, const Reference& reference, const Exec& exec) {
-    TileErrors errors = tileErrors(encoded, reference.encoded, exec, reference.sumOfSquares);
-    if (reference.encodedA.empty()) return errors;
-    errors.againstA = tileErrors(encoded, reference.encodedA, exec, 0).sum;
-    errors.againstB = tileErrors(encoded, reference.encodedB, exec, 0).sum;
+ReferenceErrors::ReferenceErrors(const Rgb& encoded, const Reference& reference, const Exec& exec)
+    : reference_(reference) {
+    against_.emplace_back(encoded, reference.encoded, exec);
+    if (reference.encodedA.empty()) return;
+    against_.emplace_back(encoded, reference.encodedA, exec);
+    against_.emplace_back(encoded, reference.encodedB, exec);
+}
+void ReferenceErrors::add(int y0, int y1) {
+    for (TileErrorRows& rows : against_) rows.add(y0, y1);
+}
+TileErrors ReferenceErrors::total() const {
+    TileErrors errors = against_[0].total(reference_.sumOfSquares);
+    if (against_.size() == 1) return errors;
+    errors.againstA = against_[1].total(0).sum;
+    errors.againstB = against_[2].total(0).sum;
     return errors;
+}
+TileErrors tileErrors(const Rgb& encoded, const Reference& reference, const Exec& exec) {
+    ReferenceErrors errors(encoded, reference, exec);
+    forRows(exec, encoded.height(), [&](int y0, int y1) { errors.add(y0, y1); });
+    return errors.total();
 }
 
 FrameMetrics frameMetrics(const SquaredError& e) {
@@ -122,7 +137,7 @@ void prepare(Reference& r, const MeasureOptions& options, const Exec& exec, bool
 
 FrameMetrics measure(const MeasuredPicture& picture, const Reference& reference, const MeasureOptions& options,
                      const Exec& exec, TileErrors& pool, bool judged) {
-    const TileErrors errors = tileErrors(picture.encoded, reference, exec);
+    const TileErrors errors = picture.errors ? *picture.errors : tileErrors(picture.encoded, reference, exec);
     pool += errors;
     FrameMetrics m = frameMetrics(errors.squaredError());
     const ImagePair images{picture.encoded,

@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "image/colour.h"
 #include "metrics/figures.h"
@@ -43,7 +44,18 @@ struct Reference {
 Reference makeReference(const Rgb& halfA, const Rgb& halfB, const DisplayChain& display, const Exec& exec,
                         bool eightBit = false);
 
-// Squared errors against the truth, and against its halves where they differ.
+// Squared errors against the truth, and against its halves where they differ; some rows at a time, from any thread. The
+// pictures must outlive it.
+class ReferenceErrors {
+  public:
+    ReferenceErrors(const Rgb& encoded, const Reference& reference, const Exec& exec);
+    void add(int y0, int y1);
+    TileErrors total() const;  // of all rows
+
+  private:
+    const Reference& reference_;
+    std::vector<TileErrorRows> against_;  // the mean, half A, half B
+};
 TileErrors tileErrors(const Rgb& encoded, const Reference& reference, const Exec& exec);
 
 struct MeasureOptions {
@@ -67,9 +79,11 @@ MeasureOptions measureOptions(const std::vector<std::string>& names);
 // `judged`: whether the frame counts in the pooled figures (MeasureOptions::ofJudged).
 void prepare(Reference& reference, const MeasureOptions& options, const Exec& exec, bool judged = true);
 struct MeasuredPicture {
-    const Rgb& encoded;            // after the display chain
-    const Rgb* linear = nullptr;   // null when the method gives encoded colour
-    const PlaneF* luma = nullptr;  // pictureLuma(encoded), where somebody has it already
+    const Rgb& encoded;           // after the display chain
+    const Rgb* linear = nullptr;  // null when the method gives encoded colour
+    // Where somebody has them already: pictureLuma(encoded), tileErrors(encoded, reference).
+    const PlaneF* luma = nullptr;
+    const TileErrors* errors = nullptr;
 };
 // The tile errors of the encoded image are added to `pool`.
 FrameMetrics measure(const MeasuredPicture& picture, const Reference& reference, const MeasureOptions& options,

@@ -64,27 +64,40 @@ std::vector<double> TileErrors::coarse(size_t tiles) const {
     return sums;
 }
 
-TileErrors tileErrors(const Rgb& test, const Rgb& reference, const Exec& exec, std::optional<double> squares) {
+TileErrorRows::TileErrorRows(const Rgb& test, const Rgb& reference, const Exec& exec)
+    : test_(test),
+      reference_(reference),
+      exec_(exec),
+      tilesX_(size_t(test.width() + kErrorTilePx - 1) / kErrorTilePx),
+      rows_(size_t(test.height()) * tilesX_) {
     assert(test.width() == reference.width() && test.height() == reference.height());
     static_assert(TileErrors::kTilePx == kErrorTilePx);
-    const int w = test.width(), h = test.height();
-    const int tilesX = (w + kErrorTilePx - 1) / kErrorTilePx, tilesY = (h + kErrorTilePx - 1) / kErrorTilePx;
-    std::vector<double> tileRows(size_t(h) * size_t(tilesX));
-    const SquaredErrorArgs args{view(test), view(reference), test.stride(), w, tilesX, tileRows.data()};
-    runKernel(metricsKernelsFor(exec).squaredError, exec, args, h);
-
+}
+void TileErrorRows::add(int y0, int y1) {
+    const SquaredErrorArgs args{view(test_),   view(reference_), test_.stride(),
+                                test_.width(), int(tilesX_),     rows_.data()};
+    rowsOf(metricsKernelsFor(exec_).squaredError, exec_.precision)(args, y0, y1);
+}
+TileErrors TileErrorRows::total(std::optional<double> squares) const {
+    const int w = test_.width(), h = test_.height();
     TileErrors errors;
-    errors.columns = size_t(tilesX);
-    errors.sum.resize(size_t(tilesX) * size_t(tilesY));
+    errors.columns = tilesX_;
+    errors.sum.resize(tilesX_ * (size_t(h + kErrorTilePx - 1) / kErrorTilePx));
     errors.values.resize(errors.sum.size());
     for (int y = 0; y < h; y++)
-        for (int tile = 0; tile < tilesX; tile++) {
-            const size_t i = size_t(y / kErrorTilePx) * size_t(tilesX) + size_t(tile);
-            errors.sum[i] += tileRows[size_t(y) * size_t(tilesX) + size_t(tile)];
-            errors.values[i] += 3.0 * (std::min(w, (tile + 1) * kErrorTilePx) - tile * kErrorTilePx);
+        for (size_t tile = 0; tile < tilesX_; tile++) {
+            const size_t i = size_t(y / kErrorTilePx) * tilesX_ + tile;
+            const int begin = int(tile) * kErrorTilePx;
+            errors.sum[i] += rows_[size_t(y) * tilesX_ + tile];
+            errors.values[i] += 3.0 * (std::min(w, begin + kErrorTilePx) - begin);
         }
-    errors.referenceSum = squares ? *squares : sumOfSquares(reference, exec);
+    errors.referenceSum = squares ? *squares : sumOfSquares(reference_, exec_);
     return errors;
+}
+TileErrors tileErrors(const Rgb& test, const Rgb& reference, const Exec& exec, std::optional<double> squares) {
+    TileErrorRows rows(test, reference, exec);
+    forRows(exec, test.height(), [&](int y0, int y1) { rows.add(y0, y1); });
+    return rows.total(squares);
 }
 
 double sumOfSquares(const Rgb& image, const Exec& exec) {
@@ -112,12 +125,15 @@ double relMse(const Rgb& test, const Rgb& reference, const Exec& exec) {
     return inOrder(rows) / (3.0 * test.width() * test.height());
 }
 
+void pictureLumaRows(const Rgb& encoded, const Exec& exec, int y0, int y1, PlaneF& luma) {
+    const LumaArgs args{view(encoded), luma.stride(), encoded.width(), luma.row(0)};
+    rowsOf(metricsKernelsFor(exec).luma, exec.precision)(args, y0, y1);
+}
 PlaneF pictureLuma(const Rgb& encoded, const Exec& exec) {
-    PlaneF out = PlaneF::unset(encoded.width(), encoded.height());
-    const LumaArgs args{view(encoded), out.stride(), encoded.width(), out.row(0)};
-    runKernel(metricsKernelsFor(exec).luma, exec, args, encoded.height());
-    out.fillBorder();
-    return out;
+    PlaneF luma = PlaneF::unset(encoded.width(), encoded.height());
+    forRows(exec, encoded.height(), [&](int y0, int y1) { pictureLumaRows(encoded, exec, y0, y1, luma); });
+    luma.fillBorder();
+    return luma;
 }
 
 double ssimLuma(const Rgb& test, const Rgb& reference, const Exec& exec, PlaneF* map, KnownLuma known) {

@@ -42,12 +42,27 @@ struct TileErrors {
     // Sums over tiles of `tiles` times the side.
     std::vector<double> coarse(size_t tiles) const;
 };
+// The same, some rows at a time, from any thread. The pictures must outlive it.
+class TileErrorRows {
+  public:
+    TileErrorRows(const Rgb& test, const Rgb& reference, const Exec& exec);
+    void add(int y0, int y1);
+    TileErrors total(std::optional<double> squares) const;  // of all rows
+
+  private:
+    const Rgb &test_, &reference_;
+    Exec exec_;
+    size_t tilesX_;
+    std::vector<double> rows_;  // [height][tilesX_]: of one row of each tile
+};
 // `squares`: sumOfSquares(reference), where it is known.
 TileErrors tileErrors(const Rgb& test, const Rgb& reference, const Exec& exec, std::optional<double> squares = {});
 double sumOfSquares(const Rgb& image, const Exec& exec);  // over pixels and channels
 
 // BT.601, of encoded images. Border filled.
 PlaneF pictureLuma(const Rgb& encoded, const Exec& exec);
+// Rows [y0, y1) of it, into a plane of that size; the border is left.
+void pictureLumaRows(const Rgb& encoded, const Exec& exec, int y0, int y1, PlaneF& luma);
 // Where somebody has it already.
 struct KnownLuma {
     const PlaneF *test = nullptr, *reference = nullptr;

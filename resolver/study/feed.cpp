@@ -14,7 +14,7 @@ void Feed::stop() {
 }
 
 std::optional<Feed::Item> Feed::make() {
-    auto frame = stream_.next(device_ ? FrameStream::Ahead::now : FrameStream::Ahead::whenTold);
+    auto frame = stream_.next();
     if (!frame) return {};
     Item item{std::make_shared<Frame>(std::move(*frame)), stream_.takeCentre(), stream_.takeTruth()};
     prepare_(index_++, *item.frame);
@@ -24,10 +24,6 @@ std::optional<Feed::Item> Feed::make() {
     if (device_) device_->share(*item.frame);
     centre_ = item.centre;
     return item;
-}
-
-void Feed::decodeAhead() {
-    if (!device_) stream_.decodeAhead();
 }
 
 std::optional<Feed::Item> Feed::next() {

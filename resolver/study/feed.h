@@ -26,8 +26,6 @@ class Feed {
     };
     // The next frame; nothing after the last. What an earlier call returned must be done with.
     std::optional<Item> next();
-    // What is large of the latest frame has been given back: the next one is decoded meanwhile.
-    void decodeAhead();
     void stop();  // waits for what is being made ready
 
   private:

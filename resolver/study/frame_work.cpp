@@ -20,14 +20,8 @@ bool isThere(const std::filesystem::path& out, const std::string& image) {
 }  // namespace
 
 FrameWork::FrameWork(const ShotReader& shot, const RunOptions& o, const InputPlan& plan, Judge& judge,
-                     std::vector<RunningMethod>& methods, RunResults& results, Feed& feed)
-    : manifest_(shot.manifest()),
-      options_(o),
-      plan_(plan),
-      judge_(judge),
-      methods_(methods),
-      results_(results),
-      feed_(feed) {
+                     std::vector<RunningMethod>& methods, RunResults& results)
+    : manifest_(shot.manifest()), options_(o), plan_(plan), judge_(judge), methods_(methods), results_(results) {
     if (o.device && o.timeOnly)
         for (const auto& spec : o.methods)
             timed_.push_back(isExternal(spec) ? nullptr : gpu::create(*o.device, spec, shotInfo(manifest_)));
@@ -55,15 +49,12 @@ void FrameWork::operator()(Feed::Item& item, size_t i) {
     else
         lookAtTruth(item, i);
     const Order others = order();
-    if (others.readers == 0) feed_.decodeAhead();
     std::atomic<size_t> stillReading = others.readers;
     // A device does one thing after the other.
     const Exec side{.parallel = options_.exec.parallel && !options_.device};
     sideBySide(side, others.methods.size(), [&](size_t n) {
         work(others.methods[n], item, i);
-        if (n >= others.readers || --stillReading > 0) return;
-        forgetSubSamples(item, i);
-        feed_.decodeAhead();
+        if (n < others.readers && --stillReading == 0) forgetSubSamples(item, i);
     });
     judge_.judgeRejected(methods_, results_.methods);
     for (RunningMethod& m : methods_) m.forgetPicture();
@@ -82,7 +73,7 @@ FrameWork::Order FrameWork::order() const {
     return o;
 }
 
-// They are most of a frame's memory, which the next one takes that is decoded then.
+// They are most of a frame's memory, which the next one takes that is being decoded.
 void FrameWork::forgetSubSamples(Feed::Item& item, size_t i) const {
     if (options_.device) return;  // it shares them
     item.frame->subSamples.clear();

@@ -14,7 +14,7 @@ namespace aa {
 class FrameWork {
   public:
     FrameWork(const ShotReader& shot, const RunOptions& options, const InputPlan& plan, Judge& judge,
-              std::vector<RunningMethod>& methods, RunResults& results, Feed& feed);
+              std::vector<RunningMethod>& methods, RunResults& results);
     // Frame `i` of the run. Of the item, what nobody reads any more is given back.
     void operator()(Feed::Item& item, size_t i);
 
@@ -42,7 +42,6 @@ class FrameWork {
     Judge& judge_;
     std::vector<RunningMethod>& methods_;
     RunResults& results_;
-    Feed& feed_;
     std::vector<std::unique_ptr<Method>> timed_;  // the same methods on a device, for its time alone
     Rgb unused_;                                  // what they make
     std::optional<size_t> reference_;             // the method that the others are held against

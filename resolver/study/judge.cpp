@@ -5,6 +5,7 @@
 
 #include "image/error.h"
 #include "image/input_policy.h"
+#include "metrics/glance.h"
 #include "metrics/non_finite.h"
 
 namespace aa {
@@ -87,7 +88,7 @@ Rgb Judge::farthest(const RunningMethod& method, uint64_t& nonFinite) const {
     const Rgb* const broken = reference_ && !reference_->broken.empty() ? &reference_->broken : nullptr;
     nonFinite = nonFiniteValues(method.out);
     if (nonFinite == 0 && broken) nonFinite = nonFiniteValues(*broken);
-    if (nonFinite == 0 || !reference_) return {};
+    if (!reference_) return {};
     Rgb picture = method.shown();
     putFarthest(method.out.empty() ? nullptr : &method.out, broken, reference_->encoded, picture);
     return picture;
@@ -145,17 +146,23 @@ FrameResult Judge::judge(size_t k, const RunningMethod& method, const ResolveSec
     result.seconds = seconds.processor;
     result.wallSeconds = seconds.wall;
     if (&method == standIn_) return result;
-    const Rgb picture = farthest(method, result.nonFinite);
+    const bool isWhole = reference_ && !options_.protocol.region;
+    Glance glanced = glance(method.out, method.shown(), isWhole ? &*reference_ : nullptr, overTime_, options_.exec);
+    Rgb picture;
+    if (!glanced.isFinite || (reference_ && !reference_->broken.empty())) picture = farthest(method, result.nonFinite);
     const bool broken = !picture.empty();
     const Rgb& encoded = broken ? picture : method.shown();
-    PlaneF luma = overTime_ ? pictureLuma(encoded, options_.exec) : PlaneF();
+    if (broken) glanced = {.luma = overTime_ ? pictureLuma(encoded, options_.exec) : PlaneF(), .errors = {}};
     if (reference_) {
         const bool linear = method.spec.outputSpace() == Space::linear;
         const auto& region = options_.protocol.region;
         const auto take = [&](const Rgb& shown, const Rgb& out) {
             if (known && known->metrics) return again(*known->metrics, shown, measured(), errors_[k]);
-            return measure({shown, linear && !broken ? &out : nullptr, luma.empty() || region ? nullptr : &luma},
-                           measured(), options_.measure, options_.exec, errors_[k], isJudged());
+            const MeasuredPicture measuredPicture{.encoded = shown,
+                                                  .linear = linear && !broken ? &out : nullptr,
+                                                  .luma = glanced.luma.empty() || region ? nullptr : &glanced.luma,
+                                                  .errors = glanced.errors ? &*glanced.errors : nullptr};
+            return measure(measuredPicture, measured(), options_.measure, options_.exec, errors_[k], isJudged());
         };
         const Rgb encodedPart = region ? cropped(encoded, *region) : Rgb(),
                   part = region ? cropped(method.out, *region) : Rgb();
@@ -166,7 +173,7 @@ FrameResult Judge::judge(size_t k, const RunningMethod& method, const ResolveSec
     }
     if (overTime_) {
         overTimeOf_[k].add(scene_, encoded, options_.exec,
-                           result.metrics ? std::optional(result.metrics->mse) : std::nullopt, std::move(luma));
+                           result.metrics ? std::optional(result.metrics->mse) : std::nullopt, std::move(glanced.luma));
         if (int(seen_) > temporalWarmup(options_.frames.size())) result.temporal = overTimeOf_[k].latest();
     }
     return result;

@@ -43,8 +43,8 @@ class Judge {
     void lookAtTruth(const std::shared_ptr<const Truth>& truth);
     void lookAtMethod(const RunningMethod& standIn);
     bool isJudged() const;  // whether the latest frame counts in the pooled figures
-    // The method's displayed picture, with the largest difference wherever it or the reference holds no number; empty
-    // where neither does, or there is no reference.
+    // Where the method's picture or the reference holds a value that is no number: how many, and the displayed picture
+    // with the largest difference there. Empty without a reference.
     Rgb farthest(const RunningMethod& method, uint64_t& nonFinite) const;
     void noLinearFigures(FrameMetrics& to) const;
     // A metric of a sequence, and what it keeps of the reference and of every method; null where it cannot be measured.

@@ -171,7 +171,7 @@ RunResults runMethods(const ShotReader& shot, const RunOptions& o, const Progres
             prepareFrame(frame, methods, o.protocol.display, o.exec);
         },
         o.device.get());
-    FrameWork work(shot, o, plan, judge, methods, results, feed);
+    FrameWork work(shot, o, plan, judge, methods, results);
     for (size_t i = 0; auto item = feed.next(); i++) {
         work(*item, i);
         if (o.checkpoint) o.checkpoint(results);

@@ -32,8 +32,7 @@ void ColourHistory::begin(const Frame& frame, std::string_view method, TemporalI
     History::begin(frame, method);
     if (!fresh() && storage_.format != HistoryFormat::float32) narrow();
     frameNumber_ = uint32_t(frame.number);
-    const RgbaPlane& previous = blend_.previous();
-    in.history = fresh() ? nullptr : previous.row(0);
+    in.history = fresh() ? nullptr : blend_.previous().row(0);
     in.next = blend_.next().row(0);
 }
 
