@@ -51,8 +51,6 @@ FlipFilters filtersAt(double pixelsPerDegree) {
     }
     return f;
 }
-// Rows of blocks that a thread takes: each take repeats the loading of 20 rows.
-constexpr int kBlocks = 16;
 }  // namespace
 
 FlipReference::FlipReference(const Rgb& reference, Values values, const Exec& exec, double pixelsPerDegree)
@@ -70,7 +68,7 @@ FlipReference::FlipReference(const Rgb& reference, Values values, const Exec& ex
                         .filters = filters_.get(),
                         .seen = seen_.data()};
     const auto& kernels = flipKernelsFor(exec);
-    runKernel(filters_ ? kernels.seeFrom : kernels.see, exec, args, rows, kBlocks);
+    runKernel(filters_ ? kernels.seeFrom : kernels.see, exec, args, rows, kFlipPiece);
 }
 FlipReference::~FlipReference() = default;
 
@@ -92,7 +90,7 @@ double FlipReference::flip(const Rgb& test, const Exec& exec, PlaneF* map) const
                         .rows = rows.data()};
     const auto& kernels = flipKernelsFor(exec);
     runKernel(filters_ ? kernels.judgeFrom : kernels.judge, exec, args, (height_ + kFlipTileRows - 1) / kFlipTileRows,
-              kBlocks);
+              kFlipPiece);
     if (map) map->fillBorder();
     return std::accumulate(rows.begin(), rows.end(), 0.0) / (double(width_) * height_);
 }
@@ -113,7 +111,7 @@ Metric flipMetric() {
                         quartile("flipMedian", "FLIP, median", "below which half of all FLIP lies"),
                         quartile("flipThirdQuartile", "FLIP, 3rd quartile", "below which three quarters of it lie")},
             .byDefault = true,
-            .nsPerPixel = 45,
+            .nsPerPixel = 35,
             .source = "[Andersson 2020]",
             .prepare = [](const ReferencePicture& r, const Exec& e) -> Measure {
                 const auto reference = std::make_shared<FlipReference>(r.encoded, FlipReference::Values::encoded, e,

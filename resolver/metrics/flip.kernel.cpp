@@ -1,11 +1,13 @@
-// What limits it on AVX2: arithmetic, about 1300 operations per 8 pixels of a pair, of which 770 are the filters' (19
-// taps of seven kinds, along either axis, in both images); 2.2 of them per cycle. So nothing waits for memory: light
-// becomes opponent colour once, the rows under a window stay in the second cache, and both passes read whole registers:
-// lanes are columns along y, and rows along x, to which tiles of 8 x 8 px are transposed.
+// What limits it on AVX2: arithmetic, about 1150 operations per 8 pixels of a pair, of which 770 are the filters' (19
+// taps of seven kinds, along either axis, in both images). So nothing waits for memory: light becomes opponent colour
+// once, the rows under a window stay in the second cache, and both passes read whole registers: lanes are columns along
+// y, and rows along x, to which tiles of 8 x 8 px are transposed. Two places are filtered together, for they share most
+// of what they read, and two filters side by side, for the sums of one wait for each other.
 #include "kernels/math.h"
 #include "kernels/srgb.h"
 #include "kernels/transpose.h"
 #include "metrics/flip_constants.h"
+#include "metrics/flip_filters.kernel.h"
 #include "metrics/flip_kernels.h"
 #include "metrics/strip.h"
 
@@ -14,9 +16,8 @@ using namespace aa;
 using namespace aa::flip_constants;
 
 constexpr int kTile = kTileRows;
-constexpr int kStrip = 256;           // columns that are loaded together
-constexpr int kChunk = kFlipColumns;  // of these, what is filtered together: it fills half of the first cache
-static_assert(kTile == kFlipTileRows && kStrip % kChunk == 0);
+constexpr int kStrip = kFlipColumns;  // columns
+static_assert(kTile == kFlipTileRows);
 
 // The filters at the usual distance are constants, so that their loops unroll: a third faster.
 struct UsualFilters {
@@ -40,22 +41,25 @@ template <class F>
 constexpr int kKept = kWindow<F> <= 32 ? 32 : 64;  // rows that are kept, a power of two
 
 template <class R>
-AA_INLINE R constant(double v) {
-    return R(Elem<R>(v));
-}
-template <class R>
 AA_INLINE vec3<R> transform(const double (&m)[3][3], vec3<R> c) {
     const auto row = [&](int i) __attribute__((always_inline)) {
         return c.x * constant<R>(m[i][0]) + c.y * constant<R>(m[i][1]) + c.z * constant<R>(m[i][2]);
     };
     return {row(0), row(1), row(2)};
 }
-// Luminance, red-green and blue-yellow: XYZ over the white point, then (Y, 500 (X - Y), 200 (Y - Z)). The paper's
-// offset and scale of the first, 116 Y - 16, pass through every normalised filter and are left out here.
+// Light of an sRGB code in [0, 1]. Above its line ((c + 0.055) / 1.055)^2.4 is s P(sqrt(s)), s = c + 0.055, a fit to
+// 9e-8 of itself: half of the operations of srgbDecode(), as near to the truth in float. Beyond float that one stands.
 template <class R>
-AA_INLINE vec3<R> opponent(vec3<R> linear) {
-    const vec3<R> xyz = transform(kToXyz, linear);
-    return {xyz.y, (xyz.x - xyz.y) * constant<R>(500), (xyz.y - xyz.z) * constant<R>(200)};
+AA_INLINE R light(R code) {
+    if constexpr (std::is_same_v<Elem<R>, double>)
+        return srgbDecode(code);
+    else {
+        const R fit[] = {constant<R>(0.0003214066456), constant<R>(-0.00660336051), constant<R>(0.08199107071),
+                         constant<R>(0.9798209055),    constant<R>(-0.2852234303),  constant<R>(0.1588897004),
+                         constant<R>(-0.0604352109),   constant<R>(0.01065431638)};
+        const R s = code + constant<R>(0.055), sum = polynomial(sqrt(s), fit);
+        return select(code <= constant<R>(0.04045), code * constant<R>(1 / 12.92), sum * s);
+    }
 }
 template <class R>
 AA_INLINE R labCurve(R t) {
@@ -65,8 +69,7 @@ AA_INLINE R labCurve(R t) {
 // Filtered opponent colour -> XYZ over the white point of what a display can show.
 template <class R>
 AA_INLINE vec3<R> shown(vec3<R> o) {
-    const vec3<R> xyz{o.x + o.y * constant<R>(1.0 / 500), o.x, o.x - o.z * constant<R>(1.0 / 200)};
-    return transform(kToXyz, saturate(transform(kToRgb, xyz)));
+    return transform(kToXyz, saturate(transform(kOpponentToRgb.m, o)));
 }
 // Its labCurve() -> CIELab with Hunt's adjustment: chroma fades with lightness.
 template <class R>
@@ -75,45 +78,22 @@ AA_INLINE vec3<R> huntLab(vec3<R> f) {
     return {lightness, hunt * (f.x - f.y) * constant<R>(500), hunt * (f.y - f.z) * constant<R>(200)};
 }
 
-// Symmetric or antisymmetric taps; at(i) is the value i places away.
-template <class R, class At>
-AA_INLINE R even(const At& at, const double* taps, int reach) {
-    R sum = at(0) * constant<R>(taps[0]);
-    for (int i = 1; i <= reach; i++) sum = sum + (at(-i) + at(i)) * constant<R>(taps[i]);
-    return sum;
-}
-template <class R, class At>
-AA_INLINE R odd(const At& at, const double* taps, int reach) {
-    R sum = (at(-1) - at(1)) * constant<R>(taps[1]);
-    for (int i = 2; i <= reach; i++) sum = sum + (at(-i) - at(i)) * constant<R>(taps[i]);
-    return sum;
-}
-// The point filter, whose taps sum to 0, as differences from the centre: exactly 0 on flat ground, where the square
-// root that follows would turn a rounding error of 1e-8 into 1e-4.
-template <class R, class At>
-AA_INLINE R evenOfDifferences(const At& at, const double* taps, int reach) {
-    const R twice = at(0) * constant<R>(2);
-    R sum = (at(-1) + at(1) - twice) * constant<R>(taps[1]);
-    for (int i = 2; i <= reach; i++) sum = sum + (at(-i) + at(i) - twice) * constant<R>(taps[i]);
-    return sum;
-}
-
 template <class T, class F>
 struct alignas(64) OpponentRow {
     T c[3][kLoaded<F>];
 };
-// What the pass along y leaves of a chunk of kTile rows, and its margins: one column after the other.
+// What the pass along y leaves of a strip's kTile rows, and of its margins: one column after the other.
 enum Filtered { csfY, csfCx, csfCzWide, csfCzNarrow, gaussOfY, edgeOfY, pointOfY, kFiltered };
 template <class T, class F>
 struct alignas(64) FilteredColumns {
-    T of[kFiltered][(kChunk + 2 * kMargin<F>)*kTile];
+    T of[kFiltered][(kStrip + 2 * kMargin<F>)*kTile];
 };
 // And the pass along x: colour as seen, and the strengths of edge and point.
 enum Seen { lightness, hueA, hueB, edgeStrength, pointStrength, kSeen };
 static_assert(kSeen == kFlipSeen);
 template <class T>
 struct alignas(64) SeenColumns {
-    T of[kSeen][kChunk * kTile];
+    T of[kSeen][kStrip * kTile];
 };
 
 // Opponent colour of row y of a strip with its margins, coordinates clamped to the image.
@@ -130,13 +110,13 @@ AA_INLINE void loadOpponent(const RgbIn& image, const FlipArgs& a, int x0, int y
             prefetch(in + kTile * long(a.stride), end);
         for (int x = begin; x < end; x += N<R>) {
             const R v = load<R>(in + x);
-            store(max(constant<R>(0), a.encoded ? srgbDecode(saturate(v)) : v),
+            store(max(constant<R>(0), a.encoded ? light(saturate(v)) : v),
                   out.c[c] + margin + x);  // NaN becomes 0
         }
     }
     for (int x = margin + begin; x < margin + end; x += N<R>) {
-        const vec3<R> c =
-            opponent(vec3<R>(loadOwn<R>(out.c[0] + x), loadOwn<R>(out.c[1] + x), loadOwn<R>(out.c[2] + x)));
+        const vec3<R> c = transform(
+            kToOpponent.m, vec3<R>(loadOwn<R>(out.c[0] + x), loadOwn<R>(out.c[1] + x), loadOwn<R>(out.c[2] + x)));
         store(c.x, out.c[0] + x), store(c.y, out.c[1] + x), store(c.z, out.c[2] + x);
     }
     for (auto& c : out.c) {
@@ -146,7 +126,7 @@ AA_INLINE void loadOpponent(const RgbIn& image, const FlipArgs& a, int x0, int y
 }
 // Columns x .. x + N<R> - 1 of the strip, kTile rows; `rows`: those under the windows.
 template <class R, class F>
-AA_INLINE void filterAlongY(const F& f, const OpponentRow<Elem<R>, F>* const* rows, int x, int place,
+AA_INLINE void filterAlongY(const F& f, const OpponentRow<Elem<R>, F>* const* rows, int x,
                             FilteredColumns<Elem<R>, F>& out) {
     const int window = kTile + 2 * f.csfReach;
     R in[kWindow<F>], found[kFiltered][kTile];
@@ -156,24 +136,42 @@ AA_INLINE void filterAlongY(const F& f, const OpponentRow<Elem<R>, F>* const* ro
     const auto around = [&](int k) __attribute__((always_inline)) {
         return [p = in + f.csfReach + k](int i) __attribute__((always_inline)) { return p[i]; };
     };
+    const auto keep = [&](Filtered kind, int k, Two<R> two) __attribute__((always_inline)) {
+        found[kind][k] = two.first, found[kind][k + 1] = two.second;
+    };
+    using Along = Outward<R, decltype(around(0))>;
     load(0);
-    for (int k = 0; k < kTile; k++) {
-        const auto at = around(k);
-        found[csfY][k] = even<R>(at, f.csfY, f.narrowReach);
-        found[gaussOfY][k] = even<R>(at, f.gauss, f.featureReach);
-        found[edgeOfY][k] = odd<R>(at, f.edge, f.featureReach);
-        found[pointOfY][k] = evenOfDifferences<R>(at, f.point, f.featureReach);
+    for (int k = 0; k < kTile; k += 2) {
+        Along y(around(k));
+        const Two<R> centre = y.centre(), twice = centre * 2;
+        Two<R> csf = centre * f.csfY[0], gauss = centre * f.gauss[0];
+        Features<R> features;
+        const int reach = f.narrowReach < f.featureReach ? f.featureReach : f.narrowReach;
+#pragma GCC unroll 10
+        for (int i = 1; i <= reach; i++) {
+            y.step(i);
+            if (i <= f.narrowReach) csf = csf + y.sum() * f.csfY[i];
+            if (i <= f.featureReach) gauss = gauss + y.sum() * f.gauss[i], features.add(f, y, twice, i);
+        }
+        keep(csfY, k, csf), keep(gaussOfY, k, gauss), keep(edgeOfY, k, features.edge);
+        keep(pointOfY, k, features.point);
     }
     load(1);
-    for (int k = 0; k < kTile; k++) found[csfCx][k] = even<R>(around(k), f.csfCx, f.narrowReach);
-    load(2);
-    for (int k = 0; k < kTile; k++) {
-        found[csfCzWide][k] = even<R>(around(k), f.csfCzWide, f.csfReach);
-        found[csfCzNarrow][k] = even<R>(around(k), f.csfCzNarrow, f.csfReach);
+    for (int k = 0; k < kTile; k += 2) {
+        Along cx(around(k));
+        Two<R> csf = cx.centre() * f.csfCx[0];
+#pragma GCC unroll 10
+        for (int i = 1; i <= f.narrowReach; i++) cx.step(i), csf = csf + cx.sum() * f.csfCx[i];
+        keep(csfCx, k, csf);
     }
-    for (int i = 0; i < kFiltered; i++) storeTransposed(found[i], out.of[i] + place * kTile);
+    load(2);
+    for (int k = 0; k < kTile; k += 2) {
+        const Both<R> csf = even<R>(around(k), f.csfCzWide, around(k), f.csfCzNarrow, f.csfReach);
+        keep(csfCzWide, k, csf.u), keep(csfCzNarrow, k, csf.v);
+    }
+    for (int i = 0; i < kFiltered; i++) storeTransposed(found[i], out.of[i] + (kMargin<F> + x) * kTile);
 }
-// `place`: of the column and the row in `out`. Colour stays opponent colour.
+// `place`: of the first of two columns, and the row, in `out`. Colour stays opponent colour.
 template <class R, class F>
 AA_INLINE void filterAlongX(const F& f, const FilteredColumns<Elem<R>, F>& in, int place, SeenColumns<Elem<R>>& out) {
     const auto of = [&](Filtered kind) __attribute__((always_inline)) {
@@ -181,16 +179,22 @@ AA_INLINE void filterAlongX(const F& f, const FilteredColumns<Elem<R>, F>& in, i
             return loadOwn<R>(p + i * kTile);
         };
     };
-    const R cz = even<R>(of(csfCzWide), f.csfCzWide, f.csfReach) * constant<R>(f.czWideShare) +
-                 even<R>(of(csfCzNarrow), f.csfCzNarrow, f.csfReach) * constant<R>(1 - f.czWideShare);
-    store(even<R>(of(csfY), f.csfY, f.narrowReach), out.of[lightness] + place);
-    store(even<R>(of(csfCx), f.csfCx, f.narrowReach), out.of[hueA] + place);
-    store(cz, out.of[hueB] + place);
-    const R ex = odd<R>(of(gaussOfY), f.edge, f.featureReach), ey = even<R>(of(edgeOfY), f.gauss, f.featureReach);
-    const R px = evenOfDifferences<R>(of(gaussOfY), f.point, f.featureReach),
-            py = even<R>(of(pointOfY), f.gauss, f.featureReach);
-    store(sqrt(ex * ex + ey * ey), out.of[edgeStrength] + place);
-    store(sqrt(px * px + py * py), out.of[pointStrength] + place);
+    const auto put = [&](Seen kind, Two<R> two) __attribute__((always_inline)) {
+        store(two.first, out.of[kind] + place), store(two.second, out.of[kind] + place + kTile);
+    };
+    const auto length = [](R x, R y) __attribute__((always_inline)) { return sqrt(x * x + y * y); };
+    const Both<R> cz = even<R>(of(csfCzWide), f.csfCzWide, of(csfCzNarrow), f.csfCzNarrow, f.csfReach);
+    put(hueB, cz.u * f.czWideShare + cz.v * (1 - f.czWideShare));
+    const Both<R> csf = even<R>(of(csfY), f.csfY, of(csfCx), f.csfCx, f.narrowReach);
+    put(lightness, csf.u), put(hueA, csf.v);
+    Outward<R, decltype(of(gaussOfY))> gauss(of(gaussOfY));
+    const Two<R> twice = gauss.centre() * 2;
+    Features<R> x;
+#pragma GCC unroll 10
+    for (int i = 1; i <= f.featureReach; i++) gauss.step(i), x.add(f, gauss, twice, i);
+    const Both<R> y = even<R>(of(edgeOfY), f.gauss, of(pointOfY), f.gauss, f.featureReach);
+    put(edgeStrength, {length(x.edge.first, y.u.first), length(x.edge.second, y.u.second)});
+    put(pointStrength, {length(x.point.first, y.v.first), length(x.point.second, y.v.second)});
 }
 // Opponent colour -> CIELab. Roots and powers are long chains, of which a processor must have many pixels' in sight to
 // be busy, so they have loops of their own here and in judge().
@@ -208,14 +212,20 @@ AA_INLINE void seeColours(SeenColumns<Elem<R>>& seen, int places) {
         for (int i = 0; i < places; i += N<R>) store(labCurve(loadOwn<R>(seen.of[k] + i)), seen.of[k] + i);
     each([](vec3<R> c) __attribute__((always_inline)) { return huntLab(c); });
 }
-// HyAB distance to the power 0.7, mapped so that 0.4 of the largest becomes 0.95.
+// HyAB distance to the power 0.7, mapped so that 0.4 of the largest becomes 0.95; and all of it to `power`. Below that
+// knee the map is a product, so that one logarithm and one exponential serve both powers.
 template <class R>
-AA_INLINE R colourDifference(R lightness, R a, R b) {
-    const R hyab = abs(lightness) + sqrt(a * a + b * b);
-    const R d = powPositive(hyab, constant<R>(0.7));
+AA_INLINE R poweredDifference(R hyab, R power) {
     constexpr double knee = 0.4 * kMaxColour;
-    return select(d < constant<R>(knee), d * constant<R>(0.95 / knee),
-                  constant<R>(0.95) + (d - constant<R>(knee)) * constant<R>(0.05 / (kMaxColour - knee)));
+    const R log = constant<R>(0.7) * log2Positive(max(hyab, constant<R>(1e-30)));
+    R logOfMapped = log + constant<R>(-4.119307189222026);
+    const auto above = log > constant<R>(4.045306607778249);
+    if (maskBits<R>(above)) {
+        const R mapped =
+            constant<R>(0.95) + (exp2Clamped(log) - constant<R>(knee)) * constant<R>(0.05 / (kMaxColour - knee));
+        logOfMapped = select(above, log2Positive(mapped), logOfMapped);
+    }
+    return select(hyab < constant<R>(1e-30), constant<R>(0), exp2Clamped(power * logOfMapped));
 }
 // FLIP of `places` pixels, over the test's lightness.
 template <class R>
@@ -224,15 +234,15 @@ AA_INLINE void judge(SeenColumns<Elem<R>>& test, const SeenColumns<Elem<R>>& ref
     const auto difference = [&](Seen kind, int i) __attribute__((always_inline)) {
         return loadOwn<R>(test.of[kind] + i) - loadOwn<R>(reference.of[kind] + i);
     };
-    for (int i = 0; i < places; i += N<R>)
-        store(colourDifference(difference(lightness, i), difference(hueA, i), difference(hueB, i)), out + i);
     for (int i = 0; i < places; i += N<R>) {
+        const R a = difference(hueA, i), b = difference(hueB, i);
+        const R hyab = abs(difference(lightness, i)) + sqrt(a * a + b * b);
         const R strongest = max(abs(difference(edgeStrength, i)), abs(difference(pointStrength, i)));
         const R feature = sqrt(strongest * constant<R>(0.70710678118654752));  // 1 / sqrt(2)
-        store(min(powPositive(loadOwn<R>(out + i), constant<R>(1) - feature), constant<R>(1)), out + i);
+        store(min(poweredDifference(hyab, constant<R>(1) - feature), constant<R>(1)), out + i);
     }
 }
-// Sums, and the map, of rows y .. y + N<R> - 1 of a chunk at column x0, of which rows [y0, y1) count.
+// Sums, and the map, of rows y .. y + N<R> - 1 of a strip at column x0, of which rows [y0, y1) count.
 template <class R>
 AA_INLINE void sum(const FlipArgs& a, const Elem<R>* flip, int x0, int columns, int y, int y0, int y1) {
     RowSums<R> sums;
@@ -254,36 +264,34 @@ AA_INLINE void flipStrip(const F& f, const FlipArgs& a, int x0, int y0, int y1) 
     FilteredColumns<T, F> filtered;
     Block ofTest;
     const OpponentRow<T, F>* rows[kWindow<F>];
-    const int columns = a.width - x0 < kStrip ? a.width - x0 : kStrip, blocks = (a.width + kChunk - 1) / kChunk;
+    const int columns = a.width - x0 < kStrip ? a.width - x0 : kStrip, strips = (a.width + kStrip - 1) / kStrip;
+    const int places = (columns + kTile - 1) / kTile * kTile * kTile;
     int loaded = y0 - f.csfReach;
     for (int y = y0; y < y1; y += kTile) {
         for (; loaded < y + kTile + f.csfReach; loaded++)
             loadOpponent<R, F>(a.image, a, x0, loaded, kept[unsigned(loaded) % kKept<F>]);
         for (int j = 0; j < kTile + 2 * f.csfReach; j++) rows[j] = &kept[unsigned(y - f.csfReach + j) % kKept<F>];
-        for (int x = 0; x < columns; x += kChunk) {
-            const int count = columns - x < kChunk ? columns - x : kChunk;
-            const int places = (count + kTile - 1) / kTile * kTile * kTile;
-            const long block = long(y / kTile) * blocks + (x0 + x) / kChunk;
-            if (x)  // its first columns are the last of the chunk before it
-                for (auto& filter : filtered.of)
-                    std::memcpy(filter, filter + kChunk * kTile, 2 * kMargin<F> * kTile * sizeof(T));
-            for (int i = x ? kMargin<F> : -kMargin<F>; i < count + kMargin<F>; i += N<R>)
-                filterAlongY<R, F>(f, rows, x + i, kMargin<F> + i, filtered);
-            Block& seen = kJudges ? ofTest : static_cast<Block*>(a.seen)[block];
-            for (int i = 0; i < places; i += N<R>) filterAlongX<R, F>(f, filtered, i, seen);
-            seeColours<R>(seen, places);
-            if constexpr (kJudges) {
-                judge<R>(seen, static_cast<const Block*>(a.reference)[block], places);
-                for (int row = 0; row < kTile; row += N<R>)
-                    sum<R>(a, seen.of[lightness] + row, x0 + x, count, y + row, y0, y1);
-            }
+        for (int x = -kMargin<F>; x < columns + kMargin<F>; x += N<R>) filterAlongY<R, F>(f, rows, x, filtered);
+        const long block = long(y / kTile) * strips + x0 / kStrip;
+        Block& seen = kJudges ? ofTest : static_cast<Block*>(a.seen)[block];
+        for (int i = 0; i < places; i += 2 * kTile)
+            for (int row = 0; row < kTile; row += N<R>) filterAlongX<R, F>(f, filtered, i + row, seen);
+        seeColours<R>(seen, places);
+        if constexpr (kJudges) {
+            judge<R>(seen, static_cast<const Block*>(a.reference)[block], places);
+            for (int row = 0; row < kTile; row += N<R>)
+                sum<R>(a, seen.of[lightness] + row, x0, columns, y + row, y0, y1);
         }
     }
 }
+// Not one strip from above to below: of a lower piece, the next strip's margins are still in a cache.
 template <class R, bool kJudges, class F>
 AA_INLINE void flipStrips(const F& f, const FlipArgs& a, int block0, int block1) {
-    const int y0 = block0 * kTile, end = block1 * kTile, y1 = end < a.height ? end : a.height;
-    for (int x0 = 0; x0 < a.width; x0 += kStrip) flipStrip<R, F, kJudges>(f, a, x0, y0, y1);
+    for (int block = block0; block < block1; block += kFlipPiece) {
+        const int y0 = block * kTile, last = block + kFlipPiece < block1 ? block + kFlipPiece : block1;
+        const int y1 = last * kTile < a.height ? last * kTile : a.height;
+        for (int x0 = 0; x0 < a.width; x0 += kStrip) flipStrip<R, F, kJudges>(f, a, x0, y0, y1);
+    }
 }
 template <class R>
 __attribute__((flatten)) void seeBlocks(const FlipArgs& a, int block0, int block1) {

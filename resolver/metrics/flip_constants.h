@@ -50,6 +50,29 @@ constexpr double kToRgb[3][3] = {{3.0803419882804612, -1.5373989694887855, -0.54
                                  {-0.9211783961651236, 1.875929983695176, 0.045248412469947596},
                                  {0.05288129287554323, -0.20401120612390997, 1.1511299132483668}};
 
+// Luminance, red-green and blue-yellow of linear BT.709: (Y, 500 (X - Y), 200 (Y - Z)) of the above, and back. The
+// paper's offset and scale of the first, 116 Y - 16, pass through every normalised filter and are left out here.
+struct Matrix {
+    double m[3][3];
+};
+constexpr Matrix kToOpponent = [] {
+    Matrix r{};
+    for (int i = 0; i < 3; i++) {
+        r.m[0][i] = kToXyz[1][i];
+        r.m[1][i] = 500 * (kToXyz[0][i] - kToXyz[1][i]);
+        r.m[2][i] = 200 * (kToXyz[1][i] - kToXyz[2][i]);
+    }
+    return r;
+}();
+constexpr Matrix kOpponentToRgb = [] {
+    Matrix r{};
+    for (int i = 0; i < 3; i++) {
+        r.m[i][0] = kToRgb[i][0] + kToRgb[i][1] + kToRgb[i][2];
+        r.m[i][1] = kToRgb[i][0] / 500, r.m[i][2] = -kToRgb[i][2] / 200;
+    }
+    return r;
+}();
+
 // HyAB distance between green and blue after the Hunt adjustment, to the power 0.7.
 constexpr double kMaxColour = 41.276098414595445;
 

@@ -13,7 +13,9 @@ struct FlipFilters {
 // What is seen of a picture: blocks of kFlipTileRows rows and kFlipColumns columns, a row of blocks after the other; of
 // each block the kFlipSeen quantities, and of each of these one column after the other. In the arithmetic's own
 // precision.
-inline constexpr int kFlipTileRows = 8, kFlipColumns = 64, kFlipSeen = 5;
+inline constexpr int kFlipTileRows = 8, kFlipColumns = 256, kFlipSeen = 5;
+// Rows of blocks that a thread takes: each take repeats the loading of 20 rows.
+inline constexpr int kFlipPiece = 16;
 struct FlipArgs {
     RgbIn image;
     bool encoded;  // sRGB codes; otherwise linear and display-referred
