@@ -75,6 +75,14 @@ AA_INLINE void luminanceRow(const MasterArgs& a, const MasterRings<Elem<R>>& rin
     rings.luminanceAlbedo.continueBeyond(y);
     rings.luminanceLit.continueBeyond(y);
 }
+// A line of the cache is fetched once.
+template <class R>
+AA_INLINE bool beginsLine(int x) {
+    return N<R> >= 16 || (N<R> > 1 && x % 16 == 0);
+}
+AA_INLINE long prefetched(const MasterArgs& a, int x, int row) {
+    return long(row < a.in.height ? row : a.in.height - 1) * a.in.stride + x;
+}
 // S: one Sobel value per pixel.
 template <class R>
 AA_INLINE void sobelRow(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
@@ -84,6 +92,15 @@ AA_INLINE void sobelRow(const MasterArgs& a, const MasterRings<Elem<R>>& rings, 
                    *const lit[3] = {rings.luminanceLit(y - 1), rings.luminanceLit(y), rings.luminanceLit(y + 1)},
                    *const depth[3] = {rings.depth(y - 1), rings.depth(y), rings.depth(y + 1)};
     for (int x = 0; x < a.in.width; x += N<R>) {
+        // What luminanceRow() and depthRow() read next: memory has little to do while roots are drawn.
+        if (beginsLine<R>(x)) {
+            const long next = prefetched(a, x, y + 2);
+            for (int c = 0; c < 3; c++) {
+                __builtin_prefetch(a.albedoEncoded.c[c] + next, 0, 2);
+                __builtin_prefetch(a.in.color.c[c] + next, 0, 2);
+            }
+            __builtin_prefetch(a.depthOfTexel + next, 0, 2);
+        }
         if (!a.useSobel) {
             store(R(T(0)), sobel + x);
             continue;
@@ -249,21 +266,16 @@ AA_INLINE void blendAndStore(const MasterArgs& a, const MasterWindow<Elem<R>>& r
         store(p.variance.depth, a.debugDepth + o), store(p.variance.depthTemporal, a.debugDepthTemporal + o);
     }
 }
-// Brings in what the next row of each step will be the first to read or write, while this one computes.
+// Brings in what the next row of each step will be the first to read or write, while this one computes; not what
+// luminances and Sobel read, for which the cache's way to memory is used earlier.
 template <class R>
 AA_INLINE void prefetchNextRows(const MasterArgs& a, int x, int y) {
-    if (N<R> == 1 || (N<R> < 16 && x % 16)) return;  // a line of the cache is fetched once
+    if (!beginsLine<R>(x)) return;
     const TemporalIn& in = a.in;
-    const auto at = [&](int row) __attribute__((always_inline)) {
-        return long(row < in.height ? row : in.height - 1) * in.stride + x;
-    };
-    const long first = at(y + 4), sobel = at(y + 3), past = at(y + 2), own = at(y + 1);
-    for (int c = 0; c < 3; c++) {
-        __builtin_prefetch(a.albedoEncoded.c[c] + first, 0, 2);
-        __builtin_prefetch(in.color.c[c] + first, 0, 2);
-        if (a.sharpened.c[c]) __builtin_prefetch(a.sharpened.c[c] + own, 0, 2);
-    }
-    __builtin_prefetch(a.depthOfTexel + first, 0, 2);
+    const auto at = [&](int row) __attribute__((always_inline)) { return prefetched(a, x, row); };
+    const long sobel = at(y + 3), past = at(y + 2), own = at(y + 1);
+    for (float* const plane : a.sharpened.c)
+        if (plane) __builtin_prefetch(plane + own, 0, 2);
     __builtin_prefetch(in.depthView + sobel, 0, 2);
     __builtin_prefetch(in.motionXPx + past + in.stride, 0, 2);
     __builtin_prefetch(in.motionYPx + past + in.stride, 0, 2);

@@ -26,11 +26,16 @@ AA_INLINE R sobelCurve(R weightedSum) {
 template <class R, class Differs>
 AA_INLINE R modelAverage(const Differs& differs) {
     using T = Elem<R>;
-    const R zero(T(0)), one(T(1));
-    R count(zero);
-    for (int j = -1; j <= 1; j++)
-        for (int i = -1; i <= 1; i++)
-            if (i || j) count = count + select(differs(i, j), one, zero);
+    R count;
+    if constexpr (N<R> == 1) {
+        int others = 0;
+        eachNeighbour([&](int i, int j) __attribute__((always_inline)) { others += differs(i, j) ? 1 : 0; });
+        count = R(T(others));
+    } else {
+        Mask<R> others{};  // a lane of a mask is -1
+        eachNeighbour([&](int i, int j) __attribute__((always_inline)) { others -= differs(i, j); });
+        count = R(__builtin_convertvector(others, typename R::V));
+    }
     return count * R(T(1) / T(9));
 }
 // Eqs 4.4-4.6.
