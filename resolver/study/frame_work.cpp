@@ -60,6 +60,11 @@ void FrameWork::operator()(Feed::Item& item, size_t i) {
     for (RunningMethod& m : methods_) m.forgetPicture();
 }
 
+double FrameWork::secondsBefore(size_t k) const {
+    const auto& frames = results_.methods[k].frames;
+    return frames.empty() ? 0 : frames.back().seconds;
+}
+
 FrameWork::Order FrameWork::order() const {
     Order o;
     for (size_t k = 0; k < methods_.size(); k++)
@@ -70,6 +75,10 @@ FrameWork::Order FrameWork::order() const {
     };
     const auto others = std::stable_partition(o.methods.begin(), o.methods.end(), readsSubSamples);
     o.readers = size_t(others - o.methods.begin());
+    // The slowest first, as they were in the frame before: at the end no thread waits long for another.
+    const auto isSlower = [&](size_t a, size_t b) { return secondsBefore(a) > secondsBefore(b); };
+    std::stable_sort(o.methods.begin(), others, isSlower);
+    std::stable_sort(others, o.methods.end(), isSlower);
     return o;
 }
 

@@ -26,6 +26,7 @@ class FrameWork {
         size_t readers = 0;  // of sub-samples
     };
     Order order() const;
+    double secondsBefore(size_t k) const;  // that method k took for the frame before
     void forgetSubSamples(Feed::Item& item, size_t i) const;
     void lookAtTruth(Feed::Item& item, size_t i);
     void work(size_t k, const Feed::Item& item, size_t i);
