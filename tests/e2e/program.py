@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import tempfile
@@ -9,6 +10,9 @@ import unittest
 from pathlib import Path
 
 PROGRAM = Path(sys.argv[1]).resolve()
+LIMIT_S = float(
+    os.environ.get("AARESOLVE_TEST_LIMIT_S", 600)
+)  # of one call; an emulated program needs more
 ROOT = Path(sys.argv[2]).resolve()
 sys.path.insert(0, str(ROOT / "tests/addon"))
 
@@ -43,7 +47,7 @@ class ProgramTest(unittest.TestCase):
             [str(PROGRAM), *map(str, arguments)],
             capture_output=True,
             text=True,
-            timeout=600,
+            timeout=LIMIT_S,
             **options,
         )
         self.assertEqual(
