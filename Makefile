@@ -15,7 +15,7 @@ space := $() $()
 # A compiler cache is used where there is one.
 LAUNCHER := $(if $(shell command -v ccache 2>/dev/null),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache,)
 
-.PHONY: help deps configure build program install demo test test-addon test-blenders blender-facts blenders-clean fuzz sanitize bench asserts addon bundle deb test-bundle docs bits reproduce speed growth peers farm test-farm test-arm format clean
+.PHONY: help deps configure build program install demo test test-addon test-blenders blender-facts blenders-clean fuzz sanitize bench asserts addon bundle deb test-bundle docs bits reproduce speed growth peers farm test-farm farm-costs test-arm format clean
 help:
 	@echo "make demo       build, render two scenes in Blender, run the methods, make contact sheets and reports"
 	@echo "make test       build and run every test"
@@ -33,6 +33,7 @@ help:
 	@echo "                tables, write docs/results; QUICK=1: a short form, FULL=1: published sizes, ONLY=oliveros-5.8: one table, ONLY=list"
 	@echo "make farm       a small study of scenes x frames x methods as a Snakemake workflow, two jobs at once, to"
 	@echo "                build/farm; STUDY=study.yaml: yours; PLAN=1: what would be done (docs/farm.md)"
+	@echo "make farm-costs what the theses' study costs on 1, 8 and 100 nodes, from costs measured in some ten minutes: docs/farm.md"
 	@echo "make test-farm  the same study on one machine and on a Slurm of its own, killed and resumed: same bytes"
 	@echo "make test-addon     the add-on's tests in the Blender at BLENDER=/path/to/blender; ONLY=\"light motion\""
 	@echo "make test-blenders  the same, scenes and more in the Blenders of Debian 13 and sid; SUITES=\"trixie sid\", ONLY=..."
@@ -134,6 +135,7 @@ test-arm: deps
 docs: program
 	@python3 scenes/reproduce/speed.py --page-only docs/results
 	@python3 tests/bench/growth.py --page-only docs/results
+	@python3 scenes/farm/costs.py --page-only docs/results
 	@python3 blender_addon/write_scenes_page.py
 	@$(BUILD)/aaresolve list --markdown > docs/methods.md
 	@python3 resolver/metrics/write_page.py $(BUILD)/aaresolve docs/metrics.md
@@ -173,6 +175,9 @@ farm: program
 	@CI_PACKAGES=snakemake .ci/bootstrap
 	@AARESOLVE=$(CURDIR)/$(BUILD)/aaresolve snakemake -s scenes/Snakefile --cores $(JOBS) --rerun-incomplete --keep-going \
 	  $(if $(PLAN),-n) $(if $(STUDY),--configfile $(STUDY))
+
+farm-costs: program
+	@python3 scenes/farm/costs.py $(BUILD)/aaresolve $(BUILD)/farm/costs docs/results $(if $(PIECES),--pieces $(PIECES))
 
 test-farm: program
 	@CI_PACKAGES="snakemake slurmctld slurmd slurm-client munge" .ci/bootstrap

@@ -355,6 +355,8 @@ def write_pages(study: studies.Study, by_angle: Page | None, docs: Path) -> list
         )
     if (docs / "whole-run.md").exists():  # of tests/bench/whole_run.py
         index.append("[whole-run.md](whole-run.md): what a run of 20 methods costs")
+    if (docs / "farm-costs.md").exists():  # of `make farm-costs`
+        index.append("[farm-costs.md](farm-costs.md): core hours of the full study, scene by scene")
     if (docs / "peers.md").exists():  # of `make peers`
         index.append("[peers.md](peers.md): SMAA, FLIP and SSIM beside those of others")
     if (docs / "stability.md").exists():  # of `make docs`

@@ -147,23 +147,14 @@ def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
         return _ready(shop, shot, wish, started, "exact truth", folder)
     stem = "_".join([shot.scene, *(v.strip("-") for v in shot.variant), size])
     blend = build_scene(shop, stem, shot.scene, shot.variant, size)
-    ids = [m.split("+")[0] for m in shot.all_methods() if shop.serves(m)]
-    command = [*exporter(shop, blend), "--out", folder]
-    command += ["--for", ",".join(dict.fromkeys(ids)), "--name", shot.name]
-    command += ["--resolution", size, "--frames", f"{shot.first}-{shot.first + shot.frames - 1}"]
-    command += ["--truth-samples", shot.truth_samples]
-    command += ["--jitter", shot.jitter, "--period", shot.period]
-    if shot.jitter_projection != "post":
-        command += ["--jitter-projection", shot.jitter_projection]
-    if shot.pattern:
-        command += ["--subsamples", shot.pattern]
-    command += shot.export
-    if shot.passes:
-        command += ["--passes", shot.passes]
-    if shot.truth_of or not shot.truth:
-        command += ["--truth-frames", "none"]
-    elif shot.truth_frames:
-        command += ["--truth-frames", shot.truth_frames]
+    command = [
+        *exporter(shop, blend),
+        "--out",
+        folder,
+        "--resolution",
+        size,
+        *export_words(shot, shop),
+    ]
     try:
         said = shop.run(f"export.{shot.name}", command)
     except SystemExit as refusal:  # the exporter never mixes two exports in one folder
@@ -175,6 +166,27 @@ def make(shots: dict[str, Shot], shot: Shot, shop: Workshop) -> Path:
         _lend_truth(make_folder(shop, shots[shot.truth_of]), folder)
     done = [line.split(": ", 1)[-1] for line in said.splitlines() if "pictures in" in line]
     return _ready(shop, shot, wish, started, done[-1] if done else "ready", folder)
+
+
+def export_words(shot: Shot, shop: Workshop) -> list[object]:
+    """Options of the exporter for a shot in its form, without its folder and size."""
+    ids = [m.split("+")[0] for m in shot.all_methods() if shop.serves(m)]
+    words: list[object] = ["--for", ",".join(dict.fromkeys(ids)), "--name", shot.name]
+    words += ["--frames", f"{shot.first}-{shot.first + shot.frames - 1}"]
+    words += ["--truth-samples", shot.truth_samples]
+    words += ["--jitter", shot.jitter, "--period", shot.period]
+    if shot.jitter_projection != "post":
+        words += ["--jitter-projection", shot.jitter_projection]
+    if shot.pattern:
+        words += ["--subsamples", shot.pattern]
+    words += shot.export
+    if shot.passes:
+        words += ["--passes", shot.passes]
+    if shot.truth_of or not shot.truth:
+        words += ["--truth-frames", "none"]
+    elif shot.truth_frames:
+        words += ["--truth-frames", shot.truth_frames]
+    return words
 
 
 def build_scene(

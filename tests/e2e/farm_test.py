@@ -16,6 +16,10 @@ from program import PROGRAM, ROOT, ProgramTest, main
 
 sys.path.insert(0, str(ROOT / "scenes/farm"))
 
+sys.path.insert(0, str(ROOT / "scenes/reproduce"))
+
+from costs_page import Costs, hours, jobs_of, line  # noqa: E402
+from nodes import Job, wall_seconds  # noqa: E402
 from study import BadStudy, study_of  # noqa: E402
 
 SNAKEMAKE = shutil.which("snakemake")
@@ -121,6 +125,62 @@ class Configuration(ProgramTest):
                 [ROOT / "scenes/farm/slurm/status.py", job], capture_output=True, text=True, env=environment
             )  # fmt: skip
             self.assertEqual((done.stdout.strip(), done.returncode), (word, 0), (job, done.stderr))
+
+
+class CostsOfTheFullStudy(ProgramTest):
+    def test_jobs_wait_for_one_another(self) -> None:
+        first = Job(2.0)
+        parts = [Job(3.0, [first]) for _ in range(4)]
+        last = Job(1.0, parts)
+        chain = [first, *parts, last]
+        self.assertEqual(wall_seconds(chain), 6.0)
+        self.assertEqual(wall_seconds(chain, 1), 15.0)
+        self.assertEqual(wall_seconds(chain, 2), 9.0)
+        # The one with the longest way behind it goes first, though others stand before it.
+        early = [Job(4.0), Job(1.0)]
+        self.assertEqual(wall_seconds([*early, Job(5.0, [early[1]])], 1), 10.0)
+        self.assertEqual(wall_seconds([*early, Job(5.0, [early[1]])], 2), 6.0)
+
+    def document(self) -> dict:
+        """A picture: 1 s and 1 ms per pixel. Truth: 2 s, 1 ms per pixel, 0.5 ms per pixel and sample of each half."""
+        frame = lambda px: 1 + 1e-3 * px  # noqa: E731
+        truth = lambda px, n: 2 + 1e-3 * px + 2 * 0.5e-3 * n * px  # noqa: E731
+        seconds = {f"{w}x10": {"frames": frame(10 * w), "centre": frame(10 * w),
+                               "truth": [truth(10 * w, n) for n in (2, 8)]} for w in (10, 20)}  # fmt: skip
+        shot = dict(
+            scene="wall",
+            size=[100, 100],
+            truthSamples=64,
+            truthOf="",
+            methods=2,
+            blender="3",
+            start=5.0,
+        )
+        lender = {**shot, "pictures": {"frames": 3, "centre": 1, "truth": 1}, "seconds": seconds}
+        lent = {**lender, "truthOf": "lender", "pictures": {"frames": 3}}
+        return {
+            "machine": {"processor": "P", "system": "S"}, "judging": {"nsPerPixel": 1e5}, "sizes": list(seconds),
+            "samples": [2, 8], "scenes": {"wall": 7.0}, "shots": {"lender": lender, "lent": lent},
+        }  # fmt: skip
+
+    def test_full_size_from_two_small_ones(self) -> None:
+        document = self.document()
+        cost = Costs(document["shots"]["lender"], document)
+        self.assertAlmostEqual(cost.picture("frames"), 11.0)
+        self.assertAlmostEqual(cost.truth(64), 2 + 10 + 640.0)
+        self.assertEqual(line([(1, 2.0), (2, 1.0)], 9), 1.0, "noise makes no pixel free")
+        jobs = jobs_of(document)
+        begin = 7 + 5 + 11 + 11
+        run = 1e-4 * 2 * 3 * 1e4
+        self.assertAlmostEqual(
+            sum(j.seconds for j in jobs["lender"]), begin + 2 * 16 + 5 + 652 + run
+        )
+        self.assertAlmostEqual(sum(j.seconds for j in jobs["lent"]), 3 * 16 + run)
+        every = [j for of_shot in jobs.values() for j in of_shot]
+        self.assertAlmostEqual(
+            wall_seconds(every), begin + 657 + run, msg="the lent truth is waited for"
+        )
+        self.assertIn("results/farm-costs.md", "\n".join(hours(document)))
 
 
 @skipUnless(SNAKEMAKE, "snakemake is not here; `make farm` installs it")

@@ -55,6 +55,13 @@ class MeasuredPages(ProgramTest):
         page = self.page_of("tests/bench/growth.py", "growth.json")
         self.assertEqual(page, (RESULTS / "growth.md").read_text(), "make docs")
 
+    def test_costs_of_the_full_study(self) -> None:
+        study = ROOT / "docs/farm.md"
+        shutil.copy(study, self.folder)
+        page = self.page_of("scenes/farm/costs.py", "farm-costs.json")
+        self.assertEqual(page, (RESULTS / "farm-costs.md").read_text(), "make docs")
+        self.assertEqual((self.folder / "farm.md").read_text(), study.read_text(), "make docs")
+
     def test_columns_of_shaders_are_kept(self) -> None:
         small = "--size 48x27 --frames 8 --long-frames 128 -q --markdown --device cpu".split()
         new = self.aaresolve("stability", "-m", "noaa,fxaa311", *small).stdout
