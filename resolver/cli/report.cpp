@@ -94,7 +94,7 @@ void addReport(CommandLine& line, Context&) {
         .oneOf({"full", "crops", "none"});
     c.option("--embed-limit", o->limitMb,
              "MB of pictures at most, 0 for no limit: the last frames that fit, and of larger pictures a part")
-        .notNegative()
+        .range(0.0, 1e6)
         .typeName("MB");
     c.flag("--hdr", o->hdr,
            "embed linear light as the EXR files hold it, 32-bit floats, instead of the displayed 8-bit codes: exposure "

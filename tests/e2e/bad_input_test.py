@@ -184,6 +184,10 @@ class BadInput(ProgramTest):
     def test_usage(self) -> None:
         self.refused(2, "run", self.shot, says=("--out",))
         self.refused(2, "nonsense", says=("nonsense",))
+        # More bytes than an integer holds would be none on x86-64, hence no limit, and some number on Arm.
+        self.refused(
+            2, "report", self.shot, "--embed-limit", "1e20", says=("--embed-limit", "not in range")
+        )
         self.refused(
             2, "filter", "uncharted", "a.png", "b.png", says=("needs more than one image",)
         )
