@@ -83,9 +83,10 @@ AA_INLINE bool beginsLine(int x) {
 AA_INLINE long prefetched(const MasterArgs& a, int x, int row) {
     return long(row < a.in.height ? row : a.in.height - 1) * a.in.stride + x;
 }
-// S: one Sobel value per pixel.
+// S: one Sobel value per pixel. No part of masterRows(), nor is sharpening: in one function with all steps GCC keeps
+// more at hand than there are registers.
 template <class R>
-AA_INLINE void sobelRow(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
+__attribute__((noinline)) void sobelRow(const MasterArgs& a, const MasterRings<Elem<R>>& rings, int y) {
     using T = Elem<R>;
     T* const sobel = rings.sobel(y);
     const T *const albedo[3] = {rings.luminanceAlbedo(y - 1), rings.luminanceAlbedo(y), rings.luminanceAlbedo(y + 1)},
@@ -312,7 +313,7 @@ AA_INLINE void resolveRow(const MasterArgs& a, const MasterRings<Elem<R>>& rings
     for (int c = 0; c < 4; c++) row[c - 4] = row[c], row[4 * in.width + c] = row[4 * in.width - 4 + c];
 }
 template <class R>
-AA_INLINE void sharpenResolvedRow(const MasterArgs& a, int y) {
+__attribute__((noinline)) void sharpenResolvedRow(const MasterArgs& a, int y) {
     const TemporalIn& in = a.in;
     const auto row = [&](int r) __attribute__((always_inline)) {
         return in.next + 4l * in.stride * (r < 0 ? 0 : r >= in.height ? in.height - 1 : r);
