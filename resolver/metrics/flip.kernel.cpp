@@ -152,6 +152,7 @@ AA_INLINE void filterAlongY(const F& f, const OpponentRow<Elem<R>, F>* const* ro
             y.step(i);
             if (i <= f.narrowReach) csf = csf + y.sum() * f.csfY[i];
             if (i <= f.featureReach) gauss = gauss + y.sum() * f.gauss[i], features.add(f, y, twice, i);
+            inTurn(csf), inTurn(gauss);
         }
         keep(csfY, k, csf), keep(gaussOfY, k, gauss), keep(edgeOfY, k, features.edge);
         keep(pointOfY, k, features.point);

@@ -1,7 +1,7 @@
 // FLIP's symmetric and antisymmetric filters over two places side by side, which share most of what they read. Included
 // by *.kernel.cpp files.
 #pragma once
-#include "kernels/lanes.h"
+#include "metrics/strip.h"
 
 namespace AA_ARCH {
 
@@ -9,14 +9,6 @@ template <class R>
 AA_INLINE R constant(double v) {
     return R(Elem<R>(v));
 }
-// A value for each of two places side by side.
-template <class R>
-struct Two {
-    R first, second;
-    friend AA_INLINE Two operator+(Two a, Two b) { return {a.first + b.first, a.second + b.second}; }
-    friend AA_INLINE Two operator-(Two a, Two b) { return {a.first - b.first, a.second - b.second}; }
-    friend AA_INLINE Two operator*(Two a, double b) { return {a.first * constant<R>(b), a.second * constant<R>(b)}; }
-};
 // From two places outward, of which the first is at(0): the values i places before them and i behind.
 template <class R, class At>
 struct Outward {
@@ -32,6 +24,18 @@ struct Outward {
     }
     AA_INLINE Two<R> sum() const { return left + right; }
 };
+// Sums grow side by side, as they stand: GCC would compute one to its end before it begins the next, though each
+// addition waits for the one before.
+template <class R>
+AA_INLINE void inTurn(Two<R>& sum) {
+    if constexpr (N < R >> 1) {
+#if defined(__x86_64__)
+        __asm__("" : "+v"(sum.first.v), "+v"(sum.second.v));
+#elif defined(__aarch64__)
+        __asm__("" : "+w"(sum.first.v), "+w"(sum.second.v));
+#endif
+    }
+}
 // Symmetric filters of u and v.
 template <class R>
 struct Both {
@@ -45,6 +49,7 @@ AA_INLINE Both<R> even(const At& u, const double* tapsOfU, const At& v, const do
     for (int i = 1; i <= reach; i++) {
         ofU.step(i), ofV.step(i);
         sum.u = sum.u + ofU.sum() * tapsOfU[i], sum.v = sum.v + ofV.sum() * tapsOfV[i];
+        inTurn(sum.u), inTurn(sum.v);
     }
     return sum;
 }
@@ -57,6 +62,7 @@ struct Features {
     AA_INLINE void add(const F& f, const Outward<R, At>& at, Two<R> twice, int i) {
         const Two<R> e = (at.left - at.right) * f.edge[i], p = (at.sum() - twice) * f.point[i];
         edge = i == 1 ? e : edge + e, point = i == 1 ? p : point + p;
+        inTurn(edge), inTurn(point);
     }
 };
 

@@ -100,12 +100,14 @@ template <class T>
 struct alignas(64) ColumnMoments {
     T of[2][2][kPadded * kTile];
 };
-// p[0] .. p[10]
+// p[0] .. p[10], and p[1] .. p[11].
 template <class R>
-AA_INLINE R windowed(const R* p) {
-    const auto w = [](int i) __attribute__((always_inline)) { return R(Elem<R>(kGauss[i])); };
-    const auto pair = [&](int i) __attribute__((always_inline)) { return (p[kReach - i] + p[kReach + i]) * w(i); };
-    return (p[kReach] * w(0) + pair(1)) + ((pair(2) + pair(3)) + (pair(4) + pair(5)));
+AA_INLINE Two<R> windowed(const R* p) {
+    const auto two = [&](int i) __attribute__((always_inline)) { return Two<R>{p[i], p[i + 1]}; };
+    const auto pair = [&](int i) __attribute__((always_inline)) {
+        return (two(kReach - i) + two(kReach + i)) * kGauss[i];
+    };
+    return (two(kReach) * kGauss[0] + pair(1)) + ((pair(2) + pair(3)) + (pair(4) + pair(5)));
 }
 // Of the kTile windows about `value` and what lies kReach before and behind; `within`: the variances of these values.
 template <class R>
@@ -118,10 +120,11 @@ AA_INLINE void momentsOf(const R (&value)[kWindow], const R* within, Moments<R> 
         second[j] = first[j] * first[j];
         if (within) second[j] = within[j] + second[j];
     }
-#pragma GCC unroll 8  // kTile
-    for (int k = 0; k < kTile; k++) {
-        const R mean = windowed(first + k);
-        out[k] = {pivot + mean, windowed(second + k) - mean * mean};
+#pragma GCC unroll 4  // kTile / 2
+    for (int k = 0; k < kTile; k += 2) {
+        const Two<R> mean = windowed(first + k), square = windowed(second + k);
+        out[k] = {pivot + mean.first, square.first - mean.first * mean.first};
+        out[k + 1] = {pivot + mean.second, square.second - mean.second * mean.second};
     }
 }
 
@@ -141,6 +144,13 @@ AA_INLINE void momentsAlongY(const SsimArgs& a, int signal, int x0, int y0, int 
         return luma601(colourAt<R>(image.c, o));
     };
     for (int x = x0 ? kMargin : 0; x < end; x += N<R>) {  // the last lanes may lie beyond the image, in its padding
+        if (signal < 3 &&
+            x % 16 == 0)  // a line of the cache, of the rows below that the next tile is the first to read
+            for (int j = kWindow - kTile; j < kWindow; j++) {
+                const long next = rows[j] + x + long(kTile) * a.stride;
+                __builtin_prefetch(a.test.c[signal] + next, 0, 2);
+                __builtin_prefetch(a.reference.c[signal] + next, 0, 2);
+            }
         R value[2][kWindow];
 #pragma GCC unroll 18  // kWindow
         for (int j = 0; j < kWindow; j++) {

@@ -19,6 +19,14 @@ AA_INLINE R loadOwn(const Elem<R>* p) {  // storage in the arithmetic's own prec
     else
         return typename R::V(*(const typename R::Vu*)p);
 }
+// A value for each of two places side by side: their windows share most of what they read.
+template <class R>
+struct Two {
+    R first, second;
+    friend AA_INLINE Two operator+(Two a, Two b) { return {a.first + b.first, a.second + b.second}; }
+    friend AA_INLINE Two operator-(Two a, Two b) { return {a.first - b.first, a.second - b.second}; }
+    friend AA_INLINE Two operator*(Two a, double b) { return {a.first * R(Elem<R>(b)), a.second * R(Elem<R>(b))}; }
+};
 // A value's lanes as doubles, in halves: GCC 12 moves vectors of doubles that are wider than a register through memory,
 // piece by piece.
 template <class R>
