@@ -86,6 +86,15 @@ class Study:
     jobs: dict[str, dict[str, int]]
 
 
+def check_tables(config: Mapping) -> None:
+    """Before Snakemake puts the user's tables and ours together, and fails in its own words where one is none."""
+    jobs = config.get("jobs", {})
+    kinds = jobs.items() if isinstance(jobs, Mapping) else ()
+    for where, value in (("jobs", jobs), *((f"jobs, {kind}", needs) for kind, needs in kinds)):
+        if not isinstance(value, Mapping):
+            raise BadStudy(f"{where}: expected a table, found {value!r}")
+
+
 def study_of(config: Mapping) -> Study:
     """Reads what Snakemake has put together from the files and `--config`. Raises BadStudy."""
     for key in config:

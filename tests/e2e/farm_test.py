@@ -228,6 +228,11 @@ class Plan(ProgramTest):
     def test_what_is_wrong_is_said(self) -> None:
         said = self.snakemake("-n", "--config", "frames=4-1", expect=1)
         self.assertIn("the study's configuration: scenes, entry 1: frames: expected frames", said)
+        for value, says in (
+            ("3", "jobs: expected a table, found 3"),
+            ("{truth: 4}", "jobs, truth: expected a table, found '4'"),
+        ):
+            self.assertIn(says, self.snakemake("-n", "--config", f"jobs={value}", expect=1))
         said = self.snakemake(
             "--cores", "1", "--config", "out=study", expect=1, AARESOLVE="/none/aaresolve", BLENDER="/none/blender"
         )  # fmt: skip
