@@ -1,17 +1,19 @@
 #include "image/exr_zip.h"
 
+#include <isa-l/igzip_lib.h>
 #include <libdeflate.h>
 
 #include <bit>
 #include <cassert>
 #include <cstring>
+#include <limits>
 #include <new>
 
 namespace aa {
 namespace {
 static_assert(std::endian::native == std::endian::little, "EXR files are little-endian, and so are the sums below");
 
-constexpr int kLevel = 1;  // decisions 56: of levels 1 to 6 the one that pays
+constexpr uint32_t kLevel = 1, kWorkingBytes = ISAL_DEF_LVL1_DEFAULT;  // decisions 56
 
 void sortBytes(const uint8_t* __restrict bytes, size_t half, uint8_t* __restrict even, uint8_t* __restrict odd) {
     for (size_t i = 0; i < half; i++) {
@@ -67,10 +69,22 @@ void fromDifferences(uint8_t* bytes, size_t count) {
 }
 }  // namespace
 
-ZipPacker::ZipPacker() : compressor_(libdeflate_alloc_compressor(kLevel)) {
-    if (!compressor_) throw std::bad_alloc();
+namespace {
+// In zlib's format; 0 where it does not fit.
+size_t deflate(std::span<const uint8_t> plain, std::span<uint8_t> packed, std::vector<uint8_t>& working) {
+    constexpr size_t kMost = std::numeric_limits<uint32_t>::max();
+    if (plain.size() > kMost) return 0;
+    working.resize(kWorkingBytes);
+    isal_zstream stream;
+    isal_deflate_stateless_init(&stream);
+    stream.level = kLevel, stream.level_buf = working.data(), stream.level_buf_size = kWorkingBytes;
+    stream.gzip_flag = IGZIP_ZLIB;
+    stream.end_of_stream = 1;
+    stream.next_in = const_cast<uint8_t*>(plain.data()), stream.avail_in = uint32_t(plain.size());
+    stream.next_out = packed.data(), stream.avail_out = uint32_t(packed.size());
+    return isal_deflate_stateless(&stream) == COMP_OK ? stream.total_out : 0;
 }
-ZipPacker::~ZipPacker() { libdeflate_free_compressor(compressor_); }
+}  // namespace
 
 std::span<const uint8_t> ZipPacker::pack(std::span<const uint8_t> chunk) {
     assert(chunk.size() % 2 == 0 && !chunk.empty());
@@ -80,8 +94,8 @@ std::span<const uint8_t> ZipPacker::pack(std::span<const uint8_t> chunk) {
     uint8_t *const sorted = sorted_.data(), *const differences = sorted + bytes;
     sortBytes(chunk.data(), half, sorted, sorted + half);
     toDifferences(sorted, bytes, differences);
-    // Nothing where it does not fit, which is as good as too large.
-    const size_t packed = libdeflate_zlib_compress(compressor_, differences, bytes, packed_.data(), bytes - 1);
+    // What does not fit is as good as too large.
+    const size_t packed = deflate({differences, bytes}, {packed_.data(), bytes - 1}, working_);
     return packed == 0 ? chunk : std::span<const uint8_t>(packed_.data(), packed);
 }
 

@@ -11,7 +11,6 @@
 #include <span>
 #include <vector>
 
-struct libdeflate_compressor;
 struct libdeflate_decompressor;
 
 namespace aa {
@@ -21,16 +20,11 @@ inline constexpr int kZipLines = 16;
 // One per thread.
 class ZipPacker {
   public:
-    ZipPacker();
-    ~ZipPacker();
-    ZipPacker(const ZipPacker&) = delete;
-    ZipPacker& operator=(const ZipPacker&) = delete;
     // An even number of bytes as they are stored in the file; valid until the next call.
     std::span<const uint8_t> pack(std::span<const uint8_t> chunk);
 
   private:
-    libdeflate_compressor* compressor_;
-    std::vector<uint8_t> sorted_, packed_;
+    std::vector<uint8_t> sorted_, packed_, working_;
 };
 
 // One per thread.

@@ -63,6 +63,36 @@ TEST(ExrZip, UnpacksWhatItPacked) {
         }
 }
 
+// Files do not depend on which thread packed what before.
+TEST(ExrZip, AChunkIsPackedAsIfItWereTheFirst) {
+    ZipPacker packer;
+    for (const bool noise : {false, true, false, true})
+        for (const size_t bytes : {65'536, 1000, 400'000}) {
+            auto chunk = chunkOf(bytes, false);
+            const auto random = chunkOf(bytes, true);
+            for (size_t i = 0; noise && i < bytes; i += 64) chunk[i] = random[i];  // it can still be packed
+            ZipPacker other;
+            const auto packed = packer.pack(chunk), first = other.pack(chunk);
+            ASSERT_LT(packed.size(), bytes);
+            EXPECT_TRUE(std::equal(packed.begin(), packed.end(), first.begin(), first.end())) << bytes << noise;
+        }
+}
+
+TEST(ExrZip, ZlibUnpacksWhatItPacked) {
+    ZipPacker packer;
+    for (const size_t bytes : {200, 4096, 100'002, 3'000'000}) {
+        const auto chunk = chunkOf(bytes, false);
+        const auto packed = packer.pack(chunk);
+        ASSERT_LT(packed.size(), bytes);
+        std::vector<uint8_t> differences(bytes);
+        uLongf size = uLongf(bytes);
+        ASSERT_EQ(uncompress(differences.data(), &size, packed.data(), uLong(packed.size())), Z_OK);
+        ASSERT_EQ(size, bytes);
+        for (size_t i = 1; i < bytes; i++) differences[i] = uint8_t(differences[i] + differences[i - 1] - 128);
+        for (size_t i = 0; i < bytes; i++) ASSERT_EQ(differences[i / 2 + (i % 2) * (bytes / 2)], chunk[i]) << i;
+    }
+}
+
 TEST(ExrZip, DamagedChunksAreRefused) {
     ZipUnpacker unpacker;
     const auto chunk = chunkOf(4096, false), packed = packedByZlib(chunk);

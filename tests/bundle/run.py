@@ -186,6 +186,7 @@ class Program(BundleTest):
             "libtbb",
             "libpng",
             "libdeflate",
+            "libisal",
             "libfreetype",
             "libbrotli",
             "zlib",

@@ -72,7 +72,7 @@ def settle_links(root: Path) -> None:
 # What a program for 64-bit Arm is compiled against and runs on: unpacked, and never entered.
 ARM_PACKAGES = (
     "libopenimageio-dev,libopenexr-dev,libpng-dev,libfreetype-dev,libcairo2-dev,libwebp-dev,libgif-dev,libglm-dev,"
-    "nlohmann-json3-dev,libcli11-dev,libxxhash-dev,libtbb-dev,libdeflate-dev,libgtest-dev,libgmock-dev,fonts-dejavu-core"
+    "nlohmann-json3-dev,libcli11-dev,libxxhash-dev,libtbb-dev,libdeflate-dev,libisal-dev,libgtest-dev,libgmock-dev,fonts-dejavu-core"
 )
 ARM = {
     f"arm64-{suite}": System(
