@@ -34,4 +34,7 @@ double displayCeiling(const DisplayChain& chain);
 // Pixels of which a channel lies above the ceiling or below 0.
 size_t clippedPixels(const Rgb& linear, const DisplayChain& chain);
 
+// What an 8-bit file keeps of a value: floor(255 v + 0.5) of v in [0, 1]. NaN gives 0.
+inline int code8(float v) { return int(255.0f * (v > 0 ? (v < 1 ? v : 1.0f) : 0.0f) + 0.5f); }
+
 }  // namespace aa

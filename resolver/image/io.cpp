@@ -250,7 +250,8 @@ void writeExr(const fs::path& file, const Rgb& linear, bool displayReferred, con
 }
 
 void writePng(const fs::path& file, const Rgb& encoded, const PlaneF* alpha) {
-    writeBytes(file, pngBytes(codesOf(encoded, alpha), encoded.width(), encoded.height(), {.alpha = alpha != nullptr}));
+    writeBytes(file, pngBytes(codesOf(encoded, alpha), encoded.width(), encoded.height(),
+                              {.alpha = alpha != nullptr, .quick = true}));
 }
 
 }  // namespace aa

@@ -12,6 +12,7 @@
 #include <memory>
 #include <string>
 
+#include "image/colour.h"
 #include "image/error.h"
 #include "image/io.h"
 
@@ -134,7 +135,9 @@ class Writer {
     bool write(png_const_bytep codes, png_uint_32 width, png_uint_32 height, PngOptions options) {
         if (setjmp(png_jmpbuf(png_))) return false;
         png_set_write_fn(png_, &bytes_, append, [](png_structp) {});
-        png_set_compression_level(png_, options.compressionLevel);
+        constexpr int kQuickLevel = 2;
+        png_set_compression_level(png_, options.quick ? kQuickLevel : options.compressionLevel);
+        if (options.quick) png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
         png_set_IHDR(png_, info_, width, height, 8, options.alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
                      PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
         if (options.srgb) png_set_sRGB_gAMA_and_cHRM(png_, info_, PNG_sRGB_INTENT_ABSOLUTE);
@@ -208,14 +211,16 @@ std::vector<unsigned char> codesOf(const Rgb& encoded, const PlaneF* alpha) {
     const int w = encoded.width(), h = encoded.height();
     std::vector<const PlaneF*> planes = {&encoded.c[0], &encoded.c[1], &encoded.c[2]};
     if (alpha) planes.push_back(alpha);
-    std::vector<unsigned char> codes;
-    codes.reserve(size_t(w) * size_t(h) * planes.size());
-    for (int y = 0; y < h; y++)
-        for (int x = 0; x < w; x++)
-            for (const PlaneF* plane : planes) {
-                const float v = plane->at(x, y);
-                codes.push_back(uint8_t(std::floor(255.0f * (v > 0 ? (v < 1 ? v : 1.0f) : 0.0f) + 0.5f)));
+    const size_t count = planes.size();
+    std::vector<unsigned char> codes(size_t(w) * size_t(h) * count);
+    forRows({}, h, [&](int y0, int y1) {
+        for (size_t c = 0; c < count; c++)
+            for (int y = y0; y < y1; y++) {
+                const float* const row = planes[c]->row(y);
+                unsigned char* const to = codes.data() + size_t(y) * size_t(w) * count + c;
+                for (int x = 0; x < w; x++) to[size_t(x) * count] = uint8_t(code8(row[x]));
             }
+    });
     return codes;
 }
 

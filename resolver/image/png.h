@@ -18,6 +18,7 @@ struct PngOptions {
     bool srgb = true;          // say that the codes are sRGB
     int compressionLevel = 6;  // 0 to 9, zlib's
     bool alpha = false;        // four codes per pixel
+    bool quick = false;  // for pictures, of which a run writes hundreds (decisions 58); compressionLevel is ignored
 };
 // 8-bit codes floor(255 v + 0.5) of encoded values in [0,1], R G B R G B ..., or R G B A.
 std::vector<unsigned char> codesOf(const Rgb& encoded, const PlaneF* alpha = nullptr);

@@ -255,10 +255,7 @@ void quantise8(Rgb& encoded, const Exec& exec) {
         for (auto& channel : encoded.c)
             for (int y = y0; y < y1; y++) {
                 float* row = channel.row(y);
-                for (int x = 0; x < encoded.width(); x++) {
-                    const float v = row[x];
-                    row[x] = std::floor(255.0f * (v > 0 ? (v < 1 ? v : 1.0f) : 0.0f) + 0.5f) / 255.0f;
-                }
+                for (int x = 0; x < encoded.width(); x++) row[x] = float(code8(row[x])) / 255.0f;
             }
     });
     encoded.fillBorder();

@@ -64,7 +64,7 @@ std::vector<Span> spans(int from, int to) {
     }
     return all;
 }
-unsigned char codeOf(float v) { return static_cast<unsigned char>(255.0f * (v > 0 ? std::min(v, 1.0f) : 0.0f) + 0.5f); }
+unsigned char codeOf(float v) { return static_cast<unsigned char>(code8(v)); }
 
 // The pixels while marks are drawn onto them.
 struct Pixels {
