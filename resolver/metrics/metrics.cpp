@@ -6,6 +6,7 @@
 #include <memory>
 #include <numeric>
 
+#include "image/colour.h"
 #include "metrics/metric.h"
 #include "metrics/metrics_kernels.h"
 
