@@ -96,6 +96,8 @@ def page_of(document: dict) -> Page:
         else "What other programs did meanwhile is not known.",
         "A line of the table is of one call, in which `noaa`, a plain copy, was timed too: `x` is in multiples of it. Quartiles: their",
         f"distance as a share of the median, in {short(sets[-1])}. Every instruction set gives the same bits.",
+        "Where a system that has long run has no pages of 2 MB left to give, some methods take up to half as long again; freeing",
+        "them first (`compact_memory` of Linux) makes calls comparable.",
     )
     for size in SIZES:
         resolution = [int(n) for n in size.split("x")]
