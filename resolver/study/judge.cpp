@@ -74,9 +74,7 @@ void Judge::look(const Frame& frame, const std::shared_ptr<const Truth>& truth, 
 }
 
 // Known figures, once the image has been seen to be the one that they are of.
-FrameMetrics Judge::again(const FrameMetrics& known, const Rgb& encoded, const Reference& reference,
-                          TileErrors& pool) const {
-    const TileErrors errors = tileErrors(encoded, reference, options_.exec);
+FrameMetrics Judge::again(const FrameMetrics& known, const TileErrors& errors, TileErrors& pool) const {
     pool += errors;
     if (errors.squaredError().mse != known.mse)
         throw InputError("frame " + std::to_string(number_) +
@@ -157,11 +155,13 @@ FrameResult Judge::judge(size_t k, const RunningMethod& method, const ResolveSec
         const bool linear = method.spec.outputSpace() == Space::linear;
         const auto& region = options_.protocol.region;
         const auto take = [&](const Rgb& shown, const Rgb& out) {
-            if (known && known->metrics) return again(*known->metrics, shown, measured(), errors_[k]);
+            const TileErrors errors =
+                glanced.errors ? std::move(*glanced.errors) : tileErrors(shown, measured(), options_.exec);
+            if (known && known->metrics) return again(*known->metrics, errors, errors_[k]);
             const MeasuredPicture measuredPicture{.encoded = shown,
                                                   .linear = linear && !broken ? &out : nullptr,
                                                   .luma = glanced.luma.empty() || region ? nullptr : &glanced.luma,
-                                                  .errors = glanced.errors ? &*glanced.errors : nullptr};
+                                                  .errors = &errors};
             return measure(measuredPicture, measured(), options_.measure, options_.exec, errors_[k], isJudged());
         };
         const Rgb encodedPart = region ? cropped(encoded, *region) : Rgb(),

@@ -38,8 +38,7 @@ class Judge {
     PlaneF sequenceMap(size_t k, const MapKind& kind) const;
 
   private:
-    FrameMetrics again(const FrameMetrics& known, const Rgb& encoded, const Reference& reference,
-                       TileErrors& pool) const;
+    FrameMetrics again(const FrameMetrics& known, const TileErrors& errors, TileErrors& pool) const;
     void lookAtTruth(const std::shared_ptr<const Truth>& truth);
     void lookAtMethod(const RunningMethod& standIn);
     bool isJudged() const;  // whether the latest frame counts in the pooled figures
