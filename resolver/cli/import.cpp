@@ -31,7 +31,7 @@ std::string familiesThatNeed(Pass pass) {
     std::map<std::string_view, std::pair<int, int>> families;  // methods that need it, all
     for (const auto& m : registry()) {
         auto& [needing, all] = families[m.family];
-        needing += m.passes.has(pass);
+        needing += passesOf(m, Params(m.id, m.params, {})).hasAnyOf(pass);
         all++;
     }
     std::string s;

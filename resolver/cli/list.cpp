@@ -44,7 +44,7 @@ std::string range(const ParamSpec& p) {
     }
 }
 PassSet passesWith(const MethodDescriptor& m, const std::vector<std::pair<std::string, std::string>>& given) {
-    return m.morePasses ? m.passes | m.morePasses(Params(m.id, m.params, given)) : m.passes;
+    return passesOf(m, Params(m.id, m.params, given));
 }
 PassSet passesAtDefaults(const MethodDescriptor& m) { return passesWith(m, {}); }
 // docs/methods.md, generated so that it cannot fall out of step.
@@ -174,8 +174,8 @@ nlohmann::ordered_json describe(const MethodDescriptor& m) {
     j["passesWhen"] = nlohmann::ordered_json::object();
     for (const auto& p : m.params)
         for (const auto& value : p.choices) try {
-                const PassSet more =
-                    passesWith(m, {{std::string(p.name), std::string(value)}}).without(passesAtDefaults(m));
+                const PassSet more = whole(passesWith(m, {{std::string(p.name), std::string(value)}}))
+                                         .without(whole(passesAtDefaults(m)));
                 if (!more.empty()) j["passesWhen"][std::string(p.name) + "=" + std::string(value)] = names(more);
             } catch (const UsageError&) {  // a choice that has no effect at the defaults
             }

@@ -60,7 +60,7 @@ void planFor(const std::vector<std::string>& methods, SynthOptions& o) {
     o.centreWanted = passesOf(centre);
     const PassSet all = *o.wanted | *o.centreWanted;
     const bool colour = all.has(Pass::subsampleColor);
-    if ((colour || all.has(Pass::subsamples)) && o.subsamples.empty()) o.subsamples = patternFor(jittered, centre);
+    if ((colour || all.hasAnyOf(Pass::subsamples)) && o.subsamples.empty()) o.subsamples = patternFor(jittered, centre);
     o.subsampleColor = o.subsampleColor || colour;
 }
 

@@ -7,6 +7,10 @@
 
 namespace aa {
 
+PassSet passesOf(const MethodDescriptor& method, const Params& params) {
+    return method.morePasses ? method.passes | method.morePasses(params) : method.passes;
+}
+
 const MethodDescriptor& findMethod(std::string_view id, const std::vector<MethodDescriptor>& among) {
     std::vector<std::string_view> known;
     for (const auto& m : among) {

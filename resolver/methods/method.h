@@ -87,6 +87,9 @@ struct MethodDescriptor {
     CodePlace writtenAt = {};  // the file of this descriptor: leave it out, the compiler fills it
 };
 
+// Of the method with these parameters.
+PassSet passesOf(const MethodDescriptor& method, const Params& params);
+
 // Parameter `space` of the methods that average samples (conventions 4), and what it makes the output.
 ParamSpec averagedSpaceParam();
 Space averagedSpace(const Params& params);

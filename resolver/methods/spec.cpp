@@ -51,7 +51,7 @@ MethodSpec parseMethod(std::string_view text, const std::vector<MethodDescriptor
 }
 
 PassSet MethodSpec::passes() const {
-    PassSet all = method->morePasses ? method->passes | method->morePasses(params()) : method->passes;
+    PassSet all = passesOf(*method, params());
     for (const auto& stage : stages) all |= passesOf(stage);
     return all;
 }

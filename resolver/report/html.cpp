@@ -66,10 +66,6 @@ std::string reportHtml(const RunResults& run, const ViewerData& viewer, const st
             for (json& shown : data["figures"])
                 if (shown["name"] == f->spreadOf) shown["spread"].push_back(f->name);
     data["advice"] = adviceInWords(run);
-    data["passBytes"] = json::object();
-    for (const PassInfo& p : allPasses())  // colour is there without any method
-        if (p.pass != Pass::color)
-            data["passBytes"][std::string(p.name)] = bytesPerPixel(p.pass, size_t(run.subSamples));
     data["publishedMemory"] = json::object();
     for (const MethodDescriptor& m : registry())
         for (const PublishedMemory& p : m.publishedMemory)

@@ -4,6 +4,13 @@
 
 namespace aa {
 
+PassSet whole(PassSet set) {
+    PassSet all;
+    for (const auto& p : allPasses())
+        if (set.hasAnyOf(p.pass)) all |= p.pass;
+    return all;
+}
+
 std::string_view name(Pass pass) {
     for (const auto& p : allPasses())
         if (p.pass == pass) return p.name;
@@ -13,7 +20,7 @@ std::string_view name(Pass pass) {
 std::vector<std::string_view> names(PassSet set) {
     std::vector<std::string_view> r;
     for (const auto& p : allPasses())
-        if (set.has(p.pass)) r.push_back(p.name);
+        if (set.hasAnyOf(p.pass)) r.push_back(p.name);
     return r;
 }
 std::string listOf(PassSet set, std::string_view between) {

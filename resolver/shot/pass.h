@@ -15,10 +15,16 @@ enum class Pass : uint32_t {
     normal = 8,            // world space, unit, 0 on background
     object = 16,           // unsigned id, 0 = background
     motion = 32,           // current - previous position, px, y down, un-jittered
-    subsamples = 64,       // depth, normal, id at each sub-sample, and the similarity mask
     subsampleColor = 128,  // shaded colour at each sub-sample
     edges = 256,           // signed axis distances to the visible triangle's nearest edge, px
     segments = 512,        // projected edges of the geometry: a list, not a picture
+    // Depth, normal, id at each sub-sample, and the similarity mask: one pass to export and to store. A method names
+    // what it reads of it, and no more is kept in memory.
+    subsampleDepth = 64,
+    subsampleNormal = 1024,
+    subsampleObject = 2048,
+    subsampleMask = 4096,
+    subsamples = subsampleDepth | subsampleNormal | subsampleObject | subsampleMask,
 };
 
 // Where in the pixel a frame is sampled. Methods that accumulate frames read jittered ones; all others judge a picture
@@ -30,13 +36,12 @@ struct PassSet {
     uint32_t bits = 0;
     PassSet() = default;
     PassSet(Pass p) : bits(uint32_t(p)) {}
-    bool has(Pass p) const { return bits & uint32_t(p); }
-    PassSet operator|(PassSet o) const {
-        PassSet r;
-        r.bits = bits | o.bits;
-        return r;
+    bool has(PassSet all) const { return (bits & all.bits) == all.bits; }
+    bool hasAnyOf(PassSet some) const { return bits & some.bits; }
+    PassSet& operator|=(PassSet o) {
+        bits |= o.bits;
+        return *this;
     }
-    PassSet& operator|=(PassSet o) { return *this = *this | o; }
     PassSet without(PassSet o) const {
         PassSet r;
         r.bits = bits & ~o.bits;
@@ -45,8 +50,11 @@ struct PassSet {
     bool operator==(const PassSet&) const = default;
     bool empty() const { return bits == 0; }
 };
+inline PassSet operator|(PassSet a, PassSet b) { return a |= b; }
 inline PassSet operator|(Pass a, Pass b) { return PassSet(a) | PassSet(b); }
 
+// The passes of which it holds a share.
+PassSet whole(PassSet set);
 std::string_view name(Pass pass);
 std::vector<std::string_view> names(PassSet set);
 std::string listOf(PassSet set, std::string_view between = " ");

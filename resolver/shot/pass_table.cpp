@@ -54,11 +54,31 @@ const std::vector<PassInfo>& allPasses() {
          .name = "subsamples",
          .part = "subsamples",
          .meaning = "geometry at each sub-sample and the similarity mask",
-         .groups = {{{"Z"}, nullptr, [](S& s) { return std::vector<PlaneRef>{&s.depthView}; }, sanitiseDepthPlanes},
-                    {{"N.X", "N.Y", "N.Z"}, nullptr, [](S& s) { return planes(s.normalWorld); }, sanitiseNormalPlanes},
-                    {{"id"}, nullptr, [](S& s) { return std::vector<PlaneRef>{&s.objectId}; }, nullptr, true}},
+         .groups = {{{"Z"},
+                     nullptr,
+                     [](S& s) { return std::vector<PlaneRef>{&s.depthView}; },
+                     sanitiseDepthPlanes,
+                     false,
+                     Pass::subsampleDepth},
+                    {{"N.X", "N.Y", "N.Z"},
+                     nullptr,
+                     [](S& s) { return planes(s.normalWorld); },
+                     sanitiseNormalPlanes,
+                     false,
+                     Pass::subsampleNormal},
+                    {{"id"},
+                     nullptr,
+                     [](S& s) { return std::vector<PlaneRef>{&s.objectId}; },
+                     nullptr,
+                     true,
+                     Pass::subsampleObject}},
          .perSubSample = true,
-         .shared = {{{"mask"}, [](F& f) { return std::vector<PlaneRef>{&f.subSampleMask}; }, nullptr, nullptr, true}}},
+         .shared = {{{"mask"},
+                     [](F& f) { return std::vector<PlaneRef>{&f.subSampleMask}; },
+                     nullptr,
+                     nullptr,
+                     true,
+                     Pass::subsampleMask}}},
         {.pass = Pass::subsampleColor,
          .name = "subsampleColor",
          .part = "subsamples",
@@ -98,13 +118,14 @@ size_t bytesOf(PassSet passes, const Frame& frame, size_t subSamples) {
 }
 
 double bytesPerPixel(PassSet passes, size_t subSamples) {
-    double bytes = 0;
-    for (const auto& p : allPasses())
-        if (passes.has(p.pass)) {
-            bytes += double(p.bytesPerPixel()) * (p.perSubSample ? double(subSamples) : 1.0);
-            for (const auto& g : p.shared) bytes += 4 * double(g.channels.size());
-        }
-    return bytes;
+    size_t channels = 0;
+    const auto add = [&](const std::vector<ChannelGroup>& groups, size_t times) {
+        for (const ChannelGroup& g : groups)
+            if (passes.has(g.share)) channels += times * g.channels.size();
+    };
+    for (const PassInfo& p : allPasses())
+        if (passes.hasAnyOf(p.pass) && !p.isList) add(p.groups, p.perSubSample ? subSamples : 1), add(p.shared, 1);
+    return 4 * double(channels);
 }
 
 }  // namespace aa

@@ -18,6 +18,7 @@ struct ChannelGroup {
     std::vector<PlaneRef> (*ofSubSample)(SubSample&) = nullptr;
     SanitisePlanes* sanitise = nullptr;  // null: any value is good (ids, masks)
     bool isUint = false;                 // 32-bit unsigned; otherwise float, read from half or float
+    PassSet share = {};                  // of the pass, where a method may ask for this group alone
 };
 
 struct PassInfo {
@@ -34,7 +35,7 @@ struct PassInfo {
     int bytesPerPixel() const;  // in memory; of the groups, so of one sub-sample
 };
 const std::vector<PassInfo>& allPasses();
-// Bytes per pixel in memory of everything that the passes hold.
+// Bytes per pixel in memory of everything that the passes, or shares of them, hold.
 double bytesPerPixel(PassSet passes, size_t subSamples);
 // Of a frame that holds them: the pixels without borders, lists by their length.
 size_t bytesOf(PassSet passes, const Frame& frame, size_t subSamples);

@@ -23,7 +23,7 @@ class FrameDecoder {
 
     void decode(PassSet wanted) {
         for (const auto& info : allPasses()) {
-            if (!wanted.has(info.pass)) continue;
+            if (!wanted.hasAnyOf(info.pass)) continue;
             if (info.isList)
                 segments();
             else if (info.perSubSample)
@@ -117,17 +117,20 @@ class FrameDecoder {
         frame_.subSamples.resize(count);
         std::vector<ChannelTarget> targets;
         std::vector<Wanted> groups;
+        const auto isWanted = [&](const ChannelGroup& g) { return wanted.has(g.share); };
         const auto ofPart = [&](const PassInfo& p) {
-            return p.perSubSample && p.part == partName && wanted.has(p.pass);
+            return p.perSubSample && p.part == partName && wanted.hasAnyOf(p.pass);
         };
         for (const auto& info : allPasses())
             if (ofPart(info))
-                for (const ChannelGroup& g : info.shared) want(g, g.ofFrame(frame_), "", targets, groups);
+                for (const ChannelGroup& g : info.shared)
+                    if (isWanted(g)) want(g, g.ofFrame(frame_), "", targets, groups);
         for (size_t k = 0; k < count; k++)
             for (const auto& info : allPasses())
                 if (ofPart(info))
                     for (const ChannelGroup& g : info.groups)
-                        want(g, g.ofSubSample(frame_.subSamples[k]), subSampleChannel(k, ""), targets, groups);
+                        if (isWanted(g))
+                            want(g, g.ofSubSample(frame_.subSamples[k]), subSampleChannel(k, ""), targets, groups);
         read(partName, targets, groups);
     }
 

@@ -11,6 +11,7 @@
 #include "image/exr.h"
 #include "image/io_testing.h"
 #include "shot/frame_stream.h"
+#include "shot/pass_table.h"
 #include "shot/segments.h"
 #include "shot/writer.h"
 
@@ -151,6 +152,29 @@ TEST_F(ReaderTest, OnlyWhatIsWantedIsDecoded) {
     EXPECT_EQ(ShotReader(folder).offered(), kAll);
 }
 
+TEST_F(ReaderTest, OfTheSubSamplesOnlyTheSharesThatAreWanted) {
+    const ShotReader reader(folder);
+    const Frame whole = reader.read(0, Pass::subsamples);
+    const Frame depth = reader.read(0, Pass::subsampleDepth), mask = reader.read(0, Pass::subsampleMask);
+    const Frame others = reader.read(0, Pass::subsampleNormal | Pass::subsampleObject);
+    for (const Frame* f : {&whole, &depth, &mask, &others}) {
+        EXPECT_EQ(f->subSamples.size(), 2u);
+        EXPECT_EQ(f->subSamplePositionsPx, whole.subSamplePositionsPx);
+    }
+    for (size_t k = 0; k < 2; k++) {
+        const SubSample &w = whole.subSamples[k], &d = depth.subSamples[k], &o = others.subSamples[k];
+        EXPECT_TRUE(d.depthView.samePixels(w.depthView) && d.normalWorld.empty() && d.objectId.empty());
+        EXPECT_TRUE(o.depthView.empty() && o.normalWorld.samePixels(w.normalWorld) &&
+                    o.objectId.samePixels(w.objectId));
+        EXPECT_TRUE(mask.subSamples[k].depthView.empty() && w.colorLinear.empty());
+    }
+    EXPECT_TRUE(depth.subSampleMask.empty() && others.subSampleMask.empty());
+    EXPECT_TRUE(mask.subSampleMask.samePixels(whole.subSampleMask));
+    EXPECT_EQ(listOf(Pass::subsampleDepth), "subsamples");
+    EXPECT_EQ(bytesPerPixel(Pass::subsampleDepth, 8), 32);
+    EXPECT_EQ(bytesPerPixel(Pass::subsampleMask, 8), 4);
+    EXPECT_EQ(bytesPerPixel(Pass::subsamples, 8), 8 * 20 + 4);
+}
 TEST_F(ReaderTest, CamerasOfTheFrameAndTheOneBefore) {
     const ShotReader reader(folder);
     EXPECT_FALSE(reader.read(0, Pass::depth).previousCamera);

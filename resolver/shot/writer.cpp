@@ -23,7 +23,7 @@ void writeFrame(const std::filesystem::path& file, const Frame& written, bool mo
     const SegmentPlanes segments = frame.passes.has(Pass::segments) ? packSegments(frame.segments) : SegmentPlanes{};
     std::vector<PartSource> parts;
     for (const auto& info : allPasses()) {
-        if (!frame.passes.has(info.pass) || (info.zeroWhereStatic && !motionPart)) continue;
+        if (!frame.passes.hasAnyOf(info.pass) || (info.zeroWhereStatic && !motionPart)) continue;
         auto part = std::find_if(parts.begin(), parts.end(), [&](const auto& p) { return p.name == info.part; });
         if (part == parts.end()) part = parts.insert(parts.end(), PartSource{std::string(info.part), {}});
         for (const auto& g : info.shared) add(*part, g, g.ofFrame(frame), "");

@@ -70,8 +70,7 @@ FrameWork::Order FrameWork::order() const {
     for (size_t k = 0; k < methods_.size(); k++)
         if (k != reference_) o.methods.push_back(k);
     const auto readsSubSamples = [&](size_t k) {
-        const PassSet passes = methods_[k].spec.passes();
-        return passes.has(Pass::subsamples) || passes.has(Pass::subsampleColor);
+        return methods_[k].spec.passes().hasAnyOf(Pass::subsamples | Pass::subsampleColor);
     };
     const auto others = std::stable_partition(o.methods.begin(), o.methods.end(), readsSubSamples);
     o.readers = size_t(others - o.methods.begin());

@@ -290,8 +290,8 @@ TEST(Study, MemoryCountsPassesTargetAndState) {
     EXPECT_EQ(results.methods[0].stateBytes, 0u);
     EXPECT_EQ(results.methods[1].inputBytes, pixels * (12 + 8)) << "colour and motion";
     EXPECT_GT(results.methods[1].stateBytes, 0u);
-    EXPECT_EQ(results.methods[2].inputBytes, pixels * (12 + 4 + 12 + 4 + 8 * 20 + 4 + 8 * 12))
-        << "colour, depth, normal, object; of each sub-sample depth, normal, id and colour; the mask";
+    EXPECT_EQ(results.methods[2].inputBytes, pixels * (12 + 4 + 12 + 4 + 8 * 20 + 8 * 12))
+        << "colour, depth, normal, object; of each sub-sample depth, normal, id and colour";
     EXPECT_EQ(results.methods[2].bytes(), results.methods[2].inputBytes + pixels * 12 + results.methods[2].stateBytes);
     fs::remove_all(folder);
 }

@@ -7,7 +7,7 @@
 namespace aa {
 
 std::string subSamplePatternFor(const MethodSpec& m) {
-    if (!m.passes().has(Pass::subsamples) && !m.passes().has(Pass::subsampleColor)) return "";
+    if (!m.passes().hasAnyOf(Pass::subsamples | Pass::subsampleColor)) return "";
     const std::string patterns[] = {"d3d8", "d3d4", "d3d2", "d3d16"};
     for (const auto& pattern : patterns) try {
             m.create({.width = 8,

@@ -34,7 +34,7 @@ Surface surfaceAt(double x, double y, int number) {
 
 Frame syntheticFrame(int number, PassSet passes, const std::vector<glm::dvec2>& subSamplesPx) {
     const double jitter[4][2] = {{-0.25, 0.125}, {0.25, -0.375}, {-0.375, -0.125}, {0.125, 0.375}};
-    const bool sampled = passes.has(Pass::subsamples) || passes.has(Pass::subsampleColor);
+    const bool sampled = passes.hasAnyOf(Pass::subsamples | Pass::subsampleColor);
     Frame f;
     f.number = number;
     f.width = kWidth, f.height = kHeight;

@@ -7,6 +7,7 @@
 #include "image/error.h"
 #include "methods/driver.h"
 #include "methods/methods_under_test.h"
+#include "methods/stage.h"
 #include "shot/pass_table.h"
 #include "shot/synth/drawn_frames.h"
 
@@ -132,6 +133,26 @@ inline Subject makeSubject(const std::string& text, int w, int h,
             why = e.what();
         }
     throw std::runtime_error(text + ": accepts no sub-sample pattern: " + why);
+}
+// These, and every stage behind methods of several kinds.
+inline std::vector<std::string> withEveryStage() {
+    std::vector<std::string> specs = allSpecs();
+    const char* const before[] = {"noaa", "ssaa", "smaa1x", "karis", "inside"};
+    for (const auto& stage : stages()) {
+        std::vector<std::string> values(stage.value.choices.begin(), stage.value.choices.end());
+        if (stage.valueIsMethod) values = {"fxaa311", "smaa1x"};
+        if (stage.value.type == ParamSpec::Type::real && values.empty()) values = {"0.5", "16"};
+        for (const char* method : before)
+            for (const auto& value : values) {
+                const std::string text = std::string(method) + "+" + std::string(stage.value.name) + "=" + value;
+                try {
+                    makeSubject(text, 4, 4);
+                    specs.push_back(text);
+                } catch (const std::runtime_error&) {  // this stage does not serve this method
+                }
+            }
+    }
+    return specs;
 }
 inline const Rgb& step(Subject& s, Frame f, const Exec& exec = {}) {
     encodeFrame(f, {}, exec);

@@ -155,26 +155,6 @@ std::string faultOf(const std::string& text, const Case& c, unsigned seed, Preci
     }
     return "";
 }
-std::vector<std::string> withEveryStage() {
-    std::vector<std::string> specs = allSpecs();
-    const char* const before[] = {"noaa", "ssaa", "smaa1x", "karis", "inside"};
-    for (const auto& stage : stages()) {
-        std::vector<std::string> values(stage.value.choices.begin(), stage.value.choices.end());
-        if (stage.valueIsMethod) values = {"fxaa311", "smaa1x"};
-        if (stage.value.type == ParamSpec::Type::real && values.empty()) values = {"0.5", "16"};
-        for (const char* method : before)
-            for (const auto& value : values) {
-                const std::string text = std::string(method) + "+" + std::string(stage.value.name) + "=" + value;
-                try {
-                    makeSubject(text, 4, 4);
-                    specs.push_back(text);
-                } catch (const std::runtime_error&) {  // this stage does not serve this method
-                }
-            }
-    }
-    return specs;
-}
-
 TEST(Torture, FiniteNotNegativeAndWeightsWithinOne) {
     Tally tally;
     std::map<std::string, int> faults;

@@ -55,7 +55,7 @@ MethodDescriptor dmsaaDescriptor() {
         .family = "geometry",
         .summary = "Fetches the colour beside the pixel centre, toward the sub-samples whose depth differs.",
         .source = "[Pettineo 2010] as told in [Reshetov 2012, slide 16]",
-        .passes = Pass::color | Pass::depth | Pass::subsamples,
+        .passes = Pass::color | GeometryNeeds{}.passes(),
         .params = {choiceParam("vecMode", "perS", kVectors,
                                "shift: sum of the differing offsets by S, by their number, or as long as their share",
                                "decisions 31"),

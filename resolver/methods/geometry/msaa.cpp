@@ -61,6 +61,11 @@ CoverageSlots coverageSlots(std::string_view id, const Params& p, const std::vec
 }
 }  // namespace
 
+GeometryNeeds surfaceNeeds(const Params& p) {
+    const bool surface = p.choice("key") == "surface";
+    return {.depth = surface, .normals = surface, .ids = true, .colors = true, .camera = surface};
+}
+
 CoverageSlots msaaSlots(const Params& p, const std::vector<glm::dvec2>& positionsPx) {
     return coverageSlots("msaa", p, positionsPx, int(positionsPx.size()), false);
 }
@@ -78,14 +83,13 @@ class MsaaMethod : public Method {
     MsaaMethod(std::string_view id, const Params& p, CoverageSlots slots)
         : id_(id),
           slots_(std::move(slots)),
-          byGeometry_(p.choice("key") == "surface"),
+          needs_(surfaceNeeds(p)),
           centroid_(p.choice("shadingPosition") == "centroid"),
           encoded_(averagedSpace(p) == Space::encoded),
           inverseLuminance_(p.choice("resolve") == "inverseLuminance") {}
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
-        const GeometryViews geometry(
-            frame, {.normals = byGeometry_, .ids = true, .camera = byGeometry_, .colors = true}, id_ + ":key=surface");
+        const GeometryViews geometry(frame, needs_, id_ + ":key=surface");
         GeometryArgs permuted = geometry.args();
         std::vector<SubSampleArgs> samples;
         for (const int k : slots_.slotsFirst) samples.push_back(geometry.args().sample[k]);
@@ -98,7 +102,7 @@ class MsaaMethod : public Method {
                    .slots = slots_.slots,
                    .order = slots_.order.data(),
                    .nearestSlot = slots_.nearestSlot.data(),
-                   .byGeometry = byGeometry_,
+                   .byGeometry = needs_.normals,
                    .centroid = centroid_,
                    .encoded = encoded_,
                    .display = displayArgs(frame.display),
@@ -161,7 +165,8 @@ class MsaaMethod : public Method {
 
     std::string id_;
     CoverageSlots slots_;
-    bool byGeometry_, centroid_, encoded_, inverseLuminance_;
+    GeometryNeeds needs_;
+    bool centroid_, encoded_, inverseLuminance_;
     std::vector<Rgb> sampleColors_;  // what the filter reads: the colour of every sub-sample's surface
     std::vector<DebugLayer> layers_;
 };
@@ -178,7 +183,6 @@ std::vector<ParamSpec> surfaceParams() {
                         "weights of the colours: 1, or 1 / (1 + luminance)", "conventions 4", "filter=box"),
             averagedSpaceParam()};
 }
-PassSet surfacePasses(const Params& p) { return p.choice("key") == "surface" ? Pass::depth | Pass::normal : PassSet{}; }
 
 }  // namespace
 
@@ -188,13 +192,13 @@ MethodDescriptor msaaDescriptor() {
             .family = "geometry",
             .summary = "Every surface in a pixel is shaded once and weighted by the sub-samples that it covers.",
             .source = "[Akeley 1993]",
-            .passes = Pass::color | Pass::object | Pass::subsamples | Pass::subsampleColor,
+            .passes = Pass::color,
             .params = surfaceParams(),
             .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
                 requireSubSamples(shot.subSamplePositionsPx, "msaa", size_t(kMsaaMaxSamples));
                 return std::make_unique<MsaaMethod>("msaa", p, msaaSlots(p, shot.subSamplePositionsPx));
             },
-            .morePasses = surfacePasses,
+            .morePasses = [](const Params& p) { return surfaceNeeds(p).passes(); },
             .outputSpace = averagedSpace,
             .reachPx = 5,  // the widest filter's radius and a pixel
             .publishedMemory = {{2, 39.6, "[Stejmar n.d., table 5.6]"},

@@ -1,13 +1,16 @@
-// Which sub-samples of msaa and csaa hold a colour, and what the others and the filters make of them.
+// What msaa and csaa read, which sub-samples hold a colour, and what the others and the filters make of them.
 #pragma once
 #include <glm/vec2.hpp>
 #include <string_view>
 #include <vector>
 
+#include "methods/geometry/subsample_geometry.h"
 #include "methods/reference/resolve_filters_kernels.h"
 
 namespace aa {
 class Params;
+
+GeometryNeeds surfaceNeeds(const Params& params);
 
 // Sub-samples are counted as in slotsFirst everywhere else.
 struct CoverageSlots {

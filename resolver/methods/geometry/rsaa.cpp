@@ -115,7 +115,7 @@ MethodDescriptor rsaaDescriptor() {
             "Fetches the colour beside the pixel centre, at an offset learned for its mask of sub-samples on other "
             "surfaces.",
         .source = "[Reshetov 2012]",
-        .passes = Pass::color | Pass::subsamples,
+        .passes = Pass::color,
         .params = {choiceParam("measure", "sadp", kMeasures, "dissimilarity of two geometry samples",
                                "[Reshetov 2012, slides 24-27]"),
                    realParam("sadpFloor", "0.2", 0.001, 2, "below this SADP everything is one surface", "decisions 32",
@@ -148,12 +148,8 @@ MethodDescriptor rsaaDescriptor() {
         .morePasses =
             [](const Params& p) {
                 const RsaaOptions o(p);
-                PassSet passes;
-                if (!o.readsGeometry()) return passes;
-                passes |= Pass::depth;
-                if (o.needs().normals) passes |= Pass::normal;
-                if (o.needs().ids) passes |= Pass::object;
-                return passes;
+                const PassSet passes = o.needs().passes();
+                return o.maskPass ? passes | Pass::subsampleMask : passes;
             },
         .reachPx = 2};
 }

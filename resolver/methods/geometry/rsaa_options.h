@@ -20,6 +20,7 @@ struct RsaaOptions {
     explicit RsaaOptions(const Params& params);
     bool readsGeometry() const { return !maskPass || tuning; }
     GeometryNeeds needs() const {
+        if (!readsGeometry()) return {.depth = false};
         return {.normals = measure != Dissimilarity::depth, .ids = ids, .camera = measure == Dissimilarity::sadp};
     }
 };

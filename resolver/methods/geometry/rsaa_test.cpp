@@ -324,13 +324,14 @@ TEST(Rsaa, BadInputIsNamed) {
 }
 TEST(Rsaa, AsksForWhatItReads) {
     const auto passes = [](const char* text) { return parseMethod(text).passes(); };
-    const PassSet base = Pass::color | Pass::subsamples;
-    EXPECT_EQ(passes("rsaa"), base | Pass::depth | Pass::normal | Pass::object);
-    EXPECT_EQ(passes("rsaa:ids=off,measure=depth"), base | Pass::depth);
-    EXPECT_EQ(passes("rsaa:mask=pass,tuning=off"), base);
-    EXPECT_EQ(passes("rsaa:tuning=off"), base);
-    EXPECT_EQ(passes("rsaa:mask=geometry,tuning=off"), base | Pass::depth | Pass::normal | Pass::object);
-    EXPECT_EQ(passes("rsaa:mask=pass"), base | Pass::depth | Pass::normal | Pass::object);
+    const PassSet base = Pass::color, mask = Pass::subsampleMask, depth = Pass::depth | Pass::subsampleDepth,
+                  rest = Pass::normal | Pass::object | Pass::subsampleNormal | Pass::subsampleObject;
+    EXPECT_EQ(passes("rsaa:mask=geometry"), base | depth | rest);
+    EXPECT_EQ(passes("rsaa:ids=off,measure=depth"), base | depth);
+    EXPECT_EQ(passes("rsaa:mask=pass,tuning=off"), base | mask);
+    EXPECT_EQ(passes("rsaa:tuning=off"), base | mask) << "auto: the mask is the pass's";
+    EXPECT_EQ(passes("rsaa:mask=geometry,tuning=off"), base | depth | rest);
+    EXPECT_EQ(passes("rsaa:mask=pass"), base | mask | depth | rest);
 }
 // conventions 14: the full picture of a scene of two planes, masks by SADP, 8 samples: 8 dB or more.
 TEST(Rsaa, GainOnTheTwoPlanesScene) {

@@ -4,6 +4,9 @@
 #include "methods/method.h"
 
 namespace aa {
+
+GeometryNeeds sbaaNeeds() { return {.normals = true, .ids = true, .colors = true, .camera = true}; }
+
 namespace {
 
 class Sbaa : public Method {
@@ -14,7 +17,7 @@ class Sbaa : public Method {
           ids_(p.flag("ids")) {}
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
-        const GeometryViews geometry(frame, {.normals = true, .ids = true, .camera = true, .colors = true}, "sbaa");
+        const GeometryViews geometry(frame, sbaaNeeds(), "sbaa");
         SbaaArgs a{.color = view(frame.colorLinear),
                    .out = view(out),
                    .geometry = &geometry.args(),
@@ -50,7 +53,7 @@ MethodDescriptor sbaaDescriptor() {
             .family = "geometry",
             .summary = "Merges the sub-samples of a pixel into a few surfaces and shades each of them once.",
             .source = "[Salvi 2012]",
-            .passes = Pass::color | Pass::depth | Pass::normal | Pass::object | Pass::subsamples | Pass::subsampleColor,
+            .passes = Pass::color | sbaaNeeds().passes(),
             .params = {intParam("surfaces", "2", 1, kSbaaMaxSamples, "surfaces shaded per pixel", "after [Salvi 2012]"),
                        realParam("mergeNormal", "0.95", -1, 1, "least cosine of the normals of one surface",
                                  "after [Salvi 2012]"),

@@ -13,8 +13,10 @@
 #include "kernels/surface_rule.h"
 
 namespace aa {
+struct GeometryNeeds;
 struct MethodDescriptor;
 MethodDescriptor sbaaDescriptor();
+GeometryNeeds sbaaNeeds();
 
 inline constexpr int kSbaaMaxSamples = 16;
 struct SbaaArgs {

@@ -25,15 +25,17 @@ SraaArgs sraaArgs(const Params& p) {
     return a;
 }
 
+GeometryNeeds sraaNeeds(const SraaArgs& args) {
+    return {.normals = true, .ids = args.ids != SraaIds::off, .camera = !args.plainDepth};
+}
+
 namespace {
 class Sraa : public Method {
   public:
     explicit Sraa(const Params& p) : args_(sraaArgs(p)) {}
 
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
-        const GeometryViews geometry(frame,
-                                     {.normals = true, .ids = args_.ids != SraaIds::off, .camera = !args_.plainDepth},
-                                     "sraa:distance=plane");
+        const GeometryViews geometry(frame, sraaNeeds(args_), "sraa:distance=plane");
         SraaArgs a = args_;
         a.color = view(frame.colorLinear), a.out = view(out), a.geometry = &geometry.args();
         layers_.clear();
@@ -59,7 +61,7 @@ MethodDescriptor sraaDescriptor() {
         .family = "geometry",
         .summary = "Reconstructs the colour of every sub-sample from the pixels around it with like geometry.",
         .source = "[Chajdas 2011]",
-        .passes = Pass::color | Pass::depth | Pass::normal | Pass::subsamples,
+        .passes = Pass::color,
         .params = {intParam("radius", "1", 1, 2, "pixels around: 1 = 3x3, 2 = 5x5", "[Chajdas 2011]"),
                    choiceParam("metric", "product", {"product", "max"}, "how place, depth and normal are combined",
                                "[Chajdas 2011]"),
@@ -76,7 +78,7 @@ MethodDescriptor sraaDescriptor() {
             requireSubSamples(shot.subSamplePositionsPx, "sraa", 64);
             return std::make_unique<Sraa>(p);
         },
-        .morePasses = [](const Params& p) { return p.choice("ids") == "off" ? PassSet{} : PassSet(Pass::object); },
+        .morePasses = [](const Params& p) { return sraaNeeds(sraaArgs(p)).passes(); },
         .reachPx = 3};
 }
 }  // namespace aa

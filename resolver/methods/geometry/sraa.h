@@ -14,6 +14,7 @@
 
 namespace aa {
 class Params;
+struct GeometryNeeds;
 struct MethodDescriptor;
 MethodDescriptor sraaDescriptor();
 
@@ -33,6 +34,7 @@ struct SraaArgs {
 };
 // What the parameters say; the images are left out.
 SraaArgs sraaArgs(const Params& params);
+GeometryNeeds sraaNeeds(const SraaArgs& args);
 
 struct SraaKernels {
     RowKernel<SraaArgs> resolve;

@@ -39,9 +39,18 @@ CameraRays cameraRays(const Frame& frame, std::string_view reader) {
     return r;
 }
 
+PassSet GeometryNeeds::passes() const {
+    PassSet all;
+    if (depth) all |= Pass::depth | Pass::subsampleDepth;
+    if (normals) all |= Pass::normal | Pass::subsampleNormal;
+    if (ids) all |= Pass::object | Pass::subsampleObject;
+    if (colors) all |= Pass::subsampleColor;
+    return all;
+}
+
 GeometryViews::GeometryViews(const Frame& frame, GeometryNeeds needs, std::string_view reader) {
-    args_.stride = frame.depthView.stride(), args_.width = frame.width, args_.height = frame.height;
-    args_.depthView = frame.depthView.row(0);
+    args_.stride = paddedStride(frame.width), args_.width = frame.width, args_.height = frame.height;
+    if (needs.depth) args_.depthView = frame.depthView.row(0);
     if (needs.normals) args_.normalWorld = view(frame.normalWorld);
     if (needs.ids) args_.objectId = frame.objectId.row(0);
     if (needs.camera) {
@@ -56,7 +65,7 @@ GeometryViews::GeometryViews(const Frame& frame, GeometryNeeds needs, std::strin
     for (size_t k = 0; k < frame.subSamples.size(); k++) {
         const SubSample& s = frame.subSamples[k];
         const glm::dvec2 offsetPx = frame.subSamplePositionsPx[k];
-        samples_.push_back({s.depthView.row(0),
+        samples_.push_back({needs.depth ? s.depthView.row(0) : nullptr,
                             needs.normals ? view(s.normalWorld) : RgbIn{},
                             needs.ids ? s.objectId.row(0) : nullptr,
                             needs.colors ? view(s.colorLinear) : RgbIn{},

@@ -22,9 +22,10 @@ struct CameraRays {
 // `reader` names the method and its option for the message.
 CameraRays cameraRays(const Frame& frame, std::string_view reader);
 
-// What a method reads of the geometry, beside depth.
+// What a method reads of the geometry, at the centre samples and at the sub-samples, and of the latter's colours.
 struct GeometryNeeds {
-    bool normals = false, ids = false, camera = false, colors = false;
+    bool depth = true, normals = false, ids = false, colors = false, camera = false;
+    PassSet passes() const;
 };
 // Kernel arguments and the sub-sample views that they point to; valid as long as the frame.
 class GeometryViews {

@@ -166,7 +166,7 @@ MethodDescriptor resolveDescriptor() {
         .family = "reference",
         .summary = "A reconstruction filter over the shaded sub-samples of the pixel and its neighbours.",
         .source = "[Pettineo 2012]",
-        .passes = Pass::subsamples | Pass::subsampleColor,
+        .passes = Pass::subsampleColor,
         .params = {filterParam("[Pettineo 2012]"),
                    realParam("diameter", "0", 0, 8, "px; 0: the filter's own (box 1, lanczos 2 * lobes, others 2)",
                              "[Pettineo 2012]",

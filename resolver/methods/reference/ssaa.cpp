@@ -29,7 +29,7 @@ MethodDescriptor ssaaDescriptor() {
             .family = "reference",
             .summary = "Mean of the shaded sub-samples: a box filter one pixel wide.",
             .source = "[Leler 1980]",
-            .passes = Pass::subsamples | Pass::subsampleColor,
+            .passes = Pass::subsampleColor,
             .params = {averagedSpaceParam()},
             .create = [](const Params& p, const ShotInfo& shot) -> std::unique_ptr<Method> {
                 if (shot.subSamplePositionsPx.empty())

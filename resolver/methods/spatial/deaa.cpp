@@ -79,7 +79,7 @@ MethodDescriptor deaaDescriptor() {
         .family = "spatial",
         .summary = "Integrates the sub-samples of 3x3 pixels along the isolines of a fitted plane.",
         .source = "[Iourcha 2009], reconstructed",
-        .passes = Pass::subsamples | Pass::subsampleColor,
+        .passes = Pass::subsampleColor,
         .params = {realParam("fitTolerance", "0.3", 0, 1, "rms of the plane fit, relative to the window's luma range",
                              "ours: a clean edge through 3x3 pixels fits to 0.15-0.29"),
                    realParam("maxLength", "3", 1, 3, "length of the integration rectangle along the isolines, px",

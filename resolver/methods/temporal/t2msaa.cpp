@@ -72,7 +72,7 @@ MethodDescriptor t2msaa() {
     d.family = "temporal";
     d.summary = "Two sub-samples a frame at alternating places, accumulated along the motion with rejection by depth.";
     d.source = "[Stejmar n.d., 4.4.2]";
-    d.passes = Pass::color | Pass::motion | Pass::subsamples | Pass::subsampleColor;
+    d.passes = Pass::color | Pass::motion | Pass::subsampleDepth | Pass::subsampleColor;
     d.output = Space::encoded;
     d.outputSpace = [](const Params& p) { return p.choice("space") == "encoded" ? Space::encoded : Space::linear; };
     d.temporal = true;

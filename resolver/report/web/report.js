@@ -1,7 +1,7 @@
 // The report's page: everything is drawn from the JSON in #data, which `aaresolve report` wrote. No network, no storage.
 "use strict";
 (() => {
-  const { run, order, words, protocol, space, reference, region, figures, advice, passBytes, publishedMemory: published } = JSON.parse(document.getElementById("data").textContent);
+  const { run, order, words, protocol, space, reference, region, figures, advice, publishedMemory: published } = JSON.parse(document.getElementById("data").textContent);
   const $ = (id) => document.getElementById(id);
   const methods = run.methods;
   const standIn = run.run.reference;  // the method that the others are held against; undefined: the truth
@@ -166,14 +166,14 @@
     const render = [...groups].reduce((sum, g) => sum + (renderSeconds[centre + g] ?? 0), 0);
     return { render, all: render + (m.secondsMedian || (m.deviceSecondsMedian ?? 0)) };
   };
-  // passBytes: per pixel of each pass in memory, 32-bit floats and ids; S = sub-samples of the shot.
   const S = run.shot.subSamples || 0;
   const megabytes1080 = (bytesPerPixel) => bytesPerPixel * 1920 * 1080 / 1048576;
-  const stateOf = (m) => megabytes1080(m.stateBytes / (run.shot.resolution[0] * run.shot.resolution[1]));
-  const passMemory = (m) => megabytes1080(m.passes.reduce((sum, p) => sum + (passBytes[p] || 0), 0));
+  const perPixel = (bytes) => bytes / (run.shot.resolution[0] * run.shot.resolution[1]);
+  const stateOf = (m) => megabytes1080(perPixel(m.stateBytes));
+  const passMemory = (m) => (m.inputBytes == null ? null : megabytes1080(perPixel(m.inputBytes) - (m.passes.includes("color") ? 12 : 0)));
   // Inputs, written picture and state, beyond those of a method that hands the picture on.
   const bytesOf = (m) => (m.inputBytes ?? 0) + (m.targetBytes ?? 0) + m.stateBytes;
-  const beyondNoaa = (m) => megabytes1080((bytesOf(m) - bytesOf(methods[noaa])) / (run.shot.resolution[0] * run.shot.resolution[1]));
+  const beyondNoaa = (m) => megabytes1080(perPixel(bytesOf(m) - bytesOf(methods[noaa])));
   const publishedMemory = (m) => published[m.id]?.megabytes ?? null;
   told($("price-figures"), methodTable($("price-figures"), order, [
     { title: "Passes, s per frame", better: "low", about: "render time of colour and of every pass that the method reads", get: (m, i) => priceOf(i)?.render ?? null },
@@ -181,7 +181,7 @@
     device && { title: "Method, " + onDevice, better: "low", about: "the method alone, by the device’s own clock", get: deviceMs },
     { title: "Kept, MB at 1080p", better: "low", about: "history and working memory of the method, scaled from this picture’s size to 1920 × 1080", get: (m) => stateOf(m), show: (m) => stateOf(m).toFixed(1) },
     { title: "Passes, MB at 1080p", better: "low", about: "what the method reads beside colour, in 32-bit floats" + (S ? ` with ${S} sub-samples per pixel` : "") + "; below it all that it reads",
-      get: (m) => passMemory(m), show: (m) => passMemory(m).toFixed(1), small: (m) => m.passes.join(", ") },
+      get: (m) => passMemory(m), show: (m) => passMemory(m)?.toFixed(1) ?? "–", small: (m) => m.passes.join(", ") },
     noaa >= 0 && { title: "All beyond noaa, MB at 1080p", better: "low", about: "passes with colour, the written picture and what is kept, less those of noaa", get: beyondNoaa, show: (m) => beyondNoaa(m).toFixed(1) },
     { title: "Published extra, MB", better: "low", about: "extra memory of a GPU implementation as its authors state it" + (Object.keys(published).length ? " (" + [...new Set(Object.values(published).map((p) => p.source))].join(", ") + ")" : "") +
       ", which packs its buffers more tightly and counts its render targets; –: none is published", get: publishedMemory, show: (m) => (publishedMemory(m) == null ? "–" : publishedMemory(m).toFixed(1)) },

@@ -7,8 +7,8 @@ GeometryPush GeometryForm::push(const Frame& frame) const {
     GeometryPush push{};
     push.width = frame.width, push.height = frame.height;
     push.toneMap = display.toneMap, push.srgb = display.srgb, push.displayScale = display.scale;
-    if (!reads_.camera) return push;
-    const GeometryViews views(frame, {.camera = true}, reader_);
+    if (!needs_.camera) return push;
+    const GeometryViews views(frame, {.depth = false, .camera = true}, reader_);
     const GeometryArgs& g = views.args();
     for (int i = 0; i < 3; i++) {
         push.ray[i] = g.ray[i], push.rayX[i] = g.rayX[i], push.rayY[i] = g.rayY[i];
@@ -31,13 +31,13 @@ std::vector<Binding> GeometryForm::bindings(Current& current, Image& out, std::i
     current.recorder().upload(fitted(offsets_, bytesOf(offsetsPx).size()), bytesOf(offsetsPx));
     std::vector<Binding> all = {read(current[Input::colour]),
                                 written(out),
-                                image(reads_.depth, Input::depth, Format::r32f, 0),
-                                image(reads_.normals, Input::normal, Format::r32f, 0),
-                                image(reads_.ids, Input::objectId, Format::r32ui, 0),
-                                image(reads_.depth, Input::subDepth, Format::r32f, 1),
-                                image(reads_.normals, Input::subNormal, Format::r32f, 1),
-                                image(reads_.ids, Input::subId, Format::r32ui, 1),
-                                image(reads_.colours, Input::subColour, Format::r32f, 1),
+                                image(needs_.depth, Input::depth, Format::r32f, 0),
+                                image(needs_.normals, Input::normal, Format::r32f, 0),
+                                image(needs_.ids, Input::objectId, Format::r32ui, 0),
+                                image(needs_.depth, Input::subDepth, Format::r32f, 1),
+                                image(needs_.normals, Input::subNormal, Format::r32f, 1),
+                                image(needs_.ids, Input::subId, Format::r32ui, 1),
+                                image(needs_.colors, Input::subColour, Format::r32f, 1),
                                 memory(offsets_)};
     all.insert(all.end(), own.begin(), own.end());
     return all;

@@ -17,15 +17,10 @@ struct GeometryPush {
 
 class GeometryForm : public GpuMethod {
   public:
-    // What a shader reads beside the centre samples' colour.
-    struct Reads {
-        bool depth = true, normals = false, ids = false, colours = false, camera = false;
-    };
-
   protected:
     // `reader` names the method and its option for the message where the frame has no camera.
-    GeometryForm(Session& session, const Params& params, std::string reader, Reads reads)
-        : GpuMethod(session, params), reader_(std::move(reader)), reads_(reads) {}
+    GeometryForm(Session& session, const Params& params, std::string reader, GeometryNeeds needs)
+        : GpuMethod(session, params), reader_(std::move(reader)), needs_(needs) {}
 
     GeometryPush push(const Frame& frame) const;
     // Bindings 0 to 9, and where the method has its own after them. A texture that is not read is one texel.
@@ -37,7 +32,7 @@ class GeometryForm : public GpuMethod {
 
   private:
     std::string reader_;
-    Reads reads_;
+    GeometryNeeds needs_;
     Buffer offsets_;
     Image unread_[2][2];
 };
@@ -45,8 +40,9 @@ class GeometryForm : public GpuMethod {
 // A method whose one shader binds nothing beyond that.
 class OneShaderGeometryForm : public GeometryForm {
   protected:
-    OneShaderGeometryForm(Session& session, const Params& params, std::string reader, Reads reads, Shader shader)
-        : GeometryForm(session, params, std::move(reader), reads), shader_(std::move(shader)) {}
+    OneShaderGeometryForm(Session& session, const Params& params, std::string reader, GeometryNeeds needs,
+                          Shader shader)
+        : GeometryForm(session, params, std::move(reader), needs), shader_(std::move(shader)) {}
 
   private:
     void record(Current& current, Image& out) override {

@@ -11,7 +11,7 @@ class MsaaForm : public GeometryForm {
   public:
     MsaaForm(Session& session, const Params& p, const ShotInfo& shot, const std::string& id,
              const CoverageSlots& coverage)
-        : GeometryForm(session, p, id + ":key=surface", reads(p)),
+        : GeometryForm(session, p, id + ":key=surface", surfaceNeeds(p)),
           samples_(int(shot.subSamplePositionsPx.size())),
           encoded_(averagedSpace(p) == Space::encoded),
           taps_(coverage.taps) {
@@ -41,10 +41,6 @@ class MsaaForm : public GeometryForm {
         int32_t width, height, samples, taps;
         float luminanceScale;
     };
-    static Reads reads(const Params& p) {
-        const bool surface = p.choice("key") == "surface";
-        return {.depth = surface, .normals = surface, .ids = true, .colours = true, .camera = surface};
-    }
     bool filtered() const { return !taps_.empty(); }
     void record(Current& current, Image& out) override {
         Recorder& recorder = current.recorder();

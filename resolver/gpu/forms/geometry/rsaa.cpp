@@ -8,7 +8,7 @@ namespace {
 class RsaaForm : public GeometryForm {
   public:
     RsaaForm(Session& session, const Params& p, const ShotInfo& shot, const RsaaOptions& o)
-        : GeometryForm(session, p, "rsaa:measure=sadp", reads(o)),
+        : GeometryForm(session, p, "rsaa:measure=sadp", o.needs()),
           maskPass_(o.maskPass),
           shiftsPx_(rsaaOffsets(shot.subSamplePositionsPx, o.training)),
           shader_("geometry/rsaa", constants(shot, {{10, o.measure},
@@ -23,11 +23,6 @@ class RsaaForm : public GeometryForm {
     }
 
   private:
-    static Reads reads(const RsaaOptions& o) {
-        if (!o.readsGeometry()) return {.depth = false};
-        const GeometryNeeds needs = o.needs();
-        return {.normals = needs.normals, .ids = needs.ids, .camera = needs.camera};
-    }
     void record(Current& current, Image& out) override {
         Recorder& recorder = current.recorder();
         if (shifts_.empty()) recorder.upload(fitted(shifts_, bytesOf(shiftsPx_).size()), bytesOf(shiftsPx_));

@@ -9,7 +9,7 @@ namespace {
 class SbaaForm : public OneShaderGeometryForm {
   public:
     SbaaForm(Session& session, const Params& p, const ShotInfo& shot)
-        : OneShaderGeometryForm(session, p, "sbaa", {.normals = true, .ids = true, .colours = true, .camera = true},
+        : OneShaderGeometryForm(session, p, "sbaa", sbaaNeeds(),
                                 Shader("geometry/sbaa", constants(shot, {{10, p.integer("surfaces")},
                                                                          {11, p.realf("mergeNormal")},
                                                                          {12, p.realf("mergeDepth")},

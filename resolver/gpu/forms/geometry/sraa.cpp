@@ -9,8 +9,7 @@ namespace {
 class SraaForm : public OneShaderGeometryForm {
   public:
     SraaForm(Session& session, const Params& p, const ShotInfo& shot, const SraaArgs& a)
-        : OneShaderGeometryForm(session, p, "sraa:distance=plane",
-                                {.normals = true, .ids = a.ids != SraaIds::off, .camera = !a.plainDepth},
+        : OneShaderGeometryForm(session, p, "sraa:distance=plane", sraaNeeds(a),
                                 Shader("geometry/sraa", constants(shot, {{10, a.radius},
                                                                          {11, a.maxMetric},
                                                                          {12, a.plainDepth},
