@@ -71,8 +71,6 @@ std::vector<Layer> layersOf(const Frame& f, Input which) {
             return {{planesOf(f.colorLinear)}};
         case Input::encoded:
             return {{planesOf(f.colorEncoded)}};
-        case Input::albedo:
-            return {{planesOf(f.albedoLinear)}};
         case Input::albedoEncoded:
             return {{planesOf(f.albedoEncoded)}};
         case Input::depth:

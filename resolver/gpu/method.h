@@ -27,7 +27,6 @@ struct Settings {
 enum class Input {
     colour,
     encoded,
-    albedo,
     albedoEncoded,  // RGBA 32F, fast: 16F
     depth,          // R32F, planar view z
     normal,         // RGBA 32F, world, unit

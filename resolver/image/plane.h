@@ -41,6 +41,19 @@ struct PlaneAllocator {
     }
 };
 
+template <class T>
+using Samples = std::vector<T, PlaneAllocator<T>>;
+// With any content, for what is written before it is read; builds with asserts fill it with what nobody wants.
+template <class T>
+Samples<T> unsetSamples(size_t count) {
+#ifndef NDEBUG
+    using Limits = std::numeric_limits<T>;
+    return Samples<T>(count, Limits::has_quiet_NaN ? Limits::quiet_NaN() : Limits::max());
+#else
+    return Samples<T>(count);
+#endif
+}
+
 inline constexpr int kBorderX = 16, kBorderY = 8, kRowPad = 16;
 inline int paddedStride(int width) { return (width + kRowPad - 1) / kRowPad * kRowPad + 2 * kBorderX; }
 
@@ -55,17 +68,12 @@ class Plane {
           stride_(paddedStride(width)),
           data_(size_t(stride_) * size_t(height + 2 * kBorderY) * Channels, value) {}
 
-    // With any content, for what is written before it is read; builds with asserts fill it with what nobody wants.
+    // With any content: unsetSamples().
     static Plane unset(int width, int height) {
-#ifndef NDEBUG
-        using Limits = std::numeric_limits<T>;
-        return Plane(width, height, Limits::has_quiet_NaN ? Limits::quiet_NaN() : Limits::max());
-#else
         Plane plane;
         plane.width_ = width, plane.height_ = height, plane.stride_ = paddedStride(width);
-        plane.data_ = Samples(size_t(plane.stride_) * size_t(height + 2 * kBorderY) * Channels);
+        plane.data_ = unsetSamples<T>(size_t(plane.stride_) * size_t(height + 2 * kBorderY) * Channels);
         return plane;
-#endif
     }
 
     bool empty() const { return data_.empty(); }
@@ -111,9 +119,8 @@ class Plane {
         const T* src = row(from) - ptrdiff_t(kBorderX) * Channels;
         std::copy(src, src + ptrdiff_t(stride_) * Channels, row(to) - ptrdiff_t(kBorderX) * Channels);
     }
-    using Samples = std::vector<T, PlaneAllocator<T>>;
     int width_ = 0, height_ = 0, stride_ = 0;
-    Samples data_;
+    Samples<T> data_;
 };
 
 using PlaneF = Plane<float>;

@@ -36,9 +36,11 @@ void* map(size_t bytes) {
 class Pool {
   public:
     void* take(size_t bytes) {
+        std::deque<Block> leaving;
         {
             const std::lock_guard one(mutex_);
             bytes_.used += bytes;
+            bytes_.most = std::max(bytes_.most, bytes_.used);
             // The last one given back may still be in the cache.
             const auto found =
                 std::find_if(unused_.rbegin(), unused_.rend(), [&](const Block& b) { return b.bytes == bytes; });
@@ -48,7 +50,10 @@ class Pool {
                 bytes_.unused -= bytes;
                 return memory;
             }
+            // What is of other sizes makes room.
+            leaving = shrink(std::max(kUnusedPlaneBytes, bytes_.most) - bytes_.used);
         }
+        giveBack(leaving);
         return map(bytes);
     }
     void give(void* memory, size_t bytes) {
@@ -57,13 +62,9 @@ class Pool {
             const std::lock_guard one(mutex_);
             unused_.push_back({memory, bytes});
             bytes_.used -= bytes, bytes_.unused += bytes;
-            while (bytes_.unused > std::max(kUnusedPlaneBytes, bytes_.used)) {
-                leaving.push_back(unused_.front());
-                bytes_.unused -= unused_.front().bytes;
-                unused_.pop_front();
-            }
+            leaving = shrink(std::max(kUnusedPlaneBytes, bytes_.used));
         }
-        for (const Block& b : leaving) ::munmap(b.memory, b.bytes);
+        giveBack(leaving);
     }
     PlaneBytes bytes() {
         const std::lock_guard one(mutex_);
@@ -75,6 +76,20 @@ class Pool {
         void* memory;
         size_t bytes;
     };
+    // To at most so many unused bytes, the oldest first.
+    std::deque<Block> shrink(size_t most) {
+        std::deque<Block> leaving;
+        while (bytes_.unused > most) {
+            leaving.push_back(unused_.front());
+            bytes_.unused -= unused_.front().bytes;
+            unused_.pop_front();
+        }
+        return leaving;
+    }
+    static void giveBack(const std::deque<Block>& leaving) {
+        for (const Block& b : leaving) ::munmap(b.memory, b.bytes);
+    }
+
     std::mutex mutex_;
     std::deque<Block> unused_;
     PlaneBytes bytes_;

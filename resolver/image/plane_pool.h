@@ -2,7 +2,8 @@
 // and clear each of them, which was a seventh of a run's time.
 //
 // What lies unused is bounded: as much as is in use, or a small share of any machine, whichever is more. What one frame
-// of a run gives back, the next will take. Of the unused the oldest goes back to the system first.
+// of a run gives back, the next will take. With what is in use it is no more than was in use at one time or that share:
+// where a plane finds none of its size, others make room. Of the unused the oldest goes back to the system first.
 #pragma once
 #include <cstddef>
 
@@ -14,6 +15,7 @@ void* takePlaneMemory(size_t bytes);  // of a cache line's alignment, with any c
 void givePlaneMemory(void* memory, size_t bytes);
 struct PlaneBytes {
     size_t used = 0, unused = 0;
+    size_t most = 0;  // in use at one time
 };
 PlaneBytes planeBytes();
 

@@ -42,5 +42,25 @@ TEST(PlanePool, WhatLiesUnusedIsBounded) {
     EXPECT_EQ(planeBytes().used, before);
 }
 
+TEST(PlanePool, OtherSizesMakeRoom) {
+#ifdef AA_SANITIZED
+    GTEST_SKIP() << "without the pool";
+#endif
+    constexpr size_t kBytes = size_t(40) << 20;
+    std::vector<void*> small, large;
+    for (int i = 0; i < 20; i++) small.push_back(takePlaneMemory(kBytes));
+    for (int i = 0; i < 10; i++) givePlaneMemory(small[size_t(i)], kBytes);
+    const PlaneBytes before = planeBytes();
+    EXPECT_GE(before.unused, 5 * kBytes);
+    for (int i = 0; i < 2; i++) {
+        large.push_back(takePlaneMemory(2 * kBytes));
+        const PlaneBytes now = planeBytes();
+        EXPECT_LE(now.used + now.unused, std::max(kUnusedPlaneBytes, now.most));
+    }
+    EXPECT_EQ(planeBytes().most, before.most);
+    for (void* m : large) givePlaneMemory(m, 2 * kBytes);
+    for (int i = 10; i < 20; i++) givePlaneMemory(small[size_t(i)], kBytes);
+}
+
 }  // namespace
 }  // namespace aa

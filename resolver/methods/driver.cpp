@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "kernels/dispatch.h"
 #include "shot/manifest.h"
@@ -61,23 +62,27 @@ void setDisplay(Frame& frame, const DisplayChain& chain, const Exec& exec) {
     if (chain.transfer == Transfer::identity) useOneSpace(frame, chain, exec);
     frame.display = chain.transfer == Transfer::identity ? chain.transferOnly() : chain;
 }
-void fillEncoded(Frame& frame, const Exec& exec) {
+void encodeColour(Frame& frame, const Exec& exec) {
     if (!frame.colorLinear.empty()) encode(frame.colorLinear, frame.display, exec, frame.colorEncoded);
-    if (!frame.albedoLinear.empty())
-        encode(frame.albedoLinear, frame.display.transferOnly(), exec, frame.albedoEncoded);
+}
+void encodeAlbedo(const Rgb& linear, Frame& frame, const Exec& exec) {
+    if (!linear.empty()) encode(linear, frame.display.transferOnly(), exec, frame.albedoEncoded);
 }
 }  // namespace
 
 void encodeFrame(Frame& frame, const DisplayChain& chain, const Exec& exec) {
     setDisplay(frame, chain, exec);
-    fillEncoded(frame, exec);
+    encodeColour(frame, exec);
+    encodeAlbedo(frame.albedoLinear, frame, exec);
 }
 
 void prepareFrame(Frame& frame, const std::vector<RunningMethod>& methods, const DisplayChain& chain,
                   const Exec& exec) {
     setDisplay(frame, chain, exec);
-    if (std::any_of(methods.begin(), methods.end(), [](const auto& m) { return m.spec.readsEncoded(); }))
-        fillEncoded(frame, exec);
+    if (std::none_of(methods.begin(), methods.end(), [](const auto& m) { return m.spec.readsEncoded(); })) return;
+    encodeColour(frame, exec);
+    frame.albedoEncoded = std::exchange(frame.albedoLinear, {});
+    encodeAlbedo(frame.albedoEncoded, frame, exec);
 }
 
 }  // namespace aa

@@ -40,7 +40,8 @@ ShotInfo shotInfo(const Manifest& manifest);
 // transfer everything happens in one space: all linear colours, sub-samples included, become displayed values, too.
 // Once a frame.
 void encodeFrame(Frame& frame, const DisplayChain& chain, const Exec& exec);
-// The same, with encoded colours only when one of the methods reads them.
+// The same for a run, with encoded colours only when one of the methods reads them. Albedo, which none reads as light,
+// is then encoded in its own place: albedoLinear is empty.
 void prepareFrame(Frame& frame, const std::vector<RunningMethod>& methods, const DisplayChain& chain, const Exec& exec);
 
 }  // namespace aa

@@ -21,7 +21,8 @@ class Working {
     };
 
   public:
-    std::unique_ptr<P, GiveBack> take() { return {&planes_, GiveBack{this}}; }
+    using Taken = std::unique_ptr<P, GiveBack>;
+    Taken take() { return {&planes_, GiveBack{this}}; }
     size_t bytes() const { return bytes_; }
 
   private:

@@ -1,7 +1,7 @@
 #include "study/frame_work.h"
 
 #include <algorithm>
-#include <atomic>
+#include <mutex>
 
 #include "gpu/method.h"
 #include "shot/pass_table.h"
@@ -48,13 +48,20 @@ void FrameWork::operator()(Feed::Item& item, size_t i) {
         work(*reference_, item, i);
     else
         lookAtTruth(item, i);
-    const Order others = order();
-    std::atomic<size_t> stillReading = others.readers;
+    const std::vector<size_t> others = order();
+    const auto count = [&](bool (FrameWork::*reads)(size_t) const) {
+        return size_t(std::count_if(others.begin(), others.end(), [&](size_t k) { return (this->*reads)(k); }));
+    };
+    size_t ofSubSamples = count(&FrameWork::readsSubSamples), ofCentre = count(&FrameWork::readsCentre);
+    std::mutex givingBack;
     // A device does one thing after the other.
     const Exec side{.parallel = options_.exec.parallel && !options_.device};
-    sideBySide(side, others.methods.size(), [&](size_t n) {
-        work(others.methods[n], item, i);
-        if (n < others.readers && --stillReading == 0) forgetSubSamples(item, i);
+    sideBySide(side, others.size(), [&](size_t n) {
+        const size_t k = others[n];
+        work(k, item, i);
+        const std::lock_guard one(givingBack);
+        if (readsSubSamples(k) && --ofSubSamples == 0) forgetSubSamples(item, i);
+        if (readsCentre(k) && --ofCentre == 0 && !options_.device) item.centre.reset();
     });
     judge_.judgeRejected(methods_, results_.methods);
     for (RunningMethod& m : methods_) m.forgetPicture();
@@ -65,20 +72,21 @@ double FrameWork::secondsBefore(size_t k) const {
     return frames.empty() ? 0 : frames.back().seconds;
 }
 
-FrameWork::Order FrameWork::order() const {
-    Order o;
+bool FrameWork::readsSubSamples(size_t k) const {
+    return methods_[k].spec.passes().hasAnyOf(Pass::subsamples | Pass::subsampleColor);
+}
+
+std::vector<size_t> FrameWork::order() const {
+    std::vector<size_t> all;
     for (size_t k = 0; k < methods_.size(); k++)
-        if (k != reference_) o.methods.push_back(k);
-    const auto readsSubSamples = [&](size_t k) {
-        return methods_[k].spec.passes().hasAnyOf(Pass::subsamples | Pass::subsampleColor);
-    };
-    const auto others = std::stable_partition(o.methods.begin(), o.methods.end(), readsSubSamples);
-    o.readers = size_t(others - o.methods.begin());
-    // The slowest first, as they were in the frame before: at the end no thread waits long for another.
-    const auto isSlower = [&](size_t a, size_t b) { return secondsBefore(a) > secondsBefore(b); };
-    std::stable_sort(o.methods.begin(), others, isSlower);
-    std::stable_sort(others, o.methods.end(), isSlower);
-    return o;
+        if (k != reference_) all.push_back(k);
+    const auto group = [&](size_t k) { return readsSubSamples(k) ? 0 : readsCentre(k) ? 1 : 2; };
+    // In a group the slowest first, as they were in the frame before: at the end no thread waits long for another.
+    std::stable_sort(all.begin(), all.end(), [&](size_t a, size_t b) {
+        const int groupA = group(a), groupB = group(b);
+        return groupA != groupB ? groupA < groupB : secondsBefore(a) > secondsBefore(b);
+    });
+    return all;
 }
 
 // They are most of a frame's memory, which the next one takes that is being decoded.

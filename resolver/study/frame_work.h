@@ -20,12 +20,10 @@ class FrameWork {
 
   private:
     bool isWritten(size_t i) const;
-    // The methods but the reference: those that read sub-samples first.
-    struct Order {
-        std::vector<size_t> methods;
-        size_t readers = 0;  // of sub-samples
-    };
-    Order order() const;
+    bool readsSubSamples(size_t k) const;
+    bool readsCentre(size_t k) const { return plan_.readsCentre(methods_[k].spec); }
+    // The methods but the reference: those first that read sub-samples, then others that read pixel centres.
+    std::vector<size_t> order() const;
     double secondsBefore(size_t k) const;  // that method k took for the frame before
     void forgetSubSamples(Feed::Item& item, size_t i) const;
     void lookAtTruth(Feed::Item& item, size_t i);

@@ -35,9 +35,10 @@ class Fxaa311 : public FxaaMethod {
         : args_(fxaa311Args(p)), linear_(p.choice("blendSpace") == "linear"), lumaKind_(fxaa311Luma(p)) {}
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
         const bool lumaOfLinear = lumaKind_ == LumaKind::sqrtLinear;
-        findLuma(lumaOfLinear ? frame.colorLinear : frame.colorEncoded, shownLuma(lumaKind_, frame.display), exec);
-        transposeLuma(frame.width, frame.height, exec);
-        prepare(args_, linear_ ? frame.colorLinear : frame.colorEncoded, out);
+        const Lumas lumas =
+            findLuma(lumaOfLinear ? frame.colorLinear : frame.colorEncoded, shownLuma(lumaKind_, frame.display), exec);
+        transposeLuma(lumas, frame.width, frame.height, exec);
+        prepare(args_, lumas, linear_ ? frame.colorLinear : frame.colorEncoded, out);
         runKernel(fxaaKernelsFor(exec).fxaa311, exec, args_, frame.height);
     }
 

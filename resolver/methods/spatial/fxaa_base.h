@@ -5,6 +5,7 @@
 #include "methods/method.h"
 #include "methods/spatial/fxaa.h"
 #include "methods/spatial/luma.h"
+#include "methods/working.h"
 
 namespace aa {
 
@@ -42,12 +43,13 @@ FxaaConsoleArgs fxaaConsoleArgs(const Params& p);
 // A luma plane with the border that searches need.
 class SearchedLuma {
   public:
-    void resize(int width, int height) {
-        if (width == width_ && height == height_) return;
-        width_ = width, height_ = height;
-        stride_ = (width + 15) / 16 * 16 + 2 * kFxaaBorder;
-        data_.assign(size_t(stride_) * size_t(height + 2 * kFxaaBorder), 0.0f);
-    }
+    SearchedLuma() = default;
+    SearchedLuma(int width, int height)
+        : width_(width),
+          height_(height),
+          stride_((width + 15) / 16 * 16 + 2 * kFxaaBorder),
+          data_(unsetSamples<float>(size_t(stride_) * size_t(height + 2 * kFxaaBorder))) {}
+    bool empty() const { return data_.empty(); }
     float* row(int y) { return data_.data() + ptrdiff_t(y + kFxaaBorder) * stride_ + kFxaaBorder; }
     int stride() const { return stride_; }
     size_t bytes() const { return data_.size() * sizeof(float); }
@@ -63,10 +65,10 @@ class SearchedLuma {
 
   private:
     int width_ = 0, height_ = 0, stride_ = 0;
-    std::vector<float, PlaneAllocator<float>> data_;
+    Samples<float> data_;
 };
 
-// What every variant keeps: the luma plane and, on request, what it found at each edge pixel.
+// What every variant works with: the luma plane and, on request, what it found at each edge pixel.
 class FxaaMethod : public Method {
   public:
     size_t stateBytes() const override { return luma_.bytes() + transposed_.bytes(); }
@@ -85,25 +87,32 @@ class FxaaMethod : public Method {
     }
 
   protected:
-    void findLuma(const Rgb& color, LumaKind kind, const Exec& exec) {
-        luma_.resize(color.width(), color.height());
-        const LumaArgs args{view(color), luma_.row(0), color.stride(), luma_.stride(), color.width(), kind};
+    // A frame's planes, until they go.
+    struct Lumas {
+        Working<SearchedLuma>::Taken ofRows, ofColumns;
+    };
+    Lumas findLuma(const Rgb& color, LumaKind kind, const Exec& exec) {
+        Lumas lumas{luma_.take(), transposed_.take()};
+        SearchedLuma& luma = *lumas.ofRows = SearchedLuma(color.width(), color.height());
+        const LumaArgs args{view(color), luma.row(0), color.stride(), luma.stride(), color.width(), kind};
         runKernel(lumaKernelsFor(exec).luma, exec, args, color.height());
-        luma_.repeatBorder();
+        luma.repeatBorder();
+        return lumas;
     }
     // The plane for searches along columns, which then read along rows as well.
-    void transposeLuma(int width, int height, const Exec& exec) {
-        transposed_.resize(height, width);
-        const FxaaTransposeArgs args{luma_.row(0), transposed_.row(0), luma_.stride(), transposed_.stride(), height};
+    static void transposeLuma(const Lumas& lumas, int width, int height, const Exec& exec) {
+        SearchedLuma &from = *lumas.ofRows, &to = *lumas.ofColumns = SearchedLuma(height, width);
+        const FxaaTransposeArgs args{from.row(0), to.row(0), from.stride(), to.stride(), height};
         runKernel(fxaaKernelsFor(exec).transpose, exec, args, (width + 15) / 16);
-        transposed_.repeatBorder();
+        to.repeatBorder();
     }
     // Points `args` at this frame's planes.
-    void prepare(FxaaArgs& args, const Rgb& filtered, Rgb& out) {
-        args.luma = luma_.row(0);
-        args.lumaStride = luma_.stride();
-        args.transposedLuma = transposed_.bytes() ? transposed_.row(0) : nullptr;
-        args.transposedStride = transposed_.stride();
+    void prepare(FxaaArgs& args, const Lumas& lumas, const Rgb& filtered, Rgb& out) {
+        SearchedLuma &rows = *lumas.ofRows, &columns = *lumas.ofColumns;
+        args.luma = rows.row(0);
+        args.lumaStride = rows.stride();
+        args.transposedLuma = columns.empty() ? nullptr : columns.row(0);
+        args.transposedStride = columns.stride();
         args.in = view(filtered);
         args.out = view(out);
         args.stride = filtered.stride();
@@ -118,8 +127,10 @@ class FxaaMethod : public Method {
             args.shiftPx = shiftPx_.row(0);
         }
     }
-    SearchedLuma luma_, transposed_;
     PlaneF orientation_, negativePx_, positivePx_, shiftPx_;
+
+  private:
+    Working<SearchedLuma> luma_, transposed_;
 };
 
 }  // namespace aa

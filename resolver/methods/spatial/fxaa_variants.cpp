@@ -21,8 +21,8 @@ class Fxaa1 : public FxaaMethod {
   public:
     explicit Fxaa1(const Params& p) : args_(fxaa1Args(p)) {}
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
-        findLuma(frame.colorEncoded, LumaKind::redGreen, exec);
-        prepare(args_, frame.colorEncoded, out);
+        const Lumas lumas = findLuma(frame.colorEncoded, LumaKind::redGreen, exec);
+        prepare(args_, lumas, frame.colorEncoded, out);
         runKernel(fxaaVariantKernelsFor(exec).fxaa1, exec, args_, frame.height);
     }
 
@@ -34,9 +34,9 @@ class FxaaCs : public FxaaMethod {
   public:
     explicit FxaaCs(const Params& p) : args_(fxaaCsArgs(p)), linear_(p.choice("blendSpace") == "linear") {}
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
-        findLuma(frame.colorLinear, shownLuma(LumaKind::log2Linear, frame.display), exec);
-        transposeLuma(frame.width, frame.height, exec);
-        prepare(args_, linear_ ? frame.colorLinear : frame.colorEncoded, out);
+        const Lumas lumas = findLuma(frame.colorLinear, shownLuma(LumaKind::log2Linear, frame.display), exec);
+        transposeLuma(lumas, frame.width, frame.height, exec);
+        prepare(args_, lumas, linear_ ? frame.colorLinear : frame.colorEncoded, out);
         runKernel(fxaaVariantKernelsFor(exec).fxaaCs, exec, args_, frame.height);
     }
 
@@ -49,8 +49,8 @@ class FxaaConsole : public FxaaMethod {
   public:
     explicit FxaaConsole(const Params& p) : args_(fxaaConsoleArgs(p)) {}
     void resolve(const Frame& frame, const Exec& exec, Rgb& out) override {
-        findLuma(frame.colorEncoded, LumaKind::rec601, exec);
-        prepare(args_, frame.colorEncoded, out);
+        const Lumas lumas = findLuma(frame.colorEncoded, LumaKind::rec601, exec);
+        prepare(args_, lumas, frame.colorEncoded, out);
         runKernel(fxaaVariantKernelsFor(exec).console, exec, args_, frame.height);
     }
     std::vector<DebugLayer> debugLayers() const override {
