@@ -20,20 +20,55 @@ std::string lineAndColumn(const std::string& text, size_t byte) {
     return "line " + std::to_string(line) + ", column " +
            std::to_string(at - (lineStart == std::string::npos ? 0 : lineStart + 1) + 1);
 }
-}  // namespace
 
-json parseJson(const std::string& text, const std::string& file, const std::string& advice) {
+using Event = json::parse_event_t;
+
+// Follows the parser through a document and says which values stay in its tree.
+class ListReader {
+  public:
+    explicit ListReader(const JsonList& list) : list_(list) {}
+    bool keeps(int depth, Event event, const json& value) {
+        if (depth == 1 && event == Event::key) {
+            isNext_ = value.get_ref<const std::string&>() == list_.member;
+            if (isNext_) list_.begin();
+        } else if (depth == 1) {
+            isInside_ = event == Event::array_start && isNext_;
+        } else if (depth == 2 && isInside_ && isEnd(event)) {
+            list_.element(value);
+            return false;
+        }
+        return true;
+    }
+
+  private:
+    static bool isEnd(Event e) { return e == Event::object_end || e == Event::array_end || e == Event::value; }
+    const JsonList& list_;
+    bool isNext_ = false, isInside_ = false;
+};
+
+template <class Keeps>
+json parsed(const std::string& text, const std::string& file, const std::string& advice, const Keeps& keeps) {
     try {
-        return json::parse(text, [&](int depth, json::parse_event_t, json&) {
+        return json::parse(text, [&](int depth, Event event, json& value) {
             if (depth > kMaxDepth)
                 throw InputError(file + ": nested deeper than " + std::to_string(kMaxDepth) + " levels; " + advice);
-            return true;
+            return keeps(depth, event, value);
         });
     } catch (const json::parse_error& e) {
         throw InputError(file + ": not valid JSON at " + lineAndColumn(text, e.byte) + "; " + advice);
     } catch (const json::exception&) {
         throw InputError(file + ": holds a number that does not fit into a double; " + advice);
     }
+}
+}  // namespace
+
+json parseJson(const std::string& text, const std::string& file, const std::string& advice) {
+    return parsed(text, file, advice, [](int, Event, const json&) { return true; });
+}
+json parseJson(const std::string& text, const std::string& file, const std::string& advice, const JsonList& list) {
+    ListReader reader(list);
+    return parsed(text, file, advice,
+                  [&](int depth, Event event, const json& value) { return reader.keeps(depth, event, value); });
 }
 
 std::optional<std::string> textOf(const fs::path& file) {

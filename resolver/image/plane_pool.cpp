@@ -3,18 +3,22 @@
 #include <sys/mman.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <deque>
+#include <map>
 #include <mutex>
 #include <new>
+#include <vector>
 
 namespace aa {
 namespace {
 constexpr std::align_val_t kAlignment{64};
-// Smaller ones the allocator keeps by itself. Under AddressSanitizer it keeps all: it must see what is used too late.
+// Smaller ones the allocator keeps by itself; larger ones leave holes between what a run keeps of each frame, 50 kB a
+// frame of 64 x 36. Under AddressSanitizer it keeps all: it must see what is used too late.
 #ifdef AA_SANITIZED
 constexpr size_t kSmallest = ~size_t(0);
 #else
-constexpr size_t kSmallest = size_t(128) << 10;
+constexpr size_t kSmallest = size_t(16) << 10;
 #endif
 
 // A mapping of its own for each, so that what is given back reaches the system. The allocator puts blocks of up to 32
@@ -36,17 +40,15 @@ void* map(size_t bytes) {
 class Pool {
   public:
     void* take(size_t bytes) {
-        std::deque<Block> leaving;
+        std::vector<Block> leaving;
         {
             const std::lock_guard one(mutex_);
             bytes_.used += bytes;
             bytes_.most = std::max(bytes_.most, bytes_.used);
-            // The last one given back may still be in the cache.
-            const auto found =
-                std::find_if(unused_.rbegin(), unused_.rend(), [&](const Block& b) { return b.bytes == bytes; });
-            if (found != unused_.rend()) {
-                void* const memory = found->memory;
-                unused_.erase(std::next(found).base());
+            if (const auto found = unused_.find(bytes); found != unused_.end()) {
+                void* const memory = found->second.back().memory;  // the last one may still be in the cache
+                found->second.pop_back();
+                if (found->second.empty()) unused_.erase(found);
                 bytes_.unused -= bytes;
                 return memory;
             }
@@ -57,10 +59,10 @@ class Pool {
         return map(bytes);
     }
     void give(void* memory, size_t bytes) {
-        std::deque<Block> leaving;
+        std::vector<Block> leaving;
         {
             const std::lock_guard one(mutex_);
-            unused_.push_back({memory, bytes});
+            unused_[bytes].push_back({memory, bytes, ++time_});
             bytes_.used -= bytes, bytes_.unused += bytes;
             leaving = shrink(std::max(kUnusedPlaneBytes, bytes_.used));
         }
@@ -75,23 +77,29 @@ class Pool {
     struct Block {
         void* memory;
         size_t bytes;
+        uint64_t since;  // it is unused
     };
     // To at most so many unused bytes, the oldest first.
-    std::deque<Block> shrink(size_t most) {
-        std::deque<Block> leaving;
+    std::vector<Block> shrink(size_t most) {
+        std::vector<Block> leaving;
         while (bytes_.unused > most) {
-            leaving.push_back(unused_.front());
-            bytes_.unused -= unused_.front().bytes;
-            unused_.pop_front();
+            const auto oldest = std::min_element(unused_.begin(), unused_.end(), [](const auto& a, const auto& b) {
+                return a.second.front().since < b.second.front().since;
+            });
+            leaving.push_back(oldest->second.front());
+            bytes_.unused -= oldest->first;
+            oldest->second.pop_front();
+            if (oldest->second.empty()) unused_.erase(oldest);
         }
         return leaving;
     }
-    static void giveBack(const std::deque<Block>& leaving) {
+    static void giveBack(const std::vector<Block>& leaving) {
         for (const Block& b : leaving) ::munmap(b.memory, b.bytes);
     }
 
     std::mutex mutex_;
-    std::deque<Block> unused_;
+    std::map<size_t, std::deque<Block>> unused_;  // by size, of each the oldest first
+    uint64_t time_ = 0;
     PlaneBytes bytes_;
 };
 

@@ -94,7 +94,7 @@ void addFigures(FrameMetrics& to, const Metric& metric, const ImagePair& images,
 }
 
 void deriveFromMeans(FrameMetrics& means) {
-    for (auto& [name, value] : means.others)
+    for (auto&& [name, value] : means.others)
         if (const Figure* f = figureByName(name); f && f->ofMeans) value = f->ofMeans(means);
 }
 

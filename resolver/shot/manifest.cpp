@@ -1,6 +1,7 @@
 #include "shot/manifest.h"
 
 #include <cmath>
+#include <exception>
 #include <set>
 
 #include "image/error.h"
@@ -141,20 +142,18 @@ Camera parseCamera(const Member& m, json& extra) {
     return c;
 }
 
-FrameEntry parseFrame(const Member& m, bool jittered) {
+FrameEntry parseFrame(const Member& m) {
     FrameEntry f;
     f.frame = m["frame"].integer(-1048574, 1048574);  // Blender's MINAFRAME..MAXFRAME
     f.file = m["file"].relativePath();
     if (const auto c = m.find("centre"); c && !c->value().is_null()) f.centre = c->relativePath();
     if (const auto t = m.find("truth"); t && !t->value().is_null()) f.truth = t->relativePath();
     if (const auto r = m.find("reset")) f.reset = r->flag();
-    if (const auto j = m.find("jitter"))
-        f.jitterPx = j->offsetPx();
-    else if (jittered)
-        m["jitter"];
-    f.extra =
+    if (const auto j = m.find("jitter")) f.jitterPx = j->offsetPx();
+    json extra =
         unknownMembers(m.value(), {"frame", "file", "centre", "truth", "reset", "jitter", "camera", "render_seconds"});
-    if (const auto c = m.find("camera")) f.camera = parseCamera(*c, f.extra);
+    if (const auto c = m.find("camera")) f.camera = parseCamera(*c, extra);
+    if (!extra.empty()) f.extra = jsonText(extra, -1);
     if (const auto seconds = m.find("render_seconds"))
         for (const auto& [name, value] : seconds->object().items())
             f.renderSeconds[name] = seconds->find(name.c_str())->number();
@@ -180,7 +179,56 @@ bool isPremultiplied(const Member& jitter) {
     return text == "premultiplied";
 }
 
-Manifest parseDocument(const Member& doc) {
+// The frames of a document, read as they come: a tree of all of them would be most of a long run's memory. What is
+// wrong with the document itself is said before what is wrong with a frame.
+class FrameList {
+  public:
+    explicit FrameList(const std::string& file) : file_(file) {}
+    JsonList list() {
+        return {"frames", [this] { entries_.clear(), firstWithoutJitter_.reset(), fault_ = nullptr; },
+                [this](const json& element) { add(element); }};
+    }
+    std::vector<FrameEntry> take(const Member& frames, bool jittered) {
+        frames.arraySize();
+        for (size_t i = 0; i < entries_.size(); i++) {
+            if (jittered && i == firstWithoutJitter_)
+                at(i, "jitter").fail("a value", "nothing (the member is missing)");
+            if (i == 0) continue;
+            const int before = entries_[i - 1].frame, now = entries_[i].frame;
+            if (now == before)
+                at(i, "frame").fail("a frame number of its own", std::to_string(now) + " for the second time");
+            if (now < before)
+                at(i, "frame")
+                    .fail("frame numbers that increase (after " + std::to_string(before) + ")", std::to_string(now));
+        }
+        if (fault_) std::rethrow_exception(fault_);
+        if (entries_.empty()) frames.fail("at least one frame");
+        entries_.shrink_to_fit();
+        return std::move(entries_);
+    }
+
+  private:
+    static std::string pathOf(size_t i) { return "frames[" + std::to_string(i) + "]"; }
+    Member at(size_t i, const char* member) const { return {nothing_, pathOf(i) + "." + member, file_}; }
+    void add(const json& element) {
+        if (fault_) return;
+        try {
+            const Member m(element, pathOf(entries_.size()), file_);
+            if (!firstWithoutJitter_ && !m.find("jitter")) firstWithoutJitter_ = entries_.size();
+            entries_.push_back(parseFrame(m));
+        } catch (const InputError&) {
+            fault_ = std::current_exception();
+        }
+    }
+
+    const std::string& file_;
+    const json nothing_;
+    std::vector<FrameEntry> entries_;
+    std::optional<size_t> firstWithoutJitter_;
+    std::exception_ptr fault_;  // of the frame behind these
+};
+
+Manifest parseDocument(const Member& doc, FrameList& frames) {
     Manifest m;
     if (doc["format"].text() != "aaresolve-shot") doc["format"].fail("\"aaresolve-shot\"");
     if (doc["version"].integer(1, INT32_MAX) != 1) doc["version"].fail("version 1 (what this program reads)");
@@ -217,17 +265,7 @@ Manifest parseDocument(const Member& doc) {
         if (const auto v = t->find("halves")) m.truthHalves = v->integer(1, 2);
         keepUnknown(m.extra, "truth", t->value(), {"samples_per_half", "filter", "filter_width", "halves"});
     }
-    const Member frames = doc["frames"];
-    if (frames.arraySize() == 0) frames.fail("at least one frame");
-    for (size_t i = 0; i < frames.arraySize(); i++) {
-        m.frames.push_back(parseFrame(frames.item(i), m.jitterSequence != "none"));
-        if (i == 0) continue;
-        const int before = m.frames[i - 1].frame, now = m.frames[i].frame;
-        if (now == before)
-            frames.item(i)["frame"].fail("a frame number of its own", std::to_string(now) + " for the second time");
-        if (now < before)
-            frames.item(i)["frame"].fail("frame numbers that increase (after " + std::to_string(before) + ")");
-    }
+    m.frames = frames.take(doc["frames"], m.jitterSequence != "none");
     return m;
 }
 
@@ -238,8 +276,10 @@ json rowMajor(const glm::dmat4& m) {
         for (int column = 0; column < 4; column++) r.push_back(m[column][row]);
     return r;
 }
+}  // namespace
+
 json toJson(const FrameEntry& f) {
-    json j = f.extra;
+    json j = f.extra.empty() ? json::object() : json::parse(f.extra);
     j["frame"] = f.frame;
     j["file"] = f.file;
     if (!f.centre.empty()) j["centre"] = f.centre;
@@ -258,6 +298,8 @@ json toJson(const FrameEntry& f) {
     return j;
 }
 
+namespace {
+
 std::string readText(const fs::path& file) {
     if (auto text = textOf(file)) return *std::move(text);
     throw InputError(file.string() + ": cannot be read; check its permissions");
@@ -272,8 +314,9 @@ const FrameEntry* Manifest::find(int frame) const {
 
 Manifest parseManifest(const std::string& text, const fs::path& file) {
     const std::string name = file.string();
-    const json doc = parseJson(text, name, kAdvice);
-    Manifest m = parseDocument(Member(doc, "", name));
+    FrameList frames(name);
+    const json doc = parseJson(text, name, kAdvice, frames.list());
+    Manifest m = parseDocument(Member(doc, "", name), frames);
     m.folder = file.parent_path();
     return m;
 }
@@ -317,7 +360,7 @@ FrameNotes parseFrameNotes(const json& document, const fs::path& file) {
     return notes;
 }
 
-json toJson(const Manifest& m) {
+json toJsonWithoutFrames(const Manifest& m) {
     json j = m.extra;
     j["format"] = "aaresolve-shot";
     j["version"] = 1;
@@ -345,6 +388,11 @@ json toJson(const Manifest& m) {
         j["truth"]["filter_width"] = m.truthFilterWidthPx;
         if (m.truthHalves) j["truth"]["halves"] = *m.truthHalves;
     }
+    return j;
+}
+
+json toJson(const Manifest& m) {
+    json j = toJsonWithoutFrames(m);
     json& frames = j["frames"] = json::array();
     for (const auto& f : m.frames) frames.push_back(toJson(f));
     return j;

@@ -24,8 +24,9 @@ struct FrameEntry {
     bool reset = false;        // history must be dropped before this frame (first frame, camera cut)
     glm::dvec2 jitterPx{0.0};  // sample position minus pixel centre, y down
     std::optional<Camera> camera;
-    std::map<std::string, double> renderSeconds;      // by pass group and "truth"
-    nlohmann::json extra = nlohmann::json::object();  // unknown members, kept as they were
+    std::map<std::string, double> renderSeconds;  // by pass group and "truth"
+    // Unknown members, kept as they were: the text of a JSON object; empty: none.
+    std::string extra;
 };
 
 struct Manifest {
@@ -63,6 +64,9 @@ Manifest readManifest(const std::filesystem::path& shot);
 // The same from text; `file` is named in errors and its folder becomes Manifest::folder.
 Manifest parseManifest(const std::string& text, const std::filesystem::path& file);
 nlohmann::json toJson(const Manifest& manifest);
+// Its members, for who goes through the frames of a long shot one by one.
+nlohmann::json toJsonWithoutFrames(const Manifest& manifest);
+nlohmann::json toJson(const FrameEntry& frame);
 // Writes folder/shot.json through a temporary name.
 void writeManifest(const Manifest& manifest);
 

@@ -175,6 +175,39 @@ TEST(Manifest, MissingRequiredMembersAreErrorsAndOptionalOnesAreNot) {
     }
 }
 
+// Frames are read as they come: what is wrong with the document is still said first, then the first wrong frame.
+TEST(Manifest, TheFirstFaultIsSaid) {
+    json j = validShot();
+    j["frames"][1]["frame"] = 7;
+    EXPECT_THAT(errorOf(j), HasSubstr("frames[1].frame: expected a frame number of its own"));
+    j["frames"].push_back({{"frame", 9}, {"file", 1}});
+    EXPECT_THAT(errorOf(j), HasSubstr("frames[1].frame: expected a frame number of its own"));
+    j["frames"][1]["frame"] = 8;
+    EXPECT_THAT(errorOf(j), HasSubstr("frames[2].file: expected a text, found 1"));
+    j["frames"].push_back("no frame");
+    EXPECT_THAT(errorOf(j), HasSubstr("frames[2].file: expected a text, found 1"));
+    j["version"] = 2;
+    EXPECT_THAT(errorOf(j), HasSubstr("version 1 (what this program reads), found 2"));
+    for (const json& frames : {json(3), json::object({{"0", validShot()["frames"][0]}}), json::array()}) {
+        json other = validShot();
+        other["frames"] = frames;
+        EXPECT_THAT(errorOf(other), HasSubstr(": frames: expected "));
+    }
+    j = validShot();
+    j["frames"] = json::array({"no frame"});
+    EXPECT_THAT(errorOf(j), HasSubstr("frames[0]: expected an object, found \"no frame\""));
+}
+// As everywhere in JSON the last of two members of one name counts.
+TEST(Manifest, OfTwoListsOfFramesTheLastCounts) {
+    const std::string text = validShot().dump(), frame = R"({"frame": 3, "file": "frames/3.exr", "jitter": [0, 0]})";
+    const auto with = [&](const std::string& more) { return text.substr(0, text.size() - 1) + ", " + more + "}"; };
+    const Manifest m = parseManifest(with(R"("frames": [)" + frame + "]"), "SHOT/shot.json");
+    ASSERT_EQ(m.frames.size(), 1u);
+    EXPECT_EQ(m.frames[0].frame, 3);
+    EXPECT_THAT(errorOf(with(R"("frames": [])")), HasSubstr("at least one frame"));
+    EXPECT_EQ(parseManifest(with(R"("other": {"frames": [)" + frame + "]}"), "SHOT/shot.json").frames.size(), 2u);
+}
+
 TEST(Manifest, DamagedTextIsOneLineWithThePlace) {
     EXPECT_THAT(errorOf(std::string("{\n \"format\": ,\n}")), HasSubstr("line 2, column 12"));
     EXPECT_THAT(errorOf(std::string()), HasSubstr("not valid JSON"));

@@ -252,6 +252,7 @@ RunResults describeRun(const Manifest& m, const RunOptions& o) {
         const Params params = spec.params();
         result.parameters.insert(params.all().begin(), params.all().end());
         for (auto n : names(spec.passes())) result.passes.emplace_back(n);
+        result.frames.reserve(o.frames.size());
         r.methods.push_back(std::move(result));
     }
     return r;

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
+#include <utility>
 
 #include "commit.h"
 #include "image/file_hash.h"
@@ -41,6 +42,30 @@ std::string joined(const std::vector<std::string>& words) {
     std::string line;
     for (const auto& word : words) line += (line.empty() ? "" : " ") + shellQuoted(word);
     return line;
+}
+
+// shot.json on one line with these frames alone and without what two renders of one shot may differ in; a frame at a
+// time.
+void addDocument(Hash& hash, const Manifest& manifest, const std::vector<size_t>& frames) {
+    nlohmann::json document = toJsonWithoutFrames(manifest);
+    document.erase("producer");
+    document["frames"] = nullptr;  // in its place among the members
+    const char* between = "{";
+    for (const auto& [name, value] : document.items()) {
+        hash.add(std::exchange(between, ",") + jsonText(nlohmann::json(name), -1) + ":");
+        if (name != "frames") {
+            hash.add(jsonText(value, -1));
+            continue;
+        }
+        const char* betweenFrames = "[";
+        for (const size_t i : frames) {
+            nlohmann::json frame = toJson(manifest.frames.at(i));
+            frame.erase("render_seconds");
+            hash.add(std::exchange(betweenFrames, ",") + jsonText(frame, -1));
+        }
+        hash.add(frames.empty() ? "[]" : "]");
+    }
+    hash.add("}");
 }
 }  // namespace
 
@@ -91,24 +116,18 @@ Provenance provenanceOf(const std::vector<std::string>& arguments, const std::se
 std::string programCommit() { return AA_COMMIT; }
 
 std::string contentHash(const Manifest& manifest, const std::vector<size_t>& frames) {
-    nlohmann::json document = toJson(manifest);
-    document.erase("producer");
     std::map<std::string, std::string> files;  // in the order of their names, each once
-    nlohmann::json chosen = nlohmann::json::array();
     for (const size_t i : frames) {
         const FrameEntry& f = manifest.frames.at(i);
         for (const auto& file : {f.file, f.centre, f.truth})
             if (!file.empty()) files[file];
-        chosen.push_back(document.at("frames").at(i));
-        chosen.back().erase("render_seconds");
     }
-    document["frames"] = std::move(chosen);
     std::vector<std::pair<const std::string, std::string>*> all;
     for (auto& file : files) all.push_back(&file);
     tbb::parallel_for(size_t(0), all.size(),
                       [&](size_t i) { all[i]->second = hashOfFile(manifest.folder / all[i]->first); });
     Hash hash;
-    hash.add(document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    addDocument(hash, manifest, frames);
     for (const auto& [file, digits] : files) hash.add(digits);
     return hash.digits();
 }

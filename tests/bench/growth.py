@@ -10,10 +10,12 @@ machine need not be quiet for long.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -55,9 +57,10 @@ def called(words: list[object]) -> tuple[str, dict]:
         process = subprocess.Popen([str(w) for w in words], stdout=said)
         status = Path(f"/proc/{process.pid}/status")
         while not os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT):
-            found = re.search(r"VmHWM:\s*(\d+) kB", status.read_text())
-            if found and Path(f"/proc/{process.pid}/exe").resolve() == program:
-                peak = max(peak, int(found[1]) * 1024)
+            with contextlib.suppress(FileNotFoundError):  # it may end meanwhile
+                found = re.search(r"VmHWM:\s*(\d+) kB", status.read_text())
+                if found and os.readlink(f"/proc/{process.pid}/exe") == str(program):
+                    peak = max(peak, int(found[1]) * 1024)
             time.sleep(0.02)
         _, result, used = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(result)
@@ -90,6 +93,7 @@ def repeating_shot(program: Path, out: Path, frames: int) -> Path:
 
 def run_of(program: Path, frames: int, out: Path) -> dict:
     shot = repeating_shot(program, out, frames)
+    shutil.rmtree(out / "run", ignore_errors=True)  # results that are there are read first
     _, used = called([program, "run", shot, "-o", out / "run", *RUN])
     return {"frames": frames, **used}
 

@@ -112,8 +112,10 @@ void DepthCheck::addRange(const Frame& f, const FrameEntry& entry, CheckReport& 
 
 // "depth_bounds": {"ID": [nearest, farthest]} of the frame's entry: planar z of each object's geometry.
 void DepthCheck::addBounds(const Frame& f, const FrameEntry& entry, CheckReport& report) {
-    const auto bounds = entry.extra.find("depth_bounds");
-    if (boundsFound_ || bounds == entry.extra.end() || !bounds->is_object() || f.objectId.empty()) return;
+    if (boundsFound_ || entry.extra.empty() || f.objectId.empty()) return;
+    const nlohmann::json extra = nlohmann::json::parse(entry.extra);
+    const auto bounds = extra.find("depth_bounds");
+    if (bounds == extra.end() || !bounds->is_object()) return;
     std::map<uint32_t, std::pair<double, double>> range;
     for (const auto& [id, value] : bounds->items())
         if (value.is_array() && value.size() == 2 && value[0].is_number() && value[1].is_number() &&

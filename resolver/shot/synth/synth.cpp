@@ -6,6 +6,7 @@
 
 #include "image/error.h"
 #include "image/io.h"
+#include "image/json_text.h"
 #include "kernels/dispatch.h"
 #include "shot/manifest.h"
 #include "shot/patterns.h"
@@ -172,7 +173,7 @@ SynthShot::SynthShot(const SynthOptions& o) {
         f.reset = i == 0;
         f.jitterPx = jitterPx(jitter, uint64_t(i));
         f.camera = scene_->contents.camera;
-        f.extra["depth_bounds"] = depthBounds(scene_->contents, o.width, o.height, i);
+        f.extra = jsonText(nlohmann::json{{"depth_bounds", depthBounds(scene_->contents, o.width, o.height, i)}}, -1);
         m.frames.push_back(std::move(f));
     }
 }
