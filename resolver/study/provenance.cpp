@@ -12,6 +12,7 @@
 
 #include "commit.h"
 #include "image/file_hash.h"
+#include "image/json_text.h"
 #include "kernels/dispatch.h"
 
 namespace aa {
