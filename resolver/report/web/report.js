@@ -168,12 +168,12 @@
   };
   const S = run.shot.subSamples || 0;
   const megabytes1080 = (bytesPerPixel) => bytesPerPixel * 1920 * 1080 / 1048576;
-  const perPixel = (bytes) => bytes / (run.shot.resolution[0] * run.shot.resolution[1]);
-  const stateOf = (m) => megabytes1080(perPixel(m.stateBytes));
-  const passMemory = (m) => (m.inputBytes == null ? null : megabytes1080(perPixel(m.inputBytes) - (m.passes.includes("color") ? 12 : 0)));
+  const bytesAPixel = (bytes) => bytes / (run.shot.resolution[0] * run.shot.resolution[1]);
+  const stateOf = (m) => megabytes1080(bytesAPixel(m.stateBytes));
+  const passMemory = (m) => (m.inputBytes == null ? null : megabytes1080(bytesAPixel(m.inputBytes) - (m.passes.includes("color") ? 12 : 0)));
   // Inputs, written picture and state, beyond those of a method that hands the picture on.
   const bytesOf = (m) => (m.inputBytes ?? 0) + (m.targetBytes ?? 0) + m.stateBytes;
-  const beyondNoaa = (m) => megabytes1080(perPixel(bytesOf(m) - bytesOf(methods[noaa])));
+  const beyondNoaa = (m) => megabytes1080(bytesAPixel(bytesOf(m) - bytesOf(methods[noaa])));
   const publishedMemory = (m) => published[m.id]?.megabytes ?? null;
   told($("price-figures"), methodTable($("price-figures"), order, [
     { title: "Passes, s per frame", better: "low", about: "render time of colour and of every pass that the method reads", get: (m, i) => priceOf(i)?.render ?? null },
