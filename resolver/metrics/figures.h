@@ -52,6 +52,13 @@ class FigureValues {
 
   public:
     FigureValues() = default;
+    FigureValues(const FigureValues&) = default;
+    FigureValues& operator=(const FigureValues&) = default;
+    FigureValues(FigureValues&& o) noexcept { *this = std::move(o); }
+    FigureValues& operator=(FigureValues&& o) noexcept {
+        std::swap(names_, o.names_), std::swap(values_, o.values_);
+        return *this;
+    }
     FigureValues(std::initializer_list<std::pair<std::string_view, double>> values) {
         for (const auto& [name, value] : values) (*this)[name] = value;
     }

@@ -20,6 +20,14 @@ TEST(FigureValues, AreFoundByNameInTheOrderOfNames) {
     EXPECT_TRUE(v.find("psnr") == std::as_const(v).end());
     EXPECT_THROW(v.at("psnr"), std::out_of_range);
 }
+TEST(FigureValues, WhatWasMovedAwayCanBeFilledAgain) {
+    FigureValues a = {{"mae", 1.0}, {"flip", 2.0}};
+    const FigureValues b = std::move(a);
+    EXPECT_EQ(a, FigureValues());
+    a["flip"] = 3;
+    EXPECT_EQ(a.at("flip"), 3);
+    EXPECT_EQ(b, (FigureValues{{"mae", 1.0}, {"flip", 2.0}}));
+}
 TEST(FigureValues, ACopyHasItsOwnValues) {
     FigureValues a = {{"mae", 1.0}, {"flip", 2.0}}, b = a;
     EXPECT_EQ(a, b);

@@ -37,7 +37,8 @@ struct Frame {
     Rgb colorLinear;
     Rgb colorEncoded;  // D(colorLinear); filled by the driver when a method reads encoded colour
     Rgb albedoLinear;
-    Rgb albedoEncoded;  // the chain's transfer of albedoLinear, without its exposure; filled with colorEncoded
+    Rgb albedoEncoded;  // the chain's transfer of it, without its exposure; filled with colorEncoded, in a run in its
+                        // place
     // From linear colours to displayed ones; set by the driver. With the identity transfer the driver has turned the
     // linear colours into displayed ones already, and this only clamps.
     DisplayChain display;

@@ -47,6 +47,7 @@ class Member {
         Member(value_, path_.empty() ? name : path_ + "." + name, file_)
             .fail("a value", "nothing (the member is missing)");
     }
+    Member member(const std::string& name, const json& value) const { return {value, path_ + "." + name, file_}; }
     Member item(size_t i) const { return {value_[i], path_ + "[" + std::to_string(i) + "]", file_}; }
 
     const json& object() const {
@@ -156,7 +157,7 @@ FrameEntry parseFrame(const Member& m) {
     if (!extra.empty()) f.extra = jsonText(extra, -1);
     if (const auto seconds = m.find("render_seconds"))
         for (const auto& [name, value] : seconds->object().items())
-            f.renderSeconds[name] = seconds->find(name.c_str())->number();
+            f.renderSeconds[name] = seconds->member(name, value).number();
     return f;
 }
 
@@ -166,7 +167,7 @@ void parseObjects(const Member& m, Manifest& manifest) {
             !key.empty() && key.size() <= 10 && key.find_first_not_of("0123456789") == std::string::npos;
         const uint64_t id = digits ? std::stoull(key) : UINT64_MAX;
         if (id > UINT32_MAX) m.fail("object ids (0..4294967295) as member names", "\"" + key.substr(0, 40) + "\"");
-        manifest.objects[uint32_t(id)] = m.find(key.c_str())->text();
+        manifest.objects[uint32_t(id)] = m.member(key, value).text();
     }
 }
 

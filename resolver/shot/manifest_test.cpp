@@ -197,6 +197,11 @@ TEST(Manifest, TheFirstFaultIsSaid) {
     j["frames"] = json::array({"no frame"});
     EXPECT_THAT(errorOf(j), HasSubstr("frames[0]: expected an object, found \"no frame\""));
 }
+TEST(Manifest, NamesOfMembersMayHoldAnything) {
+    json j = validShot();
+    j["frames"][0]["render_seconds"][std::string("a\0b", 3)] = 1.5;
+    EXPECT_EQ(parse(j).frames[0].renderSeconds.at(std::string("a\0b", 3)), 1.5);
+}
 // As everywhere in JSON the last of two members of one name counts.
 TEST(Manifest, OfTwoListsOfFramesTheLastCounts) {
     const std::string text = validShot().dump(), frame = R"({"frame": 3, "file": "frames/3.exr", "jitter": [0, 0]})";

@@ -57,7 +57,7 @@ class RepeatedFrames {
 
   private:
     size_t bytes(const Frame& f) const {
-        const size_t encoded = 2 * bytesOfTarget(f.width, f.height);  // of colour and albedo
+        const size_t encoded = bytesOfTarget(f.width, f.height);  // of colour
         return encoded + bytesOf(f.passes, f, shot_.manifest().subsamplePositionsPx.size());
     }
     const ShotReader& shot_;

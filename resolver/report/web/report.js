@@ -170,7 +170,7 @@
   const megabytes1080 = (bytesPerPixel) => bytesPerPixel * 1920 * 1080 / 1048576;
   const bytesAPixel = (bytes) => bytes / (run.shot.resolution[0] * run.shot.resolution[1]);
   const stateOf = (m) => megabytes1080(bytesAPixel(m.stateBytes));
-  const passMemory = (m) => (m.inputBytes == null ? null : megabytes1080(bytesAPixel(m.inputBytes) - (m.passes.includes("color") ? 12 : 0)));
+  const passMemory = (m) => (!m.inputBytes ? null : megabytes1080(bytesAPixel(m.inputBytes) - (m.passes.includes("color") ? 12 : 0)));
   // Inputs, written picture and state, beyond those of a method that hands the picture on.
   const bytesOf = (m) => (m.inputBytes ?? 0) + (m.targetBytes ?? 0) + m.stateBytes;
   const beyondNoaa = (m) => megabytes1080(bytesAPixel(bytesOf(m) - bytesOf(methods[noaa])));

@@ -275,6 +275,14 @@ TEST_F(CheckTest, ScaledDepth) {
     expectOnly(damaged("moving", "", 0.95f, true), "depth", "depth_bounds");
 }
 
+TEST_F(CheckTest, BoundsOfWhatIsNoObjectAreLeftOut) {
+    const CheckReport r = withManifest(options("moving"), [](Manifest& m) {
+        for (FrameEntry& f : m.frames)
+            f.extra = R"({"depth_bounds": {"": [0, 1], "4294967297": [0, 0.1], "99999999999": [0, 0.1], "a": [0, 1]}})";
+    });
+    EXPECT_TRUE(r.clean()) << lines(r);
+}
+
 TEST_F(CheckTest, RayLengthInsteadOfDepth) {
     const CheckReport r = withFrames(options("two_planes", "d3d4"), [](Frame& f) {
         const auto toRayLength = [&](PlaneF& z, glm::dvec2 offset) {
