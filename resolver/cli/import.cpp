@@ -11,6 +11,7 @@
 #include "image/folder_claim.h"
 #include "image/json_text.h"
 #include "methods/method.h"
+#include "methods/spec.h"
 #include "shot/import/engine.h"
 #include "shot/import/folder.h"
 #include "shot/manifest.h"
@@ -31,7 +32,7 @@ std::string familiesThatNeed(Pass pass) {
     std::map<std::string_view, std::pair<int, int>> families;  // methods that need it, all
     for (const auto& m : registry()) {
         auto& [needing, all] = families[m.family];
-        needing += passesOf(m, Params(m.id, m.params, {})).hasAnyOf(pass);
+        needing += parseMethod(m.id).passes().hasAnyOf(pass);
         all++;
     }
     std::string s;

@@ -163,11 +163,9 @@ FrameEntry parseFrame(const Member& m) {
 
 void parseObjects(const Member& m, Manifest& manifest) {
     for (const auto& [key, value] : m.object().items()) {
-        const bool digits =
-            !key.empty() && key.size() <= 10 && key.find_first_not_of("0123456789") == std::string::npos;
-        const uint64_t id = digits ? std::stoull(key) : UINT64_MAX;
-        if (id > UINT32_MAX) m.fail("object ids (0..4294967295) as member names", "\"" + key.substr(0, 40) + "\"");
-        manifest.objects[uint32_t(id)] = m.member(key, value).text();
+        const auto id = objectIdIn(key);
+        if (!id) m.fail("object ids (0..4294967295) as member names", "\"" + key.substr(0, 40) + "\"");
+        manifest.objects[*id] = m.member(key, value).text();
     }
 }
 
@@ -306,6 +304,12 @@ std::string readText(const fs::path& file) {
     throw InputError(file.string() + ": cannot be read; check its permissions");
 }
 }  // namespace
+
+std::optional<uint32_t> objectIdIn(const std::string& name) {
+    if (name.empty() || name.size() > 10 || name.find_first_not_of("0123456789") != std::string::npos) return {};
+    const uint64_t id = std::stoull(name);
+    return id <= UINT32_MAX ? std::optional(uint32_t(id)) : std::nullopt;
+}
 
 const FrameEntry* Manifest::find(int frame) const {
     for (const auto& f : frames)

@@ -63,6 +63,8 @@ inline constexpr int kMaxSubSamples = 256;
 Manifest readManifest(const std::filesystem::path& shot);
 // The same from text; `file` is named in errors and its folder becomes Manifest::folder.
 Manifest parseManifest(const std::string& text, const std::filesystem::path& file);
+// An object's id as the name of a member: 0 to 4294967295 in digits; nothing for any other text.
+std::optional<uint32_t> objectIdIn(const std::string& name);
 nlohmann::json toJson(const Manifest& manifest);
 // Its members, for who goes through the frames of a long shot one by one.
 nlohmann::json toJsonWithoutFrames(const Manifest& manifest);

@@ -22,6 +22,7 @@ bool isThere(const std::filesystem::path& out, const std::string& image) {
 FrameWork::FrameWork(const ShotReader& shot, const RunOptions& o, const InputPlan& plan, Judge& judge,
                      std::vector<RunningMethod>& methods, RunResults& results)
     : manifest_(shot.manifest()), options_(o), plan_(plan), judge_(judge), methods_(methods), results_(results) {
+    for (const RunningMethod& m : methods) passes_.push_back(m.spec.passes());
     if (o.device && o.timeOnly)
         for (const auto& spec : o.methods)
             timed_.push_back(isExternal(spec) ? nullptr : gpu::create(*o.device, spec, shotInfo(manifest_)));
@@ -70,10 +71,6 @@ void FrameWork::operator()(Feed::Item& item, size_t i) {
 double FrameWork::secondsBefore(size_t k) const {
     const auto& frames = results_.methods[k].frames;
     return frames.empty() ? 0 : frames.back().seconds;
-}
-
-bool FrameWork::readsSubSamples(size_t k) const {
-    return methods_[k].spec.passes().hasAnyOf(Pass::subsamples | Pass::subsampleColor);
 }
 
 std::vector<size_t> FrameWork::order() const {
@@ -160,7 +157,7 @@ void FrameWork::note(size_t k, const Frame& input, FrameResult result) {
     if (manifest_.isStatic && !of.frames.empty()) of.frames.back().judged = false;
     of.frames.push_back(std::move(result));
     const size_t subSamples = manifest_.subsamplePositionsPx.size();
-    of.inputBytes = std::max(of.inputBytes, bytesOf(method.spec.passes(), input, subSamples));
+    of.inputBytes = std::max(of.inputBytes, bytesOf(passes_[k], input, subSamples));
     of.targetBytes = isExternal(method.spec) ? 0 : bytesOfTarget(input.width, input.height);
     of.stateBytes = std::max(of.stateBytes, method.method->stateBytes());
 }

@@ -20,7 +20,7 @@ class FrameWork {
 
   private:
     bool isWritten(size_t i) const;
-    bool readsSubSamples(size_t k) const;
+    bool readsSubSamples(size_t k) const { return passes_[k].hasAnyOf(Pass::subsamples | Pass::subsampleColor); }
     bool readsCentre(size_t k) const { return plan_.readsCentre(methods_[k].spec); }
     // The methods but the reference: those first that read sub-samples, then others that read pixel centres.
     std::vector<size_t> order() const;
@@ -40,6 +40,7 @@ class FrameWork {
     const InputPlan& plan_;
     Judge& judge_;
     std::vector<RunningMethod>& methods_;
+    std::vector<PassSet> passes_;  // that each reads: taken from its parameters once
     RunResults& results_;
     std::vector<std::unique_ptr<Method>> timed_;  // the same methods on a device, for its time alone
     Rgb unused_;                                  // what they make

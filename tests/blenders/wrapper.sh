@@ -26,7 +26,7 @@ share() { # FOLDER keeps its name inside
     mount --rbind "$1" "$root$1"
 }
 # Folders that are used: this one, those of the arguments, the temporary one, AA_SHARE (with : between); as a whole
-# /home or /work, but nothing that the system inside has itself.
+# /home, but nothing that the system inside has itself.
 share_with_neighbours() {
     case $1 in
     /root/* | /var/* | /run/*) share "$1" ;;

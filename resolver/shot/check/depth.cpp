@@ -117,10 +117,10 @@ void DepthCheck::addBounds(const Frame& f, const FrameEntry& entry, CheckReport&
     const auto bounds = extra.find("depth_bounds");
     if (bounds == extra.end() || !bounds->is_object()) return;
     std::map<uint32_t, std::pair<double, double>> range;
-    for (const auto& [id, value] : bounds->items())
-        if (value.is_array() && value.size() == 2 && value[0].is_number() && value[1].is_number() && !id.empty() &&
-            id.find_first_not_of("0123456789") == std::string::npos && id.size() < 11 && std::stoull(id) <= UINT32_MAX)
-            range[uint32_t(std::stoull(id))] = {value[0].get<double>(), value[1].get<double>()};
+    for (const auto& [name, value] : bounds->items())
+        if (const auto id = objectIdIn(name);
+            id && value.is_array() && value.size() == 2 && value[0].is_number() && value[1].is_number())
+            range[*id] = {value[0].get<double>(), value[1].get<double>()};
     boundsSeen_ = boundsSeen_ || !range.empty();
     uint64_t outside = 0;
     glm::ivec2 first;

@@ -16,7 +16,6 @@ struct GeometryPush {
 };
 
 class GeometryForm : public GpuMethod {
-  public:
   protected:
     // `reader` names the method and its option for the message where the frame has no camera.
     GeometryForm(Session& session, const Params& params, std::string reader, GeometryNeeds needs)
