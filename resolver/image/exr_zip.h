@@ -11,19 +11,27 @@
 #include <span>
 #include <vector>
 
+#include "image/io.h"
+
 struct libdeflate_decompressor;
 
 namespace aa {
 
 inline constexpr int kZipLines = 16;
+// Bytes: 64 planes of the largest side. A larger one is stored as it is.
+inline constexpr size_t kLargestChunk = size_t(kZipLines) * kLargestSide * 64 * sizeof(float);
 
 // One per thread.
 class ZipPacker {
   public:
+    ZipPacker();
+    ~ZipPacker();
     // An even number of bytes as they are stored in the file; valid until the next call.
     std::span<const uint8_t> pack(std::span<const uint8_t> chunk);
 
   private:
+    struct Streams;
+    std::unique_ptr<Streams> streams_;
     std::vector<uint8_t> sorted_, packed_, working_;
 };
 

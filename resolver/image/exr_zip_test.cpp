@@ -63,6 +63,64 @@ TEST(ExrZip, UnpacksWhatItPacked) {
         }
 }
 
+TEST(ExrZip, WhatIsTooLargeIsStored) {
+    ZipPacker packer;
+    const std::vector<uint8_t> chunk(kLargestChunk + 2);
+    EXPECT_EQ(packer.pack(chunk).size(), chunk.size());
+    EXPECT_LT(packer.pack(std::span(chunk).first(kLargestChunk)).size(), kLargestChunk / 500);
+}
+
+// Files do not depend on where in memory the packer lies either. Chunks in which much is found again, by packers at
+// other addresses: without the choice of a stream (exr_zip.cpp) one packing in 200 comes out otherwise.
+TEST(ExrZip, AChunkIsPackedTheSameWhereverThePackerLies) {
+    constexpr size_t kPackers = 64, kChunks = 1500;
+    std::vector<std::unique_ptr<ZipPacker>> packers;
+    SplitMix64 random(5);
+    {
+        // Memory that was used before; read as a window's bits, 10 is a short one.
+        std::vector<std::vector<uint16_t>> used;
+        std::vector<std::unique_ptr<char[]>> between;
+        for (size_t i = 0; i < kPackers; i++) {
+            packers.push_back(std::make_unique<ZipPacker>());
+            used.emplace_back(50'000, uint16_t(10));
+            between.push_back(std::unique_ptr<char[]>(new char[random.next() % 60'000 + 100]));
+        }
+        used.clear();
+        for (const auto& packer : packers) packer->pack(std::vector<uint8_t>(1000));
+    }
+    const auto differences = [&](size_t bytes, size_t first) {
+        std::vector<uint8_t> all(bytes);
+        const uint64_t few = random.next() % 3 + 2;
+        for (uint8_t& b : all) b = uint8_t(random.next() % few * 40 + 128);
+        for (size_t i = 0; i < first; i++) all[i] = first % 2 ? 0 : 255;
+        for (int repeats = 0; repeats < 4; repeats++)  // of the places that ISA-L may mistake
+            for (size_t from : {first, first + 1, first + 2, first + 32768, first + 32770})
+                if (from + 24 < bytes)
+                    std::copy_n(all.begin() + ptrdiff_t(from), 12,
+                                all.begin() + ptrdiff_t(from + 12 + random.next() % (bytes - from - 24)));
+        return all;
+    };
+    // A chunk whose sorted differences are these.
+    const auto chunkFrom = [](const std::vector<uint8_t>& all) {
+        std::vector<uint8_t> sorted(all), chunk(all.size());
+        for (size_t i = 1; i < all.size(); i++) sorted[i] = uint8_t(sorted[i - 1] + all[i] - 128);
+        for (size_t i = 0; i < all.size() / 2; i++)
+            chunk[2 * i] = sorted[i], chunk[2 * i + 1] = sorted[all.size() / 2 + i];
+        return chunk;
+    };
+    for (size_t n = 0; n < kChunks; n++) {
+        const size_t bytes = n % 50 == 0 ? 80'000 : 200 + random.next() % 400 * 2;
+        const auto chunk = chunkFrom(differences(bytes, n % 100 == 0 ? 5001 + n % 200 : 0));
+        const auto first = packers[0]->pack(chunk);
+        ASSERT_LT(first.size(), bytes);
+        for (const auto& packer : packers) {
+            const auto packed = packer->pack(chunk);
+            ASSERT_TRUE(std::equal(packed.begin(), packed.end(), first.begin(), first.end()))
+                << "chunk " << n << " of " << bytes << " bytes";
+        }
+    }
+}
+
 // Files do not depend on which thread packed what before.
 TEST(ExrZip, AChunkIsPackedAsIfItWereTheFirst) {
     ZipPacker packer;

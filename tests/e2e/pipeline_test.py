@@ -7,7 +7,7 @@ import importlib.util
 import json
 import math
 
-from program import ROOT, ProgramTest, main
+from program import ROOT, ProgramTest, digests, main
 
 
 class Pipeline(ProgramTest):
@@ -103,7 +103,7 @@ class Pipeline(ProgramTest):
                 "all",
                 *options,
             )
-            images.append({p.relative_to(out): p.read_bytes() for p in sorted(out.rglob("*.exr"))})
+            images.append(digests(out))
         self.assertEqual(len(images[0]), 20)  # noaa, two methods and the truth
         self.assertEqual(images[0], images[1])
         self.assertEqual(images[0], images[2])

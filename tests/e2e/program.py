@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import subprocess
 import sys
@@ -28,6 +29,15 @@ def run_blender(*arguments: object) -> subprocess.CompletedProcess:
         timeout=600,
         env=in_blender.environment(),
     )
+
+
+def digests(folder: Path, files: str = "*.exr") -> dict[str, str]:
+    """Of each such file in the folder and below by its name in there: to compare files, for bytes that differ would be
+    printed for minutes."""
+    return {
+        str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in sorted(folder.rglob(files))
+    }
 
 
 class ProgramTest(unittest.TestCase):
