@@ -1,8 +1,10 @@
 #include "metrics/flip.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <numeric>
 #include <span>
@@ -32,7 +34,10 @@ FlipFilters filtersAt(double pixelsPerDegree) {
     gaussian(f.csfY, 0.0047), gaussian(f.csfCx, 0.0053);
     const double wide = gaussian(f.csfCzWide, 0.04), narrow = gaussian(f.csfCzNarrow, 0.025);
     const double a = 34.1 * std::sqrt(kPi / 0.04) * wide * wide, b = 13.5 * std::sqrt(kPi / 0.025) * narrow * narrow;
-    f.czWideShare = a / (a + b);
+    for (int i = 0; i <= f.csfReach; i++) {
+        f.czWideAlongX[i] = f.csfCzWide[i] * a / (a + b);
+        f.czNarrowAlongX[i] = f.csfCzNarrow[i] * b / (a + b);
+    }
 
     const double sd = 0.5 * 0.082 * pixelsPerDegree;
     f.featureReach = std::max(1, int(std::ceil(3 * sd)));
@@ -111,7 +116,7 @@ Metric flipMetric() {
                         quartile("flipMedian", "FLIP, median", "below which half of all FLIP lies"),
                         quartile("flipThirdQuartile", "FLIP, 3rd quartile", "below which three quarters of it lie")},
             .byDefault = true,
-            .nsPerPixel = 35,
+            .nsPerPixel = 24,
             .source = "[Andersson 2020]",
             .prepare = [](const ReferencePicture& r, const Exec& e) -> Measure {
                 const auto reference = std::make_shared<FlipReference>(r.encoded, FlipReference::Values::encoded, e,
@@ -125,42 +130,91 @@ Metric flipMetric() {
             }};
 }
 
-// Values fall into bins first, so that only those of three bins are sorted.
+namespace {
+constexpr size_t kBins = 1024;
+using BinSums = std::array<double, kBins>;
+// Of a value from 0 to 1: in the order of the values, and exact.
+size_t binOf(float v) { return size_t(std::min(int(v * float(kBins)), int(kBins) - 1)); }
+size_t fineBinOf(float v) { return size_t(std::min(int(v * float(kBins * kBins)), int(kBins * kBins) - 1)) % kBins; }
+// The bin up to which the sums reach a goal; `below` becomes the sum before it.
+size_t reached(const BinSums& sums, double goal, double& below) {
+    size_t bin = 0;
+    for (; bin + 1 < kBins && below + sums[bin] < goal; bin++) below += sums[bin];
+    return bin;
+}
+}  // namespace
+
+// Values fall into bins first, those of a quartile's bin into finer ones, and only those of one of these are sorted.
 FlipStatistics flipStatistics(const PlaneF& map) {
-    constexpr size_t kBins = 1024;
-    std::vector<double> sums(kBins);
-    std::vector<float> largest(kBins);
-    const auto binOf = [](float v) { return std::min(kBins - 1, size_t(std::max(v, 0.0f) * float(kBins))); };
-    double total = 0;
-    float most = 0;
-    for (int y = 0; y < map.height(); y++)
-        for (const float v : std::span(map.row(y), size_t(map.width()))) {
-            sums[binOf(v)] += double(v);
-            largest[binOf(v)] = std::max(largest[binOf(v)], v);
-            most = std::max(most, v);
-        }
-    for (const double sum : sums) total += sum;
-    // The largest value up to which less than `share` of the total lies.
-    const auto quartile = [&](double share) {
-        size_t bin = 0;
-        double below = 0;
-        float last = 0;
-        for (; bin + 1 < kBins && below + sums[bin] < share * total; bin++)
-            below += sums[bin], last = std::max(last, largest[bin]);
-        std::vector<float> values;
-        for (int y = 0; y < map.height(); y++)
-            for (const float v : std::span(map.row(y), size_t(map.width())))
-                if (binOf(v) == bin) values.push_back(v);
-        std::sort(values.begin(), values.end());
-        for (const float v : values) {
-            below += double(v);
-            if (below >= share * total) break;
-            last = v;
-        }
-        return double(last);
+    const auto eachRow = [&](const auto& fn) {
+        for (int y = 0; y < map.height(); y++) fn(std::span(map.row(y), size_t(map.width())));
     };
+    constexpr size_t kStrands = 4;  // of neighbours apart: a sum waits for the one before
+    std::vector<BinSums> strands(kStrands);
+    float most = 0;
+    eachRow([&](std::span<const float> row) {
+        float largest = 0;  // a variable of its own, which stays in a register
+        for (size_t x = 0; x < row.size(); x++) {
+            strands[x % kStrands][binOf(row[x])] += double(row[x]);
+            largest = std::max(largest, row[x]);
+        }
+        most = std::max(most, largest);
+    });
+    BinSums& sums = strands[0];
+    for (size_t bin = 0; bin < kBins; bin++)
+        for (size_t i = 1; i < kStrands; i++) sums[bin] += strands[i][bin];
+    const double total = std::accumulate(sums.begin(), sums.end(), 0.0);
     if (!(total > 0)) return {};
-    return {total / (double(map.width()) * map.height()), quartile(0.25), quartile(0.5), quartile(0.75), double(most)};
+
+    struct Quartile {
+        double goal, below = 0;  // the sum of what is in smaller bins
+        size_t bin;
+    };
+    std::array<Quartile, 3> quartiles;
+    std::array<uint8_t, kBins> isNear{};  // some quartile
+    for (size_t i = 0; i < 3; i++) {
+        Quartile& q = quartiles[i];
+        q.goal = 0.25 * double(i + 1) * total;
+        q.bin = reached(sums, q.goal, q.below);
+        isNear[q.bin] = 1;
+    }
+    std::vector<float> near;
+    eachRow([&](std::span<const float> row) {
+        for (const float v : row)
+            if (isNear[binOf(v)]) near.push_back(v);
+    });
+    // The largest value up to which less than the goal lies.
+    const auto valueOf = [&](Quartile& q) {
+        BinSums fine{};
+        for (const float v : near)
+            if (binOf(v) == q.bin) fine[fineBinOf(v)] += double(v);
+        const size_t fineBin = reached(fine, q.goal, q.below);
+        float value = -1;
+        std::vector<float> last;
+        for (const float v : near)
+            if (binOf(v) == q.bin && fineBinOf(v) <= fineBin) {
+                if (fineBinOf(v) == fineBin)
+                    last.push_back(v);
+                else
+                    value = std::max(value, v);
+            }
+        std::sort(last.begin(), last.end());
+        for (const float v : last) {
+            q.below += double(v);
+            if (q.below >= q.goal) break;
+            value = v;
+        }
+        if (value < 0) {  // a smaller bin's
+            value = 0;
+            eachRow([&](std::span<const float> row) {
+                for (const float v : row)
+                    if (v > value && binOf(v) < q.bin) value = v;
+            });
+        }
+        return double(value);
+    };
+    return {total / (double(map.width()) * map.height()), valueOf(quartiles[0]), valueOf(quartiles[1]),
+            valueOf(quartiles[2]), double(most)};
 }
 
 }  // namespace aa

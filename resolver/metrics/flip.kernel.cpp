@@ -1,8 +1,9 @@
-// What limits it on AVX2: arithmetic, about 1150 operations per 8 pixels of a pair, of which 770 are the filters' (19
-// taps of seven kinds, along either axis, in both images). So nothing waits for memory: light becomes opponent colour
-// once, the rows under a window stay in the second cache, and both passes read whole registers: lanes are columns along
-// y, and rows along x, to which tiles of 8 x 8 px are transposed. Two places are filtered together, for they share most
-// of what they read, and two filters side by side, for the sums of one wait for each other.
+// What limits it on AVX2: instructions, about 2100 for 8 pixels of a pair, of which 60 % are arithmetic and a third the
+// filters' sums (19 taps of seven kinds, along either axis, in both images). So nothing waits for memory: light becomes
+// opponent colour once, rows are asked for long before they are read, the rows under a window stay in the second cache
+// and what is filtered along x in the first, and both passes read whole registers: lanes are columns along y, and rows
+// along x, to which tiles of 8 x 8 px are transposed. Two or four places are filtered together, for they share most of
+// what they read, and side by side, for each sum waits for itself.
 #include "kernels/math.h"
 #include "kernels/srgb.h"
 #include "kernels/transpose.h"
@@ -16,21 +17,26 @@ using namespace aa;
 using namespace aa::flip_constants;
 
 constexpr int kTile = kTileRows;
-constexpr int kStrip = kFlipColumns;  // columns
+constexpr int kChunk = kFlipColumns, kStrip = 2 * kChunk;  // columns
+constexpr int kAtOnce = 64 * kTile;                        // places that are seen and judged while in the first cache
 static_assert(kTile == kFlipTileRows);
 
-// The filters at the usual distance are constants, so that their loops unroll: a third faster.
+// The filters at the usual distance are constants, so that their loops unroll: a third faster. kSharing: as many places
+// side by side have one in all their windows.
 struct UsualFilters {
     static constexpr int kMostReach = kCsfReach;
+    static constexpr int kSharing = kTile;
     static constexpr int csfReach = kCsfReach, narrowReach = kNarrowReach, featureReach = kFeatureReach;
     static constexpr const double *csfY = kCsfY, *csfCx = kCsfCx, *csfCzWide = kCsfCzWide, *csfCzNarrow = kCsfCzNarrow;
     static constexpr const double *gauss = kGauss, *edge = kEdge, *point = kPoint;
-    static constexpr double czWideShare = kCzWideShare;
+    static constexpr const double *czWideAlongX = kCzWideAlongX.of, *czNarrowAlongX = kCzNarrowAlongX.of;
 };
 // And at any other they are given.
 struct GivenFilters : FlipFilters {
     static constexpr int kMostReach = FlipFilters::kMostReach;
+    static constexpr int kSharing = 2;
 };
+static_assert(UsualFilters::featureReach >= UsualFilters::kSharing - 1);
 template <class F>
 constexpr int kMargin = (F::kMostReach + 7) / 8 * 8;  // loaded beside a strip: whole lanes
 template <class F>
@@ -61,15 +67,32 @@ AA_INLINE R light(R code) {
         return select(code <= constant<R>(0.04045), code * constant<R>(1 / 12.92), sum * s);
     }
 }
+// t^(1/3) for t in [0.008, 1], to 2e-8 before rounding: cbrtPositive() with one step of third order for two of second,
+// 10 % to 5e-5 by a fit of h^(-1/3). Some finite number for smaller t.
+template <class R>
+AA_INLINE R rootOfLight(R t) {
+    if constexpr (std::is_same_v<Elem<R>, double>)
+        return cbrtPositive(max(t, constant<R>(1e-6)));
+    else {
+        R r = bitsScaled(t, -1.0f / 3.0f, 1419897600.0f);
+        const R h = t * (r * r) * r;
+        r = r * ((h * constant<R>(0.22413055) - constant<R>(0.78295019)) * h + constant<R>(1.55881644));
+        const R root = t * (r * r);
+        return root - (root * root * root - t) * (r * r) * constant<R>(1.0 / 3);
+    }
+}
 template <class R>
 AA_INLINE R labCurve(R t) {
-    return select(t > constant<R>(216.0 / 24389), cbrtPositive(max(t, constant<R>(1e-6))),
-                  t * constant<R>(841.0 / 108) + constant<R>(4.0 / 29));
+    return select(t > constant<R>(216.0 / 24389), rootOfLight(t), t * constant<R>(841.0 / 108) + constant<R>(4.0 / 29));
 }
 // Filtered opponent colour -> XYZ over the white point of what a display can show.
 template <class R>
 AA_INLINE vec3<R> shown(vec3<R> o) {
-    return transform(kToXyz, saturate(transform(kOpponentToRgb.m, o)));
+    const auto channel = [&](int i) __attribute__((always_inline)) {
+        const double(&m)[3] = kOpponentToRgb.m[i];  // m[0] is 1
+        return o.x + o.y * constant<R>(m[1]) + o.z * constant<R>(m[2]);
+    };
+    return transform(kToXyz, saturate(vec3<R>(channel(0), channel(1), channel(2))));
 }
 // Its labCurve() -> CIELab with Hunt's adjustment: chroma fades with lightness.
 template <class R>
@@ -82,18 +105,24 @@ template <class T, class F>
 struct alignas(64) OpponentRow {
     T c[3][kLoaded<F>];
 };
-// What the pass along y leaves of a strip's kTile rows, and of its margins: one column after the other.
+// What the pass along y leaves of kTile rows of a chunk, and of its margins: one column after the other.
 enum Filtered { csfY, csfCx, csfCzWide, csfCzNarrow, gaussOfY, edgeOfY, pointOfY, kFiltered };
 template <class T, class F>
 struct alignas(64) FilteredColumns {
-    T of[kFiltered][(kStrip + 2 * kMargin<F>)*kTile];
+    T of[kFiltered][(kChunk + 2 * kMargin<F>)*kTile];
+    // The last columns become the first: the margins of the next chunk's begin.
+    AA_INLINE void goOn() {
+        constexpr int kept = 2 * kMargin<F> * kTile;
+        for (auto& kind : of)
+            for (int i = 0; i < kept; i++) kind[i] = kind[kChunk * kTile + i];
+    }
 };
 // And the pass along x: colour as seen, and the strengths of edge and point.
 enum Seen { lightness, hueA, hueB, edgeStrength, pointStrength, kSeen };
 static_assert(kSeen == kFlipSeen);
 template <class T>
 struct alignas(64) SeenColumns {
-    T of[kSeen][kStrip * kTile];
+    T of[kSeen][kChunk * kTile];
 };
 
 // Opponent colour of row y of a strip with its margins, coordinates clamped to the image.
@@ -102,16 +131,13 @@ AA_INLINE void loadOpponent(const RgbIn& image, const FlipArgs& a, int x0, int y
     constexpr int margin = kMargin<F>;
     const long row = long(y < 0 ? 0 : y >= a.height ? a.height - 1 : y) * a.stride + x0;
     const int inside = a.width - x0, end = inside < kStrip + margin ? inside : kStrip + margin,
-              begin = x0 ? -margin : 0;
+              begin = x0 ? -margin : 0, last = (end + N<R> - 1) / N<R> * N<R> + margin;
     // The last lanes may lie beyond the image, in its padding. A loop for each channel: see seeColours().
     for (int c = 0; c < 3; c++) {
         const float* const in = image.c[c] + row;
-        if (y + kTile < a.height)  // a strip jumps from row to row, which no processor foresees
-            prefetch(in + kTile * long(a.stride), end);
         for (int x = begin; x < end; x += N<R>) {
-            const R v = load<R>(in + x);
-            store(max(constant<R>(0), a.encoded ? light(saturate(v)) : v),
-                  out.c[c] + margin + x);  // NaN becomes 0
+            const R v = max(constant<R>(0), load<R>(in + x));  // NaN becomes 0
+            store(a.encoded ? light(min(v, constant<R>(1))) : v, out.c[c] + margin + x);
         }
     }
     for (int x = margin + begin; x < margin + end; x += N<R>) {
@@ -121,12 +147,12 @@ AA_INLINE void loadOpponent(const RgbIn& image, const FlipArgs& a, int x0, int y
     }
     for (auto& c : out.c) {
         for (int x = -margin; x < 0 && x0 == 0; x++) c[margin + x] = c[margin];
-        for (int x = end; x < kStrip + margin; x++) c[margin + x] = c[margin + end - 1];
+        for (int x = end; x < last && x < kStrip + margin; x++) c[margin + x] = c[margin + end - 1];
     }
 }
-// Columns x .. x + N<R> - 1 of the strip, kTile rows; `rows`: those under the windows.
+// Columns x .. x + N<R> - 1 of the strip, kTile rows, to `place` of `out`; `rows`: those under the windows.
 template <class R, class F>
-AA_INLINE void filterAlongY(const F& f, const OpponentRow<Elem<R>, F>* const* rows, int x,
+AA_INLINE void filterAlongY(const F& f, const OpponentRow<Elem<R>, F>* const* rows, int x, int place,
                             FilteredColumns<Elem<R>, F>& out) {
     const int window = kTile + 2 * f.csfReach;
     R in[kWindow<F>], found[kFiltered][kTile];
@@ -140,77 +166,105 @@ AA_INLINE void filterAlongY(const F& f, const OpponentRow<Elem<R>, F>* const* ro
         found[kind][k] = two.first, found[kind][k + 1] = two.second;
     };
     using Along = Outward<R, decltype(around(0))>;
-    load(0);
+    Two<R> base;
     for (int k = 0; k < kTile; k += 2) {
+        if (k % F::kSharing == 0) {  // see Features
+            load(0);
+            base.first = base.second = in[f.csfReach + k];
+            for (int j = 0; j < window; j++) in[j] = in[j] - base.first;
+        }
         Along y(around(k));
-        const Two<R> centre = y.centre(), twice = centre * 2;
-        Two<R> csf = centre * f.csfY[0], gauss = centre * f.gauss[0];
-        Features<R> features;
+        const Two<R> centre = y.centre();
+        Two<R> csf = centre * f.csfY[0] + base, gauss = centre * f.gauss[0] + base;
+        Features<R> features(f, centre);
         const int reach = f.narrowReach < f.featureReach ? f.featureReach : f.narrowReach;
 #pragma GCC unroll 10
         for (int i = 1; i <= reach; i++) {
             y.step(i);
             if (i <= f.narrowReach) csf = csf + y.sum() * f.csfY[i];
-            if (i <= f.featureReach) gauss = gauss + y.sum() * f.gauss[i], features.add(f, y, twice, i);
+            if (i <= f.featureReach) gauss = gauss + y.sum() * f.gauss[i], features.add(f, y, i);
             inTurn(csf), inTurn(gauss);
         }
         keep(csfY, k, csf), keep(gaussOfY, k, gauss), keep(edgeOfY, k, features.edge);
         keep(pointOfY, k, features.point);
     }
     load(1);
-    for (int k = 0; k < kTile; k += 2) {
-        Along cx(around(k));
-        Two<R> csf = cx.centre() * f.csfCx[0];
-#pragma GCC unroll 10
-        for (int i = 1; i <= f.narrowReach; i++) cx.step(i), csf = csf + cx.sum() * f.csfCx[i];
-        keep(csfCx, k, csf);
+    for (int k = 0; k < kTile; k += 4) {
+        const Quad<R> csf = even<R>(around(k), f.csfCx, f.narrowReach);
+        for (int i = 0; i < 4; i++) found[csfCx][k + i] = csf.of[i];
     }
     load(2);
     for (int k = 0; k < kTile; k += 2) {
-        const Both<R> csf = even<R>(around(k), f.csfCzWide, around(k), f.csfCzNarrow, f.csfReach);
-        keep(csfCzWide, k, csf.u), keep(csfCzNarrow, k, csf.v);
+        Along cz(around(k));
+        Two<R> wide = cz.centre() * f.csfCzWide[0], narrow = cz.centre() * f.csfCzNarrow[0];
+#pragma GCC unroll 10
+        for (int i = 1; i <= f.csfReach; i++) {
+            cz.step(i);
+            wide = wide + cz.sum() * f.csfCzWide[i], narrow = narrow + cz.sum() * f.csfCzNarrow[i];
+            inTurn(wide), inTurn(narrow);
+        }
+        keep(csfCzWide, k, wide), keep(csfCzNarrow, k, narrow);
     }
-    for (int i = 0; i < kFiltered; i++) storeTransposed(found[i], out.of[i] + (kMargin<F> + x) * kTile);
+    for (int i = 0; i < kFiltered; i++) storeTransposed(found[i], out.of[i] + place * kTile);
 }
-// `place`: of the first of two columns, and the row, in `out`. Colour stays opponent colour.
+// kTile columns; `place`: of the first, and the row, in `out`. Colour stays opponent colour.
 template <class R, class F>
 AA_INLINE void filterAlongX(const F& f, const FilteredColumns<Elem<R>, F>& in, int place, SeenColumns<Elem<R>>& out) {
-    const auto of = [&](Filtered kind) __attribute__((always_inline)) {
-        return [p = in.of[kind] + kMargin<F> * kTile + place](int i) __attribute__((always_inline)) {
+    const auto of = [&](Filtered kind, int k) __attribute__((always_inline)) {
+        return [p = in.of[kind] + (kMargin<F> + k) * kTile + place](int i) __attribute__((always_inline)) {
             return loadOwn<R>(p + i * kTile);
         };
     };
-    const auto put = [&](Seen kind, Two<R> two) __attribute__((always_inline)) {
-        store(two.first, out.of[kind] + place), store(two.second, out.of[kind] + place + kTile);
+    const auto put = [&](Seen kind, int k, R value) __attribute__((always_inline)) {
+        store(value, out.of[kind] + place + k * kTile);
     };
     const auto length = [](R x, R y) __attribute__((always_inline)) { return sqrt(x * x + y * y); };
-    const Both<R> cz = even<R>(of(csfCzWide), f.csfCzWide, of(csfCzNarrow), f.csfCzNarrow, f.csfReach);
-    put(hueB, cz.u * f.czWideShare + cz.v * (1 - f.czWideShare));
-    const Both<R> csf = even<R>(of(csfY), f.csfY, of(csfCx), f.csfCx, f.narrowReach);
-    put(lightness, csf.u), put(hueA, csf.v);
-    Outward<R, decltype(of(gaussOfY))> gauss(of(gaussOfY));
-    const Two<R> twice = gauss.centre() * 2;
-    Features<R> x;
+    R gauss[kWindow<F>], edge[kTile], point[kTile];
+    for (int k = 0; k < kTile; k += 2) {
+        if (k % F::kSharing == 0) {  // see Features
+            const auto gaussOf = of(gaussOfY, 0);
+            const R base = gaussOf(k);
+            for (int i = 0; i < kTile + 2 * f.featureReach; i++) gauss[i] = gaussOf(i - f.featureReach) - base;
+        }
+        const auto at = [p = gauss + f.featureReach + k](int i) __attribute__((always_inline)) { return p[i]; };
+        Outward<R, decltype(at)> outward(at);
+        Features<R> x(f, outward.centre());
 #pragma GCC unroll 10
-    for (int i = 1; i <= f.featureReach; i++) gauss.step(i), x.add(f, gauss, twice, i);
-    const Both<R> y = even<R>(of(edgeOfY), f.gauss, of(pointOfY), f.gauss, f.featureReach);
-    put(edgeStrength, {length(x.edge.first, y.u.first), length(x.edge.second, y.u.second)});
-    put(pointStrength, {length(x.point.first, y.v.first), length(x.point.second, y.v.second)});
+        for (int i = 1; i <= f.featureReach; i++) outward.step(i), x.add(f, outward, i);
+        edge[k] = x.edge.first, edge[k + 1] = x.edge.second;
+        point[k] = x.point.first, point[k + 1] = x.point.second;
+    }
+    for (int k = 0; k < kTile; k += 4) {
+        const auto along = [&](Filtered kind, const double* taps, int reach) __attribute__((always_inline)) {
+            return even<R>(of(kind, k), taps, reach);
+        };
+        const Quad<R> wide = along(csfCzWide, f.czWideAlongX, f.csfReach);
+        const Quad<R> narrow = along(csfCzNarrow, f.czNarrowAlongX, f.csfReach);
+        for (int i = 0; i < 4; i++) put(hueB, k + i, wide.of[i] + narrow.of[i]);
+        const Quad<R> y = along(csfY, f.csfY, f.narrowReach);
+        for (int i = 0; i < 4; i++) put(lightness, k + i, y.of[i]);
+        const Quad<R> cx = along(csfCx, f.csfCx, f.narrowReach);
+        for (int i = 0; i < 4; i++) put(hueA, k + i, cx.of[i]);
+        const Quad<R> edgeAlongY = along(edgeOfY, f.gauss, f.featureReach);
+        for (int i = 0; i < 4; i++) put(edgeStrength, k + i, length(edge[k + i], edgeAlongY.of[i]));
+        const Quad<R> pointAlongY = along(pointOfY, f.gauss, f.featureReach);
+        for (int i = 0; i < 4; i++) put(pointStrength, k + i, length(point[k + i], pointAlongY.of[i]));
+    }
 }
 // Opponent colour -> CIELab. Roots and powers are long chains, of which a processor must have many pixels' in sight to
 // be busy, so they have loops of their own here and in judge().
 template <class R>
-AA_INLINE void seeColours(SeenColumns<Elem<R>>& seen, int places) {
+AA_INLINE void seeColours(SeenColumns<Elem<R>>& seen, int begin, int end) {
     Elem<R>*const x = seen.of[lightness], *const y = seen.of[hueA], *const z = seen.of[hueB];
     const auto each = [&](const auto& change) __attribute__((always_inline)) {
-        for (int i = 0; i < places; i += N<R>) {
+        for (int i = begin; i < end; i += N<R>) {
             const vec3<R> c = change(vec3<R>(loadOwn<R>(x + i), loadOwn<R>(y + i), loadOwn<R>(z + i)));
             store(c.x, x + i), store(c.y, y + i), store(c.z, z + i);
         }
     };
     each([](vec3<R> c) __attribute__((always_inline)) { return shown(c); });
     for (int k = 0; k < 3; k++)
-        for (int i = 0; i < places; i += N<R>) store(labCurve(loadOwn<R>(seen.of[k] + i)), seen.of[k] + i);
+        for (int i = begin; i < end; i += N<R>) store(labCurve(loadOwn<R>(seen.of[k] + i)), seen.of[k] + i);
     each([](vec3<R> c) __attribute__((always_inline)) { return huntLab(c); });
 }
 // HyAB distance to the power 0.7, mapped so that 0.4 of the largest becomes 0.95; and all of it to `power`. Below that
@@ -228,20 +282,26 @@ AA_INLINE R poweredDifference(R hyab, R power) {
     }
     return select(hyab < constant<R>(1e-30), constant<R>(0), exp2Clamped(power * logOfMapped));
 }
-// FLIP of `places` pixels, over the test's lightness.
+// FLIP of places [begin, end), over the test's lightness.
 template <class R>
-AA_INLINE void judge(SeenColumns<Elem<R>>& test, const SeenColumns<Elem<R>>& reference, int places) {
+AA_INLINE void judge(SeenColumns<Elem<R>>& test, const SeenColumns<Elem<R>>& reference, int begin, int end) {
     Elem<R>* const out = test.of[lightness];
     const auto difference = [&](Seen kind, int i) __attribute__((always_inline)) {
         return loadOwn<R>(test.of[kind] + i) - loadOwn<R>(reference.of[kind] + i);
     };
-    for (int i = 0; i < places; i += N<R>) {
+    for (int i = begin; i < end; i += N<R>) {
         const R a = difference(hueA, i), b = difference(hueB, i);
         const R hyab = abs(difference(lightness, i)) + sqrt(a * a + b * b);
         const R strongest = max(abs(difference(edgeStrength, i)), abs(difference(pointStrength, i)));
         const R feature = sqrt(strongest * constant<R>(0.70710678118654752));  // 1 / sqrt(2)
         store(min(poweredDifference(hyab, constant<R>(1) - feature), constant<R>(1)), out + i);
     }
+}
+// The next tile's rows at column x, while there is much to compute: no processor foresees jumps from row to row.
+AA_INLINE void askForRows(const FlipArgs& a, int x, int y) {
+    for (int c = 0; c < 3; c++)
+        for (int row = y < 0 ? 0 : y; row < y + kTile && row < a.height; row++)
+            __builtin_prefetch(a.image.c[c] + row * long(a.stride) + x);
 }
 // Sums, and the map, of rows y .. y + N<R> - 1 of a strip at column x0, of which rows [y0, y1) count.
 template <class R>
@@ -265,34 +325,42 @@ AA_INLINE void flipStrip(const F& f, const FlipArgs& a, int x0, int y0, int y1) 
     FilteredColumns<T, F> filtered;
     Block ofTest;
     const OpponentRow<T, F>* rows[kWindow<F>];
-    const int columns = a.width - x0 < kStrip ? a.width - x0 : kStrip, strips = (a.width + kStrip - 1) / kStrip;
-    const int places = (columns + kTile - 1) / kTile * kTile * kTile;
+    const int columns = a.width - x0 < kStrip ? a.width - x0 : kStrip, chunks = (a.width + kChunk - 1) / kChunk;
     int loaded = y0 - f.csfReach;
     for (int y = y0; y < y1; y += kTile) {
         for (; loaded < y + kTile + f.csfReach; loaded++)
             loadOpponent<R, F>(a.image, a, x0, loaded, kept[unsigned(loaded) % kKept<F>]);
         for (int j = 0; j < kTile + 2 * f.csfReach; j++) rows[j] = &kept[unsigned(y - f.csfReach + j) % kKept<F>];
-        for (int x = -kMargin<F>; x < columns + kMargin<F>; x += N<R>) filterAlongY<R, F>(f, rows, x, filtered);
-        const long block = long(y / kTile) * strips + x0 / kStrip;
-        Block& seen = kJudges ? ofTest : static_cast<Block*>(a.seen)[block];
-        for (int i = 0; i < places; i += 2 * kTile)
-            for (int row = 0; row < kTile; row += N<R>) filterAlongX<R, F>(f, filtered, i + row, seen);
-        seeColours<R>(seen, places);
-        if constexpr (kJudges) {
-            judge<R>(seen, static_cast<const Block*>(a.reference)[block], places);
-            for (int row = 0; row < kTile; row += N<R>)
-                sum<R>(a, seen.of[lightness] + row, x0, columns, y + row, y0, y1);
+        for (int from = 0, x = -kMargin<F>; from < columns; from += kChunk) {
+            const int here = columns - from < kChunk ? columns - from : kChunk;
+            const int places = (here + kTile - 1) / kTile * kTile * kTile;
+            if (from > 0) filtered.goOn();
+            const long block = long(y / kTile) * chunks + (x0 + from) / kChunk;
+            for (; x < from + here + kMargin<F>; x += N<R>) {
+                if (x % 16 == 0) askForRows(a, x0 + x, loaded);
+                filterAlongY<R, F>(f, rows, x, x - from + kMargin<F>, filtered);
+            }
+            Block& seen = kJudges ? ofTest : static_cast<Block*>(a.seen)[block];
+            for (int begin = 0; begin < places; begin += kAtOnce) {
+                const int end = begin + kAtOnce < places ? begin + kAtOnce : places;
+                if constexpr (kJudges)
+                    for (const auto& kind : static_cast<const Block*>(a.reference)[block].of)
+                        for (int i = begin; i < end; i += 16) __builtin_prefetch(kind + i);
+                for (int i = begin; i < end; i += kTile * kTile)
+                    for (int row = 0; row < kTile; row += N<R>) filterAlongX<R, F>(f, filtered, i + row, seen);
+                seeColours<R>(seen, begin, end);
+                if constexpr (kJudges) judge<R>(seen, static_cast<const Block*>(a.reference)[block], begin, end);
+            }
+            if constexpr (kJudges)
+                for (int row = 0; row < kTile; row += N<R>)
+                    sum<R>(a, seen.of[lightness] + row, x0 + from, here, y + row, y0, y1);
         }
     }
 }
-// Not one strip from above to below: of a lower piece, the next strip's margins are still in a cache.
 template <class R, bool kJudges, class F>
 AA_INLINE void flipStrips(const F& f, const FlipArgs& a, int block0, int block1) {
-    for (int block = block0; block < block1; block += kFlipPiece) {
-        const int y0 = block * kTile, last = block + kFlipPiece < block1 ? block + kFlipPiece : block1;
-        const int y1 = last * kTile < a.height ? last * kTile : a.height;
-        for (int x0 = 0; x0 < a.width; x0 += kStrip) flipStrip<R, F, kJudges>(f, a, x0, y0, y1);
-    }
+    const int y0 = block0 * kTile, y1 = block1 * kTile < a.height ? block1 * kTile : a.height;
+    for (int x0 = 0; x0 < a.width; x0 += kStrip) flipStrip<R, F, kJudges>(f, a, x0, y0, y1);
 }
 template <class R>
 __attribute__((flatten)) void seeBlocks(const FlipArgs& a, int block0, int block1) {

@@ -21,6 +21,17 @@ constexpr double kCsfCzNarrow[] = {0.16726318256374276,    0.15318983292982022, 
                                    0.00013539320429836009, 2.5489364695425175e-05};  // b = 0.025
 // Cz mixes two Gaussians a sqrt(pi / b) exp(...) in two dimensions, a = 34.1 and 13.5: the share of the wide one.
 constexpr double kCzWideShare = 0.7614569612435086;
+// Along x they are added up, each by its share.
+struct CzTaps {
+    double of[kCsfReach + 1];
+};
+constexpr CzTaps shareOf(const double (&taps)[kCsfReach + 1], double share) {
+    CzTaps r{};
+    for (int i = 0; i <= kCsfReach; i++) r.of[i] = taps[i] * share;
+    return r;
+}
+constexpr CzTaps kCzWideAlongX = shareOf(kCsfCzWide, kCzWideShare),
+                 kCzNarrowAlongX = shareOf(kCsfCzNarrow, 1 - kCzWideShare);
 
 // Features: G, -x G and (x^2 / sd^2 - 1) G with sd = 0.5 * 0.082 ppd and radius ceil(3 sd) = 9. G sums to 1; of the
 // other two the positive and the negative weights sum to +1 and -1. kEdge holds the taps at +i, which count negative.

@@ -7,8 +7,8 @@ struct FlipFilters {
     static constexpr int kMostReach = 24;
     int csfReach, narrowReach, featureReach;
     double csfY[kMostReach + 1], csfCx[kMostReach + 1], csfCzWide[kMostReach + 1], csfCzNarrow[kMostReach + 1];
+    double czWideAlongX[kMostReach + 1], czNarrowAlongX[kMostReach + 1];
     double gauss[kMostReach + 1], edge[kMostReach + 1], point[kMostReach + 1];
-    double czWideShare;
 };
 // What is seen of a picture: blocks of kFlipTileRows rows and kFlipColumns columns, a row of blocks after the other; of
 // each block the kFlipSeen quantities, and of each of these one column after the other. In the arithmetic's own

@@ -1,4 +1,4 @@
-// ns per pixel of the metrics at 1920 x 1080, one thread. Targets on AVX2: SSIM RGB <= 9, LDR-FLIP <= 27.
+// ns per pixel of the metrics at 1920 x 1080, one thread. Targets on AVX2: SSIM RGB <= 9, LDR-FLIP <= 23.
 // AARESOLVE_BENCH_ISA=v2|v3|v4 chooses the instruction set.
 #include <benchmark/benchmark.h>
 
