@@ -7,11 +7,6 @@
 namespace AA_ARCH {
 using aa::kSumStrands;
 
-// A strip jumps from row to row, which no processor foresees: without this, waiting for memory is half of the time.
-constexpr int kRowsAhead = 4;
-AA_INLINE void prefetch(const float* from, int count) {
-    for (int i = 0; i < count; i += 16) __builtin_prefetch(from + i);  // 16 floats are a cache line
-}
 template <class R>
 AA_INLINE R loadOwn(const Elem<R>* p) {  // storage in the arithmetic's own precision
     if constexpr (N<R> == 1)
