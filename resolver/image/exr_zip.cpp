@@ -75,7 +75,8 @@ void fromDifferences(uint8_t* bytes, size_t count) {
 // to 2.32, igzip_icf_body_h1_gr_bt.asm, .write_first_byte). Under that hash the first, which is also what stands where
 // nothing is noted, or the second may have been meant to be found; and as distances are taken modulo 32768, so are the
 // places 32768, 65536 ... behind the first and the third. One picture in twenty thousand came out otherwise from run to
-// run. So a chunk takes a stream whose address has the hash of none of these places.
+// run. So a chunk takes a stream whose address has the hash of none of these places, of which the largest chunk has
+// half as many as there are hashes.
 struct ZipPacker::Streams {
     // Their memory is left as it is: of 82 kB each, ISA-L uses the first hundreds of bytes at this level.
     std::vector<std::unique_ptr<isal_zstream>> all;

@@ -18,8 +18,8 @@ struct libdeflate_decompressor;
 namespace aa {
 
 inline constexpr int kZipLines = 16;
-// Bytes: 64 planes of the largest side. A larger one is stored as it is.
-inline constexpr size_t kLargestChunk = size_t(kZipLines) * kLargestSide * 64 * sizeof(float);
+// Bytes: 32 planes of the largest side. A larger one is stored as it is.
+inline constexpr size_t kLargestChunk = size_t(kZipLines) * kLargestSide * 32 * sizeof(float);
 
 // One per thread.
 class ZipPacker {

@@ -133,9 +133,12 @@ Metric flipMetric() {
 namespace {
 constexpr size_t kBins = 1024;
 using BinSums = std::array<double, kBins>;
-// Of a value from 0 to 1: in the order of the values, and exact.
-size_t binOf(float v) { return size_t(std::min(int(v * float(kBins)), int(kBins) - 1)); }
-size_t fineBinOf(float v) { return size_t(std::min(int(v * float(kBins * kBins)), int(kBins * kBins) - 1)) % kBins; }
+// In the order of the values, and exact; of values from 0 to 1, whatever else lies at an end.
+size_t keyOf(float v, size_t keys) {
+    return std::min(size_t(int(std::min(std::max(0.0f, v), 1.0f) * float(keys))), keys - 1);
+}
+size_t binOf(float v) { return keyOf(v, kBins); }
+size_t fineBinOf(float v) { return keyOf(v, kBins * kBins) % kBins; }
 // The bin up to which the sums reach a goal; `below` becomes the sum before it.
 size_t reached(const BinSums& sums, double goal, double& below) {
     size_t bin = 0;

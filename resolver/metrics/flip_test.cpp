@@ -248,6 +248,11 @@ TEST(Flip, StatisticsAreWeightedByTheError) {
     EXPECT_NEAR(s.max, 0.6, 1e-7);
     EXPECT_NEAR(s.median, 0.3, 1e-7);  // 0.1 + 0.3 of 1.0 lie below one half
     EXPECT_NEAR(s.firstQuartile, 0.1, 1e-7);
+    // Of values that no map has, too.
+    for (const float v : {NAN, -1e30f, 1e30f, INFINITY}) {
+        map.at(1, 0) = v;
+        flipStatistics(map);
+    }
 }
 }  // namespace
 }  // namespace aa
