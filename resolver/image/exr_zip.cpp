@@ -82,11 +82,14 @@ struct ZipPacker::Streams {
     std::vector<std::unique_ptr<isal_zstream>> all;
 
     isal_zstream& of([[maybe_unused]] std::span<const uint8_t> plain) {
+#ifdef __x86_64__
+        const size_t run = runAtTheBegin(plain);
+#endif
         for (size_t i = 0;; i++) {
             if (i == all.size()) all.emplace_back(new isal_zstream);
 #ifdef __x86_64__
             const uint32_t own = hash(uint32_t(reinterpret_cast<uintptr_t>(all[i].get()) >> 16));
-            if (isFoundBy(own, plain, 0) || isFoundBy(own, plain, runAtTheBegin(plain))) continue;
+            if (isFoundBy(own, plain, 0) || (run > 0 && isFoundBy(own, plain, run))) continue;
 #endif
             return *all[i];
         }

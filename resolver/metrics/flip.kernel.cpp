@@ -131,7 +131,7 @@ AA_INLINE void loadOpponent(const RgbIn& image, const FlipArgs& a, int x0, int y
     constexpr int margin = kMargin<F>;
     const long row = long(y < 0 ? 0 : y >= a.height ? a.height - 1 : y) * a.stride + x0;
     const int inside = a.width - x0, end = inside < kStrip + margin ? inside : kStrip + margin,
-              begin = x0 ? -margin : 0, last = (end + N<R> - 1) / N<R> * N<R> + margin;
+              begin = x0 ? -margin : 0, readTo = (end + N<R> - 1) / N<R> * N<R> + margin;
     // The last lanes may lie beyond the image, in its padding. A loop for each channel: see seeColours().
     for (int c = 0; c < 3; c++) {
         const float* const in = image.c[c] + row;
@@ -147,7 +147,7 @@ AA_INLINE void loadOpponent(const RgbIn& image, const FlipArgs& a, int x0, int y
     }
     for (auto& c : out.c) {
         for (int x = -margin; x < 0 && x0 == 0; x++) c[margin + x] = c[margin];
-        for (int x = end; x < last && x < kStrip + margin; x++) c[margin + x] = c[margin + end - 1];
+        for (int x = end; x < readTo && x < kStrip + margin; x++) c[margin + x] = c[margin + end - 1];
     }
 }
 // Columns x .. x + N<R> - 1 of the strip, kTile rows, to `place` of `out`; `rows`: those under the windows.
@@ -207,6 +207,12 @@ AA_INLINE void filterAlongY(const F& f, const OpponentRow<Elem<R>, F>* const* ro
     }
     for (int i = 0; i < kFiltered; i++) storeTransposed(found[i], out.of[i] + place * kTile);
 }
+template <class R>
+AA_INLINE Quad<R> lengths(const R* x, const Quad<R>& y) {
+    Quad<R> r;
+    for (int i = 0; i < 4; i++) r.of[i] = sqrt(x[i] * x[i] + y.of[i] * y.of[i]);
+    return r;
+}
 // kTile columns; `place`: of the first, and the row, in `out`. Colour stays opponent colour.
 template <class R, class F>
 AA_INLINE void filterAlongX(const F& f, const FilteredColumns<Elem<R>, F>& in, int place, SeenColumns<Elem<R>>& out) {
@@ -215,10 +221,9 @@ AA_INLINE void filterAlongX(const F& f, const FilteredColumns<Elem<R>, F>& in, i
             return loadOwn<R>(p + i * kTile);
         };
     };
-    const auto put = [&](Seen kind, int k, R value) __attribute__((always_inline)) {
-        store(value, out.of[kind] + place + k * kTile);
+    const auto put = [&](Seen kind, int k, const Quad<R>& value) __attribute__((always_inline)) {
+        for (int i = 0; i < 4; i++) store(value.of[i], out.of[kind] + place + (k + i) * kTile);
     };
-    const auto length = [](R x, R y) __attribute__((always_inline)) { return sqrt(x * x + y * y); };
     R gauss[kWindow<F>], edge[kTile], point[kTile];
     for (int k = 0; k < kTile; k += 2) {
         if (k % F::kSharing == 0) {  // see Features
@@ -238,17 +243,11 @@ AA_INLINE void filterAlongX(const F& f, const FilteredColumns<Elem<R>, F>& in, i
         const auto along = [&](Filtered kind, const double* taps, int reach) __attribute__((always_inline)) {
             return even<R>(of(kind, k), taps, reach);
         };
-        const Quad<R> wide = along(csfCzWide, f.czWideAlongX, f.csfReach);
-        const Quad<R> narrow = along(csfCzNarrow, f.czNarrowAlongX, f.csfReach);
-        for (int i = 0; i < 4; i++) put(hueB, k + i, wide.of[i] + narrow.of[i]);
-        const Quad<R> y = along(csfY, f.csfY, f.narrowReach);
-        for (int i = 0; i < 4; i++) put(lightness, k + i, y.of[i]);
-        const Quad<R> cx = along(csfCx, f.csfCx, f.narrowReach);
-        for (int i = 0; i < 4; i++) put(hueA, k + i, cx.of[i]);
-        const Quad<R> edgeAlongY = along(edgeOfY, f.gauss, f.featureReach);
-        for (int i = 0; i < 4; i++) put(edgeStrength, k + i, length(edge[k + i], edgeAlongY.of[i]));
-        const Quad<R> pointAlongY = along(pointOfY, f.gauss, f.featureReach);
-        for (int i = 0; i < 4; i++) put(pointStrength, k + i, length(point[k + i], pointAlongY.of[i]));
+        put(hueB, k, along(csfCzWide, f.czWideAlongX, f.csfReach) + along(csfCzNarrow, f.czNarrowAlongX, f.csfReach));
+        put(lightness, k, along(csfY, f.csfY, f.narrowReach));
+        put(hueA, k, along(csfCx, f.csfCx, f.narrowReach));
+        put(edgeStrength, k, lengths(edge + k, along(edgeOfY, f.gauss, f.featureReach)));
+        put(pointStrength, k, lengths(point + k, along(pointOfY, f.gauss, f.featureReach)));
     }
 }
 // Opponent colour -> CIELab. Roots and powers are long chains, of which a processor must have many pixels' in sight to
@@ -341,15 +340,16 @@ AA_INLINE void flipStrip(const F& f, const FlipArgs& a, int x0, int y0, int y1) 
                 filterAlongY<R, F>(f, rows, x, x - from + kMargin<F>, filtered);
             }
             Block& seen = kJudges ? ofTest : static_cast<Block*>(a.seen)[block];
+            const Block* const truth = kJudges ? static_cast<const Block*>(a.reference) + block : nullptr;
             for (int begin = 0; begin < places; begin += kAtOnce) {
                 const int end = begin + kAtOnce < places ? begin + kAtOnce : places;
                 if constexpr (kJudges)
-                    for (const auto& kind : static_cast<const Block*>(a.reference)[block].of)
+                    for (const auto& kind : truth->of)
                         for (int i = begin; i < end; i += 16) __builtin_prefetch(kind + i);
                 for (int i = begin; i < end; i += kTile * kTile)
                     for (int row = 0; row < kTile; row += N<R>) filterAlongX<R, F>(f, filtered, i + row, seen);
                 seeColours<R>(seen, begin, end);
-                if constexpr (kJudges) judge<R>(seen, static_cast<const Block*>(a.reference)[block], begin, end);
+                if constexpr (kJudges) judge<R>(seen, *truth, begin, end);
             }
             if constexpr (kJudges)
                 for (int row = 0; row < kTile; row += N<R>)

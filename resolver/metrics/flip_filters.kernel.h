@@ -1,5 +1,5 @@
-// FLIP's symmetric and antisymmetric filters over two places side by side, which share most of what they read. Included
-// by *.kernel.cpp files.
+// FLIP's symmetric and antisymmetric filters over two or four places side by side, which share most of what they read.
+// Included by *.kernel.cpp files.
 #pragma once
 #include "metrics/strip.h"
 
@@ -45,6 +45,9 @@ AA_INLINE void inTurn(Two<R>& sum) {
 template <class R>
 struct Quad {
     R of[4];
+    friend AA_INLINE Quad operator+(const Quad& a, const Quad& b) {
+        return {{a.of[0] + b.of[0], a.of[1] + b.of[1], a.of[2] + b.of[2], a.of[3] + b.of[3]}};
+    }
 };
 template <class R, class At>
 AA_INLINE Quad<R> even(const At& at, const double* taps, int reach) {
