@@ -10,6 +10,7 @@
 #include <map>
 #include <mutex>
 #include <new>
+#include <optional>
 #include <vector>
 
 namespace aa {
@@ -35,61 +36,95 @@ constexpr size_t kSmallest = size_t(16) << 10;
 // twelve lines. So they begin in turn at sixteen places of a page.
 constexpr size_t kPage = size_t(4) << 10, kHugePage = size_t(2) << 20;  // a page of the system is no smaller
 constexpr size_t kTurns = 16, kFromTurns = 64 * kPage;                  // smaller planes would grow by too much
+constexpr size_t kHasHugePages = 2 * kHugePage;                         // a block of at least so many bytes
 
 size_t mappedBytes(size_t bytes) {
     static const size_t page = size_t(::sysconf(_SC_PAGESIZE));
     return ((bytes >= kFromTurns ? bytes + kPage : bytes) + page - 1) / page * page;
 }
-void* map(size_t bytes) {
-    const size_t whole = mappedBytes(bytes), before = bytes >= 2 * kHugePage ? kHugePage : 0;
-    void* const memory = ::mmap(nullptr, before + whole, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+size_t hugeBytes(size_t bytes) { return bytes < kHasHugePages ? 0 : mappedBytes(bytes) / kHugePage * kHugePage; }
+
+char* mapped(size_t bytes, char* at = nullptr) {
+    void* const memory =
+        ::mmap(at, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | (at ? MAP_FIXED : 0), -1, 0);
     if (memory == MAP_FAILED) throw std::bad_alloc();
-    char* begin = static_cast<char*>(memory);
-    if (before > 0) {
-        const size_t skipped = (kHugePage - reinterpret_cast<uintptr_t>(begin) % kHugePage) % kHugePage;
-        if (skipped > 0) ::munmap(begin, skipped);
-        begin += skipped;
-        ::munmap(begin + whole, kHugePage - skipped);
+    return static_cast<char*>(memory);
+}
+char* mappedAtHugePage(size_t bytes) {
+    char* begin = mapped(kHugePage + bytes);
+    const size_t skipped = (kHugePage - reinterpret_cast<uintptr_t>(begin) % kHugePage) % kHugePage;
+    if (skipped > 0) ::munmap(begin, skipped);
+    begin += skipped;
+    ::munmap(begin + bytes, kHugePage - skipped);
 #ifdef MADV_HUGEPAGE
-        ::madvise(begin, whole, MADV_HUGEPAGE);
+    ::madvise(begin, bytes, MADV_HUGEPAGE);
 #endif
-    }
+    return begin;
+}
+
+struct Pages {
+    char* begin;
+    size_t bytes;
+};
+void giveBack(const std::vector<Pages>& leaving) {
+    for (const Pages& p : leaving) ::munmap(p.begin, p.bytes);
+}
+// A page of 2 MB comes to lie where another is mapped, with what it holds. One at a time: what was moved before is a
+// mapping of its own, and the system moves nothing that lies in two.
+void move([[maybe_unused]] char* page, [[maybe_unused]] char* to) {
+#ifdef MREMAP_FIXED
+    if (::mremap(page, kHugePage, kHugePage, MREMAP_MAYMOVE | MREMAP_FIXED, to) != MAP_FAILED) return;
+    mapped(kHugePage, to);
+#endif
+    ::munmap(page, kHugePage);
+}
+// With the pages of `moving` side by side at its beginning, so that the system need not clear others.
+char* map(size_t bytes, const std::vector<Pages>& moving) {
+    const size_t whole = mappedBytes(bytes);
+    char* const begin = bytes < kHasHugePages ? mapped(whole) : mappedAtHugePage(whole);
+    char* to = begin;
+    for (const Pages& p : moving)
+        for (size_t done = 0; done < p.bytes; done += kHugePage, to += kHugePage) move(p.begin + done, to);
+    return begin;
+}
+char* inTurn(char* begin, size_t bytes) {
     static std::atomic<size_t> turn{0};
     return bytes >= kFromTurns ? begin + turn++ * 5 % kTurns * (kPage / kTurns) : begin;
 }
-void unmap(void* memory, size_t bytes) {
+char* mappedAt(void* memory) {
     char* const begin = static_cast<char*>(memory);
-    ::munmap(begin - reinterpret_cast<uintptr_t>(begin) % kPage, mappedBytes(bytes));
+    return begin - reinterpret_cast<uintptr_t>(begin) % kPage;
 }
 
 class Pool {
   public:
     void* take(size_t bytes) {
-        std::vector<Block> leaving;
+        std::vector<Pages> moving, leaving;
+        size_t before;
         {
             const std::lock_guard one(mutex_);
-            bytes_.used += bytes;
-            bytes_.most = std::max(bytes_.most, bytes_.used);
-            if (const auto found = unused_.find(bytes); found != unused_.end()) {
-                void* const memory = found->second.back().memory;  // the last one may still be in the cache
-                found->second.pop_back();
-                if (found->second.empty()) unused_.erase(found);
-                bytes_.unused -= bytes;
-                return memory;
-            }
-            // What is of other sizes makes room.
-            leaving = shrink(std::max(kUnusedPlaneBytes, bytes_.most) - bytes_.used);
+            if (void* const memory = ofItsSize(bytes)) return memory;
+            before = bytes_.most;
+            use(bytes);
+            moving = pages(hugeBytes(bytes), leaving);
+            shrink(std::max(kUnusedPlaneBytes, bytes_.most) - bytes_.used, leaving);
         }
         giveBack(leaving);
-        return map(bytes);
+        try {
+            return inTurn(map(bytes, moving), bytes);
+        } catch (const std::bad_alloc&) {
+            giveBack(moving);
+            refused(bytes, before);
+            throw;
+        }
     }
     void give(void* memory, size_t bytes) {
-        std::vector<Block> leaving;
+        std::vector<Pages> leaving;
         {
             const std::lock_guard one(mutex_);
-            unused_[bytes].push_back({memory, bytes, ++time_});
+            unused_[bytes].push_back({memory, ++time_});
             bytes_.used -= bytes, bytes_.unused += bytes;
-            leaving = shrink(std::max(kUnusedPlaneBytes, bytes_.used));
+            shrink(std::max(kUnusedPlaneBytes, bytes_.used), leaving);
         }
         giveBack(leaving);
     }
@@ -101,29 +136,76 @@ class Pool {
   private:
     struct Block {
         void* memory;
-        size_t bytes;
         uint64_t since;  // it is unused
     };
-    // To at most so many unused bytes, the oldest first.
-    std::vector<Block> shrink(size_t most) {
-        std::vector<Block> leaving;
-        while (bytes_.unused > most) {
-            const auto oldest = std::min_element(unused_.begin(), unused_.end(), [](const auto& a, const auto& b) {
-                return a.second.front().since < b.second.front().since;
-            });
-            leaving.push_back(oldest->second.front());
-            bytes_.unused -= oldest->first;
-            oldest->second.pop_front();
-            if (oldest->second.empty()) unused_.erase(oldest);
-        }
-        return leaving;
+    void use(size_t bytes) {
+        bytes_.used += bytes;
+        bytes_.most = std::max(bytes_.most, bytes_.used);
     }
-    static void giveBack(const std::vector<Block>& leaving) {
-        for (const Block& b : leaving) unmap(b.memory, b.bytes);
+    void* ofItsSize(size_t bytes) {
+        const auto found = unused_.find(bytes);
+        if (found == unused_.end()) return nullptr;
+        void* const memory = found->second.back().memory;  // the last one may still be in the cache
+        found->second.pop_back();
+        if (found->second.empty()) unused_.erase(found);
+        bytes_.unused -= bytes;
+        use(bytes);
+        return memory;
+    }
+    // The oldest of unused blocks of at least so many bytes; it counts as unused no longer.
+    std::optional<Pages> oldest(size_t least) {
+        auto found = unused_.end();
+        for (auto i = unused_.lower_bound(least); i != unused_.end(); ++i)
+            if (found == unused_.end() || i->second.front().since < found->second.front().since) found = i;
+        if (found == unused_.end()) return {};
+        const Pages whole{mappedAt(found->second.front().memory), mappedBytes(found->first)};
+        bytes_.unused -= found->first;
+        found->second.pop_front();
+        if (found->second.empty()) unused_.erase(found);
+        return whole;
+    }
+    // So many bytes in pages of 2 MB, or what there are of them. What is left of a block's pages waits for the next.
+    std::vector<Pages> pages(size_t bytes, std::vector<Pages>& leaving) {
+        std::vector<Pages> found;
+        while (bytes > 0) {
+            if (spare_.empty()) {
+                const std::optional<Pages> block = oldest(kHasHugePages);
+                if (!block) break;
+                const size_t huge = block->bytes / kHugePage * kHugePage;
+                spare_.push_back({block->begin, huge}), bytes_.unused += huge;
+                if (block->bytes > huge) leaving.push_back({block->begin + huge, block->bytes - huge});
+            }
+            Pages& last = spare_.back();
+            const size_t taken = std::min(bytes, last.bytes);
+            last.bytes -= taken, bytes -= taken, bytes_.unused -= taken;
+            found.push_back({last.begin + last.bytes, taken});
+            if (last.bytes == 0) spare_.pop_back();
+        }
+        return found;
+    }
+    // To at most so many unused bytes, the oldest first.
+    void shrink(size_t most, std::vector<Pages>& leaving) {
+        for (; bytes_.unused > most && !spare_.empty(); spare_.pop_back()) {
+            leaving.push_back(spare_.back());
+            bytes_.unused -= spare_.back().bytes;
+        }
+        while (bytes_.unused > most) leaving.push_back(*oldest(0));
+    }
+    // What is unused may be what was missing.
+    void refused(size_t bytes, size_t most) {
+        std::vector<Pages> leaving;
+        {
+            const std::lock_guard one(mutex_);
+            bytes_.used -= bytes;
+            bytes_.most = std::max(most, bytes_.used);
+            shrink(0, leaving);
+        }
+        giveBack(leaving);
     }
 
     std::mutex mutex_;
     std::map<size_t, std::deque<Block>> unused_;  // by size, of each the oldest first
+    std::vector<Pages> spare_;                    // of blocks that gave others their pages
     uint64_t time_ = 0;
     PlaneBytes bytes_;
 };

@@ -3,7 +3,7 @@
 //
 // What lies unused is bounded: as much as is in use, or a small share of any machine, whichever is more. What one frame
 // of a run gives back, the next will take. With what is in use it is no more than was in use at one time or that share:
-// where a plane finds none of its size, others make room. Of the unused the oldest goes back to the system first.
+// where a plane finds none of its size, others give it their pages and make room, the oldest first.
 #pragma once
 #include <cstddef>
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <new>
 #include <vector>
 
 #include "image/plane.h"
@@ -60,6 +61,47 @@ TEST(PlanePool, OtherSizesMakeRoom) {
     EXPECT_EQ(planeBytes().most, before.most);
     for (void* m : large) givePlaneMemory(m, 2 * kBytes);
     for (int i = 10; i < 20; i++) givePlaneMemory(small[size_t(i)], kBytes);
+}
+
+// Linux moves pages: it need not clear others for a plane of another size.
+TEST(PlanePool, OtherSizesGiveTheirPages) {
+#if defined(AA_SANITIZED) || !defined(__linux__)
+    GTEST_SKIP() << "without the pool, or without a system that moves pages";
+#endif
+    constexpr size_t kLarge = size_t(101) << 18, kSmall = size_t(26) << 18;
+    EXPECT_THROW(takePlaneMemory(size_t(1) << 50), std::bad_alloc);  // after which nothing lies unused
+    void* const all = takePlaneMemory(kLarge);
+    std::fill_n(static_cast<unsigned char*>(all), kLarge, 7);
+    givePlaneMemory(all, kLarge);
+    const auto sevens = [](void* m, size_t bytes) {
+        const auto* c = static_cast<unsigned char*>(m);
+        return size_t(std::count(c, c + bytes, 7));
+    };
+    std::vector<void*> parts;
+    for (int turn = 0; turn < 3; turn++) {  // apart, and together once more
+        for (int i = 0; i < 4; i++) parts.push_back(takePlaneMemory(kSmall));
+        for (void* p : parts) {
+            EXPECT_GT(sevens(p, kSmall), kSmall * 9 / 10) << "pages of 2 MB, but for the rest of 0.5 MB";
+            std::fill_n(static_cast<unsigned char*>(p), kSmall, 7);
+            givePlaneMemory(p, kSmall);
+        }
+        parts.clear();
+        void* const whole = takePlaneMemory(kLarge);
+        EXPECT_GT(sevens(whole, kLarge), kLarge * 9 / 10);
+        std::fill_n(static_cast<unsigned char*>(whole), kLarge, 7);
+        givePlaneMemory(whole, kLarge);
+    }
+}
+
+TEST(PlanePool, MemoryThatThereIsNotIsNotCounted) {
+#ifdef AA_SANITIZED
+    GTEST_SKIP() << "without the pool";
+#endif
+    const PlaneBytes before = planeBytes();
+    EXPECT_THROW(takePlaneMemory(size_t(1) << 50), std::bad_alloc);
+    EXPECT_EQ(planeBytes().used, before.used);
+    EXPECT_EQ(planeBytes().most, before.most) << "or what lies unused would never be bounded again";
+    EXPECT_EQ(planeBytes().unused, 0) << "it may be what the next one lacks";
 }
 
 }  // namespace
