@@ -27,6 +27,7 @@ import tables
 from catalogue import (
     ANGLES, COSTS, DISPLAYED, OTHER_COSTS, PICTURES, SHOTS, STEP_METHODS, STEPS,
 )  # fmt: skip
+from chart import write_svg
 from figures import Run, number
 from page import Page
 from runs import run_methods
@@ -264,7 +265,7 @@ def run_experiments(
             pictures[key] = f"{key}.jpg"
         elif o.experiment.kind in _CURVES:
             title, first, series = _CURVES[o.experiment.kind](o)
-            tables.write_svg(docs / f"{key}.svg", series, title, "dB", first)
+            write_svg(docs / f"{key}.svg", series, title, "dB", first)
             charts[key] = f"{key}.svg"
     together(jobs, shop)
     return found, pictures, charts

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import outcomes
 from figures import setup, signed
@@ -392,62 +391,3 @@ def anchor(heading: str) -> str:
     """As the pages' headings are addressed."""
     kept = "".join(c for c in heading.lower() if c.isalnum() or c in " -_")
     return kept.replace(" ", "-")
-
-
-def write_svg(
-    path: Path, series: dict[str, list[float]], title: str, unit: str, first: int = 0,
-    labels: list[str] | None = None, along: str = "frame", low: float | None = None,
-) -> None:  # fmt: skip
-    """Curves over the frames, or over what has `labels`; infinite values leave a gap. `low`: where the axis begins."""
-    width, height, left, right, top, bottom = 860, 300, 56, 150, 28, 34
-    finite = [v for values in series.values() for v in values if math.isfinite(v)]
-    low, high = min(finite) if low is None else low, max(finite)
-    low, high = (low - 0.5, high + 0.5) if high - low < 1e-9 else (low, high)
-    count = max(len(v) for v in series.values())
-    x = lambda i: left + (width - left - right) * i / max(1, count - 1)  # noqa: E731
-    y = lambda v: height - bottom - (height - top - bottom) * (v - low) / (high - low)  # noqa: E731
-    colours = (
-        "#1f6fb2",
-        "#d1651a",
-        "#2e8b57",
-        "#9b4fb0",
-        "#7a7a7a",
-        "#b8860b",
-        "#c23b4a",
-        "#3aa6a6",
-    )
-    out = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="12">',
-        f'<rect width="{width}" height="{height}" fill="#fff"/><text x="{left}" y="18" font-size="13">{title}</text>',
-    ]
-    for k in range(5):
-        value = low + (high - low) * k / 4
-        out.append(f'<path d="M{left} {y(value):.1f}H{width - right}" stroke="#ddd"/>')
-        out.append(
-            f'<text x="{left - 6}" y="{y(value) + 4:.1f}" text-anchor="end" fill="#555">{value:.3g}</text>'
-        )
-    for k in range(0, count, max(1, count // 10)):
-        out.append(
-            f'<text x="{x(k):.1f}" y="{height - 16}" text-anchor="middle" fill="#555">{labels[k] if labels else k + first}</text>'
-        )
-    out.append(
-        f'<text x="{width - right}" y="{height - 3}" text-anchor="end" fill="#555">{along}; {unit}</text>'
-    )
-    for n, (name, values) in enumerate(series.items()):
-        colour, pen, path_data = colours[n % len(colours)], "M", []
-        for i, value in enumerate(values):
-            if math.isfinite(value):
-                path_data.append(f"{pen}{x(i):.1f} {y(value):.1f}")
-                pen = "L"
-            else:
-                pen = "M"
-        out.append(
-            f'<path d="{"".join(path_data)}" fill="none" stroke="{colour}" stroke-width="1.8"/>'
-        )
-        out.append(
-            f'<text x="{width - right + 8}" y="{top + 14 + 17 * n}" fill="{colour}">{name}</text>'
-        )
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_suffix(".tmp")
-    temporary.write_text("\n".join([*out, "</svg>", ""]), encoding="utf-8")
-    temporary.replace(path)

@@ -26,8 +26,8 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scenes/reproduce"))
 
 import measured  # noqa: E402
+from chart import write_svg  # noqa: E402
 from page import Page, code  # noqa: E402
-from tables import write_svg  # noqa: E402
 
 METHODS = ("noaa", "smaa1x:preset=HIGH", "karis", "master", "fsr2n")
 SIZES = ("480x270", "960x540", "1920x1080", "3840x2160", "7680x4320")

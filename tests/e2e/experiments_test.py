@@ -6,10 +6,13 @@ import json
 import math
 import sys
 from dataclasses import replace
+from xml.etree import ElementTree
+
 from program import PROGRAM, ROOT, ProgramTest, main
 
 sys.path.insert(0, str(ROOT / "scenes/reproduce"))
 
+import chart  # noqa: E402
 import experiments  # noqa: E402
 import outcomes  # noqa: E402
 import shots  # noqa: E402
@@ -322,10 +325,41 @@ class Outcomes(ProgramTest):
 
     def test_curves(self) -> None:
         path = self.folder / "a.svg"
-        tables.write_svg(path, {"A": [1.0, math.inf, 3.0], "B": [2.0, 2.0, 2.0]}, "T", "dB")
-        text = path.read_text()
-        self.assertEqual(text.count('<path d="M'), 7, "five lines, two curves")
-        self.assertNotIn("inf", text)
+        lines = {"low": [1.0, math.inf, 1.0], "A & B": [2.0, 2.0, 3.0], "near": [2.0, 2.0, 2.99]}
+        chart.write_svg(path, lines, "T < U", "dB")
+        drawn = [e for e in ElementTree.parse(path).getroot().iter() if e.tag.endswith("}text")]
+        self.assertEqual(
+            path.read_text().count('<path d="M'), 8, "five lines at 1, 1.5 ... 3, three curves"
+        )
+        self.assertNotIn("inf", path.read_text())
+        self.assertEqual(drawn[0].text, "T < U")
+        heights = {e.text: float(e.get("y")) for e in drawn if e.text in lines}
+        self.assertLess(
+            heights["A & B"] + chart.NAME_HEIGHT, heights["near"] + 0.11, "no name on another"
+        )
+        self.assertLess(heights["near"] + 100, heights["low"], "each where its line ends")
+
+    def test_ticks_are_round(self) -> None:
+        for (low, high), wanted in {
+            (0, 19.3): [0, 5, 10, 15],
+            (18.2, 24.9): [20, 22, 24],
+            (1, 3): [1, 1.5, 2, 2.5, 3],
+            (-0.5, 0.5): [-0.4, -0.2, 0, 0.2, 0.4],
+            (0, 66e-4): [0, 2e-3, 4e-3, 6e-3],
+        }.items():
+            found = chart.ticks(low, high)
+            self.assertEqual(len(found), len(wanted), f"{low} to {high}: {found}")
+            for a, b in zip(found, wanted):
+                self.assertAlmostEqual(a, b)
+
+    def test_names_stand_apart(self) -> None:
+        self.assertEqual(chart.apart([10, 50, 90], 15, 0, 100), [10, 50, 90])
+        self.assertEqual(chart.apart([50, 50, 50], 15, 0, 100), [35, 50, 65])
+        self.assertEqual(chart.apart([99, 100], 15, 0, 100), [85, 100])
+        self.assertEqual(chart.apart([1, 0], 15, 0, 100), [15, 0])
+        found = chart.apart([40, 44, 58, 61], 15, 0, 100)
+        for a, b in zip(found, found[1:]):
+            self.assertGreaterEqual(b - a, 15 - 1e-9)
 
 
 main()
