@@ -52,6 +52,8 @@ std::vector<AdviceGroup> adviceOf(const RunResults& run) {
                         step.alike.push_back(other);
                 std::stable_sort(step.alike.begin(), step.alike.end(),
                                  [&](size_t a, size_t b) { return mse(a) < mse(b); });
+                if (const auto c = compared(run, i, *noaa); c && !c->resolved)
+                    step.alike.insert(step.alike.begin(), *noaa);
                 g.steps.push_back(step);
                 best = i;
             }

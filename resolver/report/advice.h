@@ -7,11 +7,13 @@
 
 namespace aa {
 
-// A method that is nearer to the truth than every cheaper one: by as much as can be resolved, or by a decibel and more.
+// A method that is nearer to the truth than the one named before it, the first than noaa: by as much as can be
+// resolved, or by a decibel and more.
 struct AdviceStep {
     size_t method = 0;
     double nsPerPixel = 0;
-    std::vector<size_t> alike;  // cheaper ones that help, and are not told apart from it; the best first
+    // What it is not told apart from: noaa first, then the cheaper ones that help, the best of them first.
+    std::vector<size_t> alike;
 };
 // Methods by what they ask of a renderer.
 struct AdviceGroup {

@@ -67,17 +67,19 @@ std::string runLine(const RunResults& run) {
     return line;
 }
 
-std::string intervalInWords(const Comparison& c) {
-    const bool low = std::isfinite(c.gainLow), high = std::isfinite(c.gainHigh);
-    if (low && high) return signedDecibelNumber(c.gainLow) + " to " + signedDecibelNumber(c.gainHigh);
-    if (low) return "above " + signedDecibelNumber(c.gainLow);
-    if (high) return "below " + signedDecibelNumber(c.gainHigh);
+std::string intervalInWords(double lowDb, double highDb) {
+    const bool low = std::isfinite(lowDb), high = std::isfinite(highDb);
+    if (low && high) return signedDecibelNumber(lowDb) + " to " + signedDecibelNumber(highDb);
+    if (low) return "above " + signedDecibelNumber(lowDb);
+    if (high) return "below " + signedDecibelNumber(highDb);
     return "no interval";
 }
-std::string intervalInBrackets(const Comparison& c) {
-    const bool known = std::isfinite(c.gainLow) || std::isfinite(c.gainHigh);
-    return (known ? "(95 %: " : "(") + intervalInWords(c) + ")";
+std::string intervalInBrackets(double lowDb, double highDb) {
+    const bool known = std::isfinite(lowDb) || std::isfinite(highDb);
+    return (known ? "(95 %: " : "(") + intervalInWords(lowDb, highDb) + ")";
 }
+std::string intervalInWords(const Comparison& c) { return intervalInWords(c.gainLow, c.gainHigh); }
+std::string intervalInBrackets(const Comparison& c) { return intervalInBrackets(c.gainLow, c.gainHigh); }
 
 std::string busyInWords(const RunResults& run) {
     if (!run.load || !run.load->busy()) return {};

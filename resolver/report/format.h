@@ -22,8 +22,11 @@ std::string runLine(const RunResults& run);
 // "a, b and c"; of more than `most` the first ones "and 4 more".
 std::string enumerated(std::vector<std::string> parts, size_t most = SIZE_MAX);
 // The 95 % interval of a gain: "+0.12 to +0.34", "above +0.12" or "below +0.34" where it has one end, "no interval".
+std::string intervalInWords(double lowDb, double highDb);
 std::string intervalInWords(const Comparison& c);
-std::string intervalInBrackets(const Comparison& c);  // "(95 %: +0.12 to +0.34)", "(no interval)"
+// "(95 %: +0.12 to +0.34)", "(no interval)"
+std::string intervalInBrackets(double lowDb, double highDb);
+std::string intervalInBrackets(const Comparison& c);
 // What was measured of the machine while methods were timed, where it was too busy for their times to be trusted.
 std::string busyInWords(const RunResults& run);
 // What is not measured since it would have taken too long, and how to ask for it.

@@ -119,6 +119,15 @@ TEST(Advice, NamesTheBestOfEveryBudgetAndInput) {
         runOf({method("noaa", 1e-3, 1e-5), method("late", 4.0e-4, 9e-5), method("early", 4.1e-4, 6e-5)}, 0, 5e-5);
     ASSERT_EQ(adviceOf(near).size(), 1u);
     EXPECT_EQ(adviceOf(near)[0].steps.size(), 1u) << "the dearer one is not resolved better";
+    EXPECT_TRUE(adviceOf(near)[0].steps[0].alike.empty()) << "it is resolved better than noaa";
+    // By a decibel and more, though unresolved: noaa is named first among those it is not told from.
+    RunResults unsure =
+        runOf({method("noaa", 1e-3, 1e-5), method("first", 7e-4, 2e-5), method("second", 5e-4, 3e-5)}, 0);
+    for (PairResult& p : unsure.pairs) p.comparison.resolved = false, p.comparison.why = Unresolved::varies;
+    const auto told = adviceInWords(unsure);
+    EXPECT_NE(told[0].find("first, +1.55 dB (95 %: +1.55 to +1.55), not told apart from noaa;"), std::string::npos)
+        << told[0];
+    EXPECT_NE(told[0].find(", not told apart from noaa and first."), std::string::npos) << told[0];
 }
 TEST(Caption, SharpeningCanGainAndCanBeAParameter) {
     const RunResults gains = runOf({method("uncharted", 1e-4, 1e-5), method("unchartedNorm", 2e-4, 1e-5)}, 0);

@@ -24,6 +24,15 @@ json comparisonJson(const Comparison& c) {
 json intervalJson(const std::optional<std::pair<double, double>>& i) {
     return i ? json{jsonNumber(i->first), jsonNumber(i->second)} : json(nullptr);
 }
+json meanJson(const std::optional<MeanGain>& m) {
+    if (!m) return nullptr;
+    json j = {{"gain", jsonNumber(m->gainDb)},
+              {"low", jsonNumber(m->low)},
+              {"high", jsonNumber(m->high)},
+              {"resolved", m->resolved}};
+    if (m->why) j["why"] = nameOf(*m->why);
+    return j;
+}
 json maybeJson(const std::optional<double>& v) { return v ? jsonNumber(*v) : json(nullptr); }
 
 // Figures of one method in one run, by the names of the program's table and of the JSON of results.
@@ -49,11 +58,10 @@ json rowJson(const std::vector<NamedRun>& runs, const SummaryRow& row, const std
               {"family", row.family},
               {"scenes", row.scenes},
               {"infinite", row.infinite},
-              {"mean", maybeJson(row.meanGainDb)},
+              {"mean", meanJson(row.mean)},
               {"rank", maybeJson(row.meanRank)},
               {"least", jsonNumber(row.least)},
               {"most", jsonNumber(row.most)},
-              {"ofThese", intervalJson(row.ofThese)},
               {"ofSuch", intervalJson(row.ofSuch)},
               {"cells", json::array()}};
     for (size_t k = 0; k < runs.size(); k++)
@@ -81,9 +89,6 @@ std::string reportOf(const NamedRun& run, const std::filesystem::path& page) {
         .lexically_relative(std::filesystem::weakly_canonical(page).parent_path())
         .generic_string();
 }
-std::string interval(const std::pair<double, double>& i) {
-    return signedDecibelNumber(i.first) + " to " + signedDecibelNumber(i.second);
-}
 }  // namespace
 
 std::vector<std::string> summaryInWords(const std::vector<NamedRun>& runs, const Summary& summary,
@@ -91,16 +96,20 @@ std::vector<std::string> summaryInWords(const std::vector<NamedRun>& runs, const
     std::vector<std::string> words;
     std::vector<const SummaryRow*> known;
     for (const SummaryRow& row : summary.rows)
-        if (row.meanGainDb) known.push_back(&row);
+        if (row.mean) known.push_back(&row);
     if (known.empty()) {
         words.push_back("No run has both ground truth and noaa, without which gains are unknown.");
     } else {
         const SummaryRow& best = *known[0];
         std::string s =
-            best.text + " gains most over no anti-aliasing: " + signedDecibelNumber(*best.meanGainDb) + " dB";
+            best.text + " gains most over no anti-aliasing: " + signedDecibelNumber(best.mean->gainDb) + " dB";
         if (best.scenes > 1) s += " in the mean of " + std::to_string(best.scenes) + " scenes";
-        if (best.ofThese) s += " (95 %: " + interval(*best.ofThese) + ")";
-        words.push_back(s + ".");
+        words.push_back(s + " " + intervalInBrackets(best.mean->low, best.mean->high) + ".");
+        std::string exact;
+        for (const SummaryRow& row : summary.rows)
+            if (row.infinite > 0) exact += (exact.empty() ? "" : ", ") + row.text;
+        if (!exact.empty())
+            words.push_back("Identical to the truth in a scene, where the gain has no number: " + exact + ".");
         std::string uneven;
         for (const SummaryRow* row : known)
             if (row->least < 0 && row->most > 0)

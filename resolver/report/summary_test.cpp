@@ -50,24 +50,26 @@ TEST(Summary, AveragesDifferencesInDecibels) {
     // About 3.0 and 10 dB; the scene without error is counted apart, and no mean becomes infinite.
     EXPECT_EQ(fxaa.scenes, 2);
     EXPECT_EQ(fxaa.infinite, 1);
-    EXPECT_NEAR(*fxaa.meanGainDb, (3.01 + 10) / 2, 0.3);
-    EXPECT_DOUBLE_EQ(*fxaa.meanGainDb, (fxaa.cells[0]->gain->gainDb + fxaa.cells[1]->gain->gainDb) / 2);
+    EXPECT_NEAR(fxaa.mean->gainDb, (3.01 + 10) / 2, 0.3);
+    EXPECT_DOUBLE_EQ(fxaa.mean->gainDb, (fxaa.cells[0]->gain->gainDb + fxaa.cells[1]->gain->gainDb) / 2);
     EXPECT_EQ(fxaa.cells[2]->gain->gainDb, kInf);
     EXPECT_NEAR(fxaa.least, 3.01, 0.3);
     EXPECT_NEAR(fxaa.most, 10, 0.3);
     EXPECT_EQ(fxaa.cells[0]->rank, 2);
     EXPECT_EQ(*fxaa.meanRank, (2 + 1 + 1) / 3.0);
     // The interval of a mean of two is narrower than the wider of its parts, and about it.
-    ASSERT_TRUE(fxaa.ofThese);
+    ASSERT_TRUE(fxaa.mean);
     const auto half = [](const Comparison& c) { return (c.gainHigh - c.gainLow) / 2; };
     const double expected = std::hypot(half(*fxaa.cells[0]->gain), half(*fxaa.cells[1]->gain)) / 2;
-    EXPECT_NEAR((fxaa.ofThese->second - fxaa.ofThese->first) / 2, expected, 0.05 * expected);
+    EXPECT_NEAR((fxaa.mean->high - fxaa.mean->low) / 2, expected, 0.05 * expected);
     EXPECT_FALSE(fxaa.ofSuch) << "two scenes say nothing of others";
-    EXPECT_FALSE(rowOf(s, "noaa").meanGainDb);
+    EXPECT_FALSE(rowOf(s, "noaa").mean);
     EXPECT_EQ(rowOf(s, "late").cells[0], std::nullopt);
     EXPECT_EQ(s.rows.front().text, "fxaa311") << "in all three scenes, while dear is in two";
     EXPECT_EQ(s.rows.back().text, "noaa");
-    EXPECT_NE(summaryInWords(runs, s, {})[0].find("fxaa311 gains most over no anti-aliasing: +"), std::string::npos);
+    const auto words = summaryInWords(runs, s, {});
+    EXPECT_NE(words[0].find("fxaa311 gains most over no anti-aliasing: +"), std::string::npos);
+    EXPECT_EQ(words[1], "Identical to the truth in a scene, where the gain has no number: fxaa311.");
 }
 TEST(Summary, ScenesLikeTheseFromFourUp) {
     std::vector<std::pair<std::string, RunResults>> four;
@@ -77,7 +79,7 @@ TEST(Summary, ScenesLikeTheseFromFourUp) {
                           runOf("scene" + std::to_string(g), {{"noaa", 1e-3}, {"m", 1e-3 * std::pow(10, -g / 10)}}, 0));
     const Summary s = summarise(namedRuns(four));
     const SummaryRow& m = rowOf(s, "m");
-    EXPECT_NEAR(*m.meanGainDb, 4, 1e-9);
+    EXPECT_NEAR(m.mean->gainDb, 4, 1e-9);
     ASSERT_TRUE(m.ofSuch);
     // t(3) = 3.182, standard deviation 2.1602
     EXPECT_NEAR(m.ofSuch->second - 4, 3.182 * 2.160247 / 2, 1e-4);
@@ -93,7 +95,7 @@ TEST(Summary, ASceneCountsOnceAndItsRunsAreHeldAgainstEachOther) {
     EXPECT_EQ(runs[1].name, "pipe (run) 2");
     const Summary s = summarise(runs);
     EXPECT_EQ(rowOf(s, "a").scenes, 2);
-    EXPECT_DOUBLE_EQ(*rowOf(s, "a").meanGainDb,
+    EXPECT_DOUBLE_EQ(rowOf(s, "a").mean->gainDb,
                      (rowOf(s, "a").cells[1]->gain->gainDb + rowOf(s, "a").cells[2]->gain->gainDb) / 2);
     EXPECT_FALSE(s.differences.empty());
     const auto against = againstEachOther(runs);
@@ -113,6 +115,46 @@ TEST(Summary, ASceneCountsOnceAndItsRunsAreHeldAgainstEachOther) {
     // Other frames are other pictures.
     after.methods[0].frames[0].frame = 2;
     EXPECT_TRUE(againstEachOther(namedRuns({{"a", before}, {"b", after}})).empty());
+}
+// The comparison of a method with noaa, as a run gives it.
+void setGain(RunResults& run, const std::string& text, double gain, double low, double high) {
+    const size_t method = *indexOf(run, text), noaa = *noaaOf(run);
+    for (PairResult& p : run.pairs)
+        if (p.first == noaa && p.second == method)
+            p.comparison.gainDb = -gain, p.comparison.gainLow = -high, p.comparison.gainHigh = -low,
+            p.comparison.resolved = low > 0 || high < 0, p.comparison.why = Unresolved::no;
+}
+TEST(Summary, AnIntervalWithOneEndIsShownAsInItsRun) {
+    RunResults one = runOf("one", {{"noaa", 1e-3}, {"bad", 1e-2}}),
+               other = runOf("other", {{"noaa", 1e-3}, {"bad", 2e-3}});
+    setGain(one, "bad", -11.39, -kInf, -7.25);
+    const SummaryRow alone = rowOf(summarise(namedRuns({{"a", one}})), "bad");
+    EXPECT_EQ(alone.mean->high, -7.25);
+    EXPECT_EQ(alone.mean->low, -kInf);
+    EXPECT_TRUE(alone.mean->resolved);
+    const auto runs = namedRuns({{"a", one}});
+    EXPECT_NE(summaryInWords(runs, summarise(runs), {})[0].find("-11.39 dB (95 %: below -7.25)."), std::string::npos);
+    EXPECT_NE(summaryHtml(runs).find(R"("mean":{"gain":-11.39,"low":"-Inf","high":-7.25,"resolved":true,"why":"no"})"),
+              std::string::npos);
+    setGain(other, "bad", -3, -4, -2);
+    const SummaryRow both = rowOf(summarise(namedRuns({{"a", one}, {"b", other}})), "bad");
+    EXPECT_EQ(both.mean->low, -kInf);
+    EXPECT_NEAR(both.mean->high, (-11.39 - 3 + std::hypot(11.39 - 7.25, 1)) / 2, 1e-12);
+    EXPECT_TRUE(both.mean->resolved);
+    EXPECT_FALSE(both.mean->why);
+    // Of one scene the run's word counts, not whether 0 lies between the ends.
+    one.pairs[0].comparison.resolved = false, one.pairs[0].comparison.why = Unresolved::truthNoise;
+    EXPECT_FALSE(rowOf(summarise(namedRuns({{"a", one}})), "bad").mean->resolved);
+}
+TEST(Summary, ALaterRunWithoutNoaaTakesNoGainAway) {
+    const auto runs = namedRuns({{"a", runOf("pipe", {{"noaa", 1e-3}, {"best", 1e-4}, {"next", 3e-4}})},
+                                 {"b", runOf("pipe", {{"best", 1e-4}, {"other", 2e-4}})}});
+    const Summary s = summarise(runs);
+    EXPECT_NEAR(rowOf(s, "best").mean->gainDb, 10, 0.1);
+    EXPECT_EQ(rowOf(s, "best").scenes, 1);
+    EXPECT_EQ(*rowOf(s, "best").meanRank, 1);
+    EXPECT_EQ(*rowOf(s, "next").meanRank, 2);
+    EXPECT_EQ(summaryInWords(runs, s, {})[0].find("best gains most"), 0u);
 }
 TEST(Summary, LinksToTheReportsThatAreThere) {
     namespace fs = std::filesystem;

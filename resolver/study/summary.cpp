@@ -38,7 +38,12 @@ std::vector<std::string> differencesOf(const RunResults& a, const RunResults& b)
 
 // The mean of quantities with intervals of their own that need not be symmetric: deviations to either side add in
 // squares [Zou 2008].
-std::optional<std::pair<double, double>> meanInterval(const std::vector<Comparison>& gains) {
+std::optional<MeanGain> meanOf(const std::vector<Comparison>& gains) {
+    if (gains.empty()) return {};
+    if (gains.size() == 1) {
+        const Comparison& c = gains[0];
+        return MeanGain{c.gainDb, c.gainLow, c.gainHigh, c.resolved, c.why};
+    }
     double sum = 0, below = 0, above = 0;
     for (const Comparison& c : gains) {
         sum += c.gainDb;
@@ -46,8 +51,9 @@ std::optional<std::pair<double, double>> meanInterval(const std::vector<Comparis
         above += (c.gainHigh - c.gainDb) * (c.gainHigh - c.gainDb);
     }
     const double n = double(gains.size());
-    if (gains.empty() || !std::isfinite(below) || !std::isfinite(above)) return {};
-    return std::pair{(sum - std::sqrt(below)) / n, (sum + std::sqrt(above)) / n};
+    MeanGain mean{sum / n, (sum - std::sqrt(below)) / n, (sum + std::sqrt(above)) / n};
+    mean.resolved = mean.low > 0 || mean.high < 0;
+    return mean;
 }
 std::optional<std::pair<double, double>> overScenes(const std::vector<Comparison>& gains) {
     const size_t n = gains.size();
@@ -57,6 +63,15 @@ std::optional<std::pair<double, double>> overScenes(const std::vector<Comparison
     for (const Comparison& c : gains) squares += (c.gainDb - mean) * (c.gainDb - mean);
     const double half = student975(n - 1) * std::sqrt(squares / double(n - 1) / double(n));
     return std::pair{mean - half, mean + half};
+}
+// Whether run k says something of a method, and no later run of its scene does: one without noaa knows no gains.
+template <class Says>
+bool isLastOfScene(const std::vector<NamedRun>& runs, const SummaryRow& row, size_t k, Says says) {
+    if (!row.cells[k] || !says(*row.cells[k])) return false;
+    for (size_t later = k + 1; later < runs.size(); later++)
+        if (sameScene(runs[later].results, runs[k].results) && row.cells[later] && says(*row.cells[later]))
+            return false;
+    return true;
 }
 }  // namespace
 
@@ -108,13 +123,11 @@ Summary summarise(const std::vector<NamedRun>& runs) {
         std::vector<Comparison> gains;
         double rank = 0;
         int ranks = 0;
+        const auto hasRank = [](const SummaryCell& c) { return c.rank > 0; };
+        const auto hasGain = [](const SummaryCell& c) { return c.gain.has_value(); };
         for (size_t k = 0; k < runs.size(); k++) {
-            const bool again = std::any_of(runs.begin() + ptrdiff_t(k) + 1, runs.end(), [&](const NamedRun& later) {
-                return sameScene(later.results, runs[k].results) && indexOf(later.results, row.text);
-            });
-            if (again || !row.cells[k]) continue;
-            if (row.cells[k]->rank > 0) rank += row.cells[k]->rank, ranks++;
-            if (!row.cells[k]->gain) continue;
+            if (isLastOfScene(runs, row, k, hasRank)) rank += row.cells[k]->rank, ranks++;
+            if (!isLastOfScene(runs, row, k, hasGain)) continue;
             if (std::isfinite(row.cells[k]->gain->gainDb))
                 gains.push_back(*row.cells[k]->gain);
             else
@@ -123,22 +136,18 @@ Summary summarise(const std::vector<NamedRun>& runs) {
         if (ranks) row.meanRank = rank / ranks;
         row.scenes = int(gains.size());
         if (gains.empty()) continue;
-        double sum = 0;
         row.least = row.most = gains[0].gainDb;
-        for (const Comparison& c : gains) {
-            sum += c.gainDb;
+        for (const Comparison& c : gains)
             row.least = std::min(row.least, c.gainDb), row.most = std::max(row.most, c.gainDb);
-        }
-        row.meanGainDb = sum / double(gains.size());
-        row.ofThese = meanInterval(gains);
+        row.mean = meanOf(gains);
         row.ofSuch = overScenes(gains);
     }
     std::stable_sort(s.rows.begin(), s.rows.end(), [](const SummaryRow& a, const SummaryRow& b) {
-        const bool known = a.meanGainDb.has_value();
-        if (known != b.meanGainDb.has_value()) return known;
+        const bool known = a.mean.has_value();
+        if (known != b.mean.has_value()) return known;
         const int scenesA = a.scenes + a.infinite, scenesB = b.scenes + b.infinite;
         if (scenesA != scenesB) return scenesA > scenesB;
-        return known && *a.meanGainDb > *b.meanGainDb;
+        return known && a.mean->gainDb > b.mean->gainDb;
     });
     std::set<std::string> told;
     for (size_t k = 1; k < runs.size(); k++)

@@ -26,16 +26,24 @@ struct SummaryCell {
     int rank = 0;                      // by MSE in that run, 1 is nearest; 0 without truth
     std::optional<Comparison> gain{};  // over noaa; none of noaa itself and without noaa
 };
+// A mean gain, in dB, with its 95 % interval over these scenes, from the intervals of each [Zou 2008]. An end that one
+// of them leaves open is open here, too: infinite.
+struct MeanGain {
+    double gainDb = 0, low = 0, high = 0;
+    bool resolved = false;            // the interval excludes zero; of one scene what its run says, so is
+    std::optional<Unresolved> why{};  // this, which several scenes have not
+};
 struct SummaryRow {
     std::string text, id, title, family;
     std::vector<std::optional<SummaryCell>> cells{};  // one per run
-    // Over the scenes in which the gain is known and finite, each counted once: of several runs of a scene the last.
+    // Over the scenes in which the gain is known and finite, each counted once: of several runs of a scene the last in
+    // which it is known.
     int scenes = 0, infinite = 0;  // infinite: scenes left out since the method is identical to the truth there
-    std::optional<double> meanGainDb{}, meanRank{};
+    std::optional<MeanGain> mean{};
+    std::optional<double> meanRank{};
     double least = 0, most = 0;  // of the gains
-    // 95 % intervals of the mean: over these scenes, from the intervals of each [Zou 2008]; over scenes like these, by
-    // Student's t, from 4 scenes up.
-    std::optional<std::pair<double, double>> ofThese{}, ofSuch{};
+    // 95 % interval of the mean over scenes like these, by Student's t, from 4 scenes up.
+    std::optional<std::pair<double, double>> ofSuch{};
 };
 struct Summary {
     std::vector<SummaryRow> rows;          // best mean gain first, those in fewer scenes after those in more, noaa last

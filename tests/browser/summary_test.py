@@ -95,6 +95,22 @@ class SummaryPage(PageTest):
             self.assertEqual(told["meanTones"][method] == "", grey, method)
             if told["sceneTones"].get(method) is not None and method != "smaa1x:preset=LOW":
                 self.assertEqual(told["meanTones"][method], told["sceneTones"][method], method)
+        # An interval with one end is shown and coloured as one with two.
+        open_ended = '{"gain":-11.39,"low":"-Inf","high":-7.25,"resolved":true,"why":"no"}'
+        text, found = re.subn(
+            r'("text":"fxaa311"[^{]*"mean":){[^}]*}',
+            rf"\1{open_ended}",
+            visited.read_text(),
+            count=1,
+        )
+        self.assertEqual(found, 1)
+        visited.write_text(text)
+        told = self.collected(self.open(visited, "--window-size=1400,900"))
+        row = next(row for row in told["mean"] if row.startswith("fxaa311"))
+        self.assertIn("−11.39\nbelow −7.25", row)
+        self.assertNotIn("not resolved", row)
+        self.assertEqual(told["meanTones"]["fxaa311"], "worse")
+        self.assertFalse(told["bars"][told["chart"].index("fxaa311")])
 
     def holds(self, told: dict, results: list[dict]) -> None:
         self.assertEqual(told["scenes"][1:], ["moving (moving)", "half_planes", "moving (again)"])

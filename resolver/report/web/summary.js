@@ -10,11 +10,11 @@
   // What gains are over has none; among them it stands where they turn negative, by 0 dB.
   const isBaseline = (r) => r.id === "noaa" && r.mean == null;
   const scenesOf = (r) => (isBaseline(r) ? new Set(runs.filter((_, k) => r.cells[k]?.rank).map((run) => run.shot)).size : r.scenes);
-  const gainOf = (r) => (isBaseline(r) ? 0 : value(r.mean));
+  const gainOf = (r) => (isBaseline(r) ? 0 : value(r.mean?.gain));
   const all = rows.map((_, i) => i).filter((i) => !isBaseline(rows[i]));
   const baseline = rows.findIndex(isBaseline);
   if (baseline >= 0) {
-    const after = all.findIndex((i) => rows[i].mean == null || value(rows[i].mean) < 0 || rows[i].scenes + rows[i].infinite < scenesOf(rows[baseline]));
+    const after = all.findIndex((i) => rows[i].mean == null || value(rows[i].mean.gain) < 0 || rows[i].scenes + rows[i].infinite < scenesOf(rows[baseline]));
     all.splice(after < 0 ? all.length : after, 0, baseline);
   }
 
@@ -29,8 +29,8 @@
   const averaged = all.filter((i) => rows[i].mean != null);
   const mean = sortableTable($("mean"), all, [
     { title: oneScene ? "Gain over noaa, dB" : "Mean gain over noaa, dB", better: "high", about: "PSNR less that of noaa, which has no anti-aliasing; below it the 95 % interval. Coloured where it is resolved",
-      get: gainOf, show: (r) => (isBaseline(r) ? "0" : r.mean == null ? "–" : signed(r.mean)), tone: (r) => (isBaseline(r) ? "" : gainTone(r.mean, resolved(r.ofThese))),
-      small: (r) => (isBaseline(r) ? "what gains are over" : r.mean == null ? null : r.ofThese ? [range(r.ofThese), resolved(r.ofThese) ? null : "not resolved"] : "not resolved: no interval") },
+      get: gainOf, show: (r) => (isBaseline(r) ? "0" : r.mean == null ? "–" : signed(r.mean.gain)), tone: (r) => gainTone(r.mean?.gain, r.mean?.resolved),
+      small: (r) => (isBaseline(r) ? "what gains are over" : doubt(r.mean)) },
     { title: "Scenes like these, dB", better: "high", about: "interval of the mean gain over other scenes of the kind, by how the gains scatter from scene to scene; from four scenes up",
       get: (r) => (r.ofSuch ? value(r.ofSuch[0]) : null), show: (r) => range(r.ofSuch) ?? "–", small: (r) => (r.ofSuch && !resolved(r.ofSuch) ? "not resolved" : null) },
     !oneScene && { title: "Worst and best scene, dB", about: "the least and the largest gain", better: "high", get: (r) => (r.scenes ? value(r.least) : null), show: (r) => (r.scenes ? `${signed(r.least)} to ${signed(r.most)}` : "–") },
@@ -42,8 +42,8 @@
   $("mean-title").textContent = oneScene ? "Gain over no anti-aliasing" : "Mean over the scenes";
   $("scenes-title").textContent = oneScene ? "Run by run" : "Scene by scene";
   $("gains-title").textContent = (oneScene ? "Gain" : "Mean gain") + " over no anti-aliasing, dB";
-  $("mean-note").textContent = oneScene ? "All runs are of one scene: of a method that several of them have the last counts, and nothing is said of other scenes." : "Scenes differ in how hard they are, so differences to no anti-aliasing are averaged, in dB, and never PSNR itself. Under the mean: its 95 % interval over these scenes, from the intervals of each. " +
-    (mean.some((c) => c.title.startsWith("Scenes like")) ? "“Scenes like these”: the interval for other scenes of the kind, by how the gains scatter from scene to scene. " : "From four scenes up a second interval says what other scenes of the kind would give. ") + "A scene in which a method equals the truth has an infinite gain and is counted apart. Of several runs of one scene the last counts. Time: median over the runs.";
+  $("mean-note").textContent = oneScene ? "All runs are of one scene: of a method that several of them have the last counts that knows its gain, and nothing is said of other scenes." : "Scenes differ in how hard they are, so differences to no anti-aliasing are averaged, in dB, and never PSNR itself. Under the mean: its 95 % interval over these scenes, from the intervals of each. " +
+    (mean.some((c) => c.title.startsWith("Scenes like")) ? "“Scenes like these”: the interval for other scenes of the kind, by how the gains scatter from scene to scene. " : "From four scenes up a second interval says what other scenes of the kind would give. ") + "A scene in which a method equals the truth has an infinite gain and is counted apart. Of several runs of one scene the last counts that knows the gain. Time: median over the runs.";
   const looks = methodLooks(rows.map((r) => r.id));
   let chart = null;
   const drawChart = () => {
@@ -51,10 +51,10 @@
     dressCharts();
     $("gains").closest("figure").hidden = !averaged.length;
     if (!averaged.length) return;
-    chart = barChart($("gains"), { labels: averaged.map((i) => rows[i].text), values: averaged.map((i) => value(rows[i].mean)),
-      colours: averaged.map((i) => (resolved(rows[i].ofThese) ? looks[i].colour : css("--quiet"))), axisTitle: "dB",
-      tip: (v, k) => `${signed(v)} dB, ${range(rows[averaged[k]].ofThese) ?? "no interval"}`,
-      intervalOf: (k) => rows[averaged[k]].ofThese?.map(value) ?? null });
+    chart = barChart($("gains"), { labels: averaged.map((i) => rows[i].text), values: averaged.map((i) => value(rows[i].mean.gain)),
+      colours: averaged.map((i) => (rows[i].mean.resolved ? looks[i].colour : css("--quiet"))), axisTitle: "dB",
+      tip: (v, k) => [`${signed(v)} dB`, ...doubt(rows[averaged[k]].mean).filter(Boolean)].join(", "),
+      intervalOf: (k) => { const m = rows[averaged[k]].mean, ends = [m.low, m.high].map(value); return ends.some(Number.isFinite) ? ends : null; } });
   };
   drawChart();
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", drawChart);
