@@ -36,7 +36,13 @@ class Difference:
 
     def __str__(self) -> str:
         interval = f"{signed(self.low)} to {signed(self.high)}"
-        return f"{signed(self.db)} dB ({interval})" + ("" if self.resolved else ", not resolved")
+        return f"{signed(self.db)} dB ({interval})" + ("" if self.resolved else f", {self.doubt}")
+
+    @property
+    def doubt(self) -> str:
+        """Of one that is not resolved: chance, as its interval shows, or the truth's noise, which the interval lacks."""
+        within_noise = self.low * self.high > 0
+        return "not resolved" + (" beside the truth's noise" if within_noise else "")
 
     def __neg__(self) -> "Difference":
         return Difference(-self.db, -self.high, -self.low, self.resolved)
@@ -158,13 +164,11 @@ def kendall_tau(first: list[float], second: list[float]) -> float:
 
 
 def verdict(difference: Difference | None, better: str = "better", worse: str = "worse") -> str:
-    """The figures' answer to: is the first one better than the second?"""
+    """The figures' answer to: is the first one better than the second? All figures count along the word beside them."""
     if difference is None:
         return "**Cannot be said**: no such figure in this shot."
-    interval = f"95 %: {signed(difference.low)} to {signed(difference.high)}"
+    along, word = (difference, better) if difference.db >= 0 else (-difference, worse)
+    size = f"{signed(along.db).lstrip('+')} dB {word} (95 %: {signed(along.low)} to {signed(along.high)})"
     if not difference.resolved:
-        return f"**Not resolved**: {signed(difference.db)} dB ({interval})."
-    size = f"{abs(difference.db):.2f} dB"
-    if difference.db > 0:
-        return f"**Yes**, {size} {better} ({interval})."
-    return f"**No**, {size} {worse} ({interval})."
+        return f"**{difference.doubt.capitalize()}**: {size}."
+    return f"**{'Yes' if difference.db > 0 else 'No'}**, {size}."

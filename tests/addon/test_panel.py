@@ -401,7 +401,10 @@ def test_results_are_found_on_disk() -> None:
     with open(os.path.join(results, "results.json"), "w", encoding="utf-8") as file:
         json.dump(content, file)
     found = watch.look_now(scene).outcome
-    assert found.trouble == "not finished: 3 of 16 frames; press Compare again" and not found.best
+    assert (
+        found.trouble == "not finished: 3 of 16 frames; press Export and Compare again"
+        and not found.best
+    )
     content["run"]["complete"] = True
     with open(os.path.join(results, "results.json"), "w", encoding="utf-8") as file:
         json.dump(content, file)

@@ -24,8 +24,22 @@ class Reproduce(ProgramTest):
     def test_verdicts(self) -> None:
         gain = Difference(1.5, 1.0, 2.0, True)
         self.assertEqual(verdict(gain), "**Yes**, 1.50 dB better (95 %: +1.00 to +2.00).")
-        self.assertEqual(verdict(-gain), "**No**, 1.50 dB worse (95 %: −2.00 to −1.00).")
-        self.assertIn("**Not resolved**: +0.10 dB", verdict(Difference(0.1, -0.1, 0.3, False)))
+        self.assertEqual(verdict(-gain), "**No**, 1.50 dB worse (95 %: +1.00 to +2.00).")
+        self.assertEqual(
+            verdict(-gain, "worse", "better"), "**No**, 1.50 dB better (95 %: +1.00 to +2.00)."
+        )
+        unsure = Difference(0.1, -0.1, 0.3, False)
+        self.assertEqual(
+            verdict(unsure), "**Not resolved**: 0.10 dB better (95 %: −0.10 to +0.30)."
+        )
+        self.assertEqual(
+            verdict(-unsure), "**Not resolved**: 0.10 dB worse (95 %: −0.10 to +0.30)."
+        )
+        hidden = Difference(0.04, 0.03, 0.05, False)
+        self.assertIn("**Not resolved beside the truth's noise**: 0.04 dB better", verdict(hidden))
+        self.assertEqual(
+            str(hidden), "+0.04 dB (+0.03 to +0.05), not resolved beside the truth's noise"
+        )
         self.assertIn("Cannot be said", verdict(None))
         self.assertEqual(
             [signed(v) for v in (1.234, -1.234, 0.0, -0.004)], ["+1.23", "−1.23", "0.00", "−0.004"]

@@ -27,7 +27,9 @@ say() { echo "[$(($(date +%s) - started)) s] $*" >&2; }
 # The analytic shots hold every pass; the pictures are small, because every pixel is compared.
 say "making frames"
 for scene in half_planes thin_lines moving; do
-    "$program" synth $scene -o "$work/$scene" --size 240x135 --frames 16 --subsamples d3d8 --subsample-color -q
+    for pattern in d3d8 d3d2; do
+        "$program" synth $scene -o "$work/$pattern/$scene" --size 240x135 --frames 16 --subsamples $pattern --subsample-color -q
+    done
 done
 "$program" synth half_planes -o "$work/still" --size 240x135 --frames 64 --subsamples d3d2 --subsample-color -q
 {
@@ -40,7 +42,10 @@ done
         for scene in half_planes thin_lines moving; do
             say "comparing the shaders ($1) with the kernels ($2) on $scene"
             printf '%s' "$comma"
-            "$program" verify "$work/$scene" --device "$device" --gpu-precision $1 --precision $2 --json -q
+            "$program" verify "$work/d3d8/$scene" --device "$device" --gpu-precision $1 --precision $2 --json -q
+            printf ,
+            # These are made for two sub-samples.
+            "$program" verify "$work/d3d2/$scene" -m smaaS2x,smaa4x --device "$device" --gpu-precision $1 --precision $2 --json -q
             comma=,
         done
         printf ']'

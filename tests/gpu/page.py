@@ -42,7 +42,7 @@ def accuracy(measured: dict) -> list[str]:
         by_method(measured[k]) for k in ("exact-fast", "exact-double", "fast-double")
     )
     device = measured["exact-fast"][0]["device"]
-    scenes = ", ".join(s["shot"] for s in measured["exact-fast"])
+    scenes = ", ".join(dict.fromkeys(s["shot"] for s in measured["exact-fast"]))
     lines = [
         "## Accuracy",
         "",

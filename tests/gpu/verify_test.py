@@ -23,6 +23,21 @@ def study_presets() -> list[str]:
 
 
 class Verify(GpuTest):
+    def test_files_of_every_method(self) -> None:
+        """The table of shaders/README.md."""
+        timed = subprocess.run(
+            [PROGRAM, "bench", "-m", "all", "--device", "vulkan", "--size", "32x24", "--frames", "2", "--runs", "4", "--json"],
+            capture_output=True, text=True, check=True,
+        )  # fmt: skip
+        files: dict[tuple[str, ...], list[str]] = {}
+        for row in json.loads(timed.stdout)["rows"]:
+            passes = tuple(dict.fromkeys(f"{p['shader']}.comp" for p in row["passes"]))
+            files.setdefault(passes, []).append(row["method"])
+        listed = lambda words: ", ".join(f"`{w}`" for w in words)  # noqa: E731
+        page = (ROOT / "shaders/README.md").read_text(encoding="utf-8")
+        rows = re.findall(r"^\| `.*`.*\.comp` \|$", page, re.MULTILINE)
+        self.assertEqual(rows, [f"| {listed(m)} | {listed(f)} |" for f, m in files.items()])
+
     def test_shots(self) -> None:
         for scene, frames in (("half_planes", 4), ("thin_lines", 4), ("moving", 8)):
             shot = self.folder / scene

@@ -63,7 +63,9 @@ def read(folder: str, shot: str) -> Outcome | None:
     except FileNotFoundError:
         return None
     except (OSError, ValueError, KeyError, TypeError, IndexError) as error:
-        return Outcome(folder, (), 0, f"{path} cannot be read ({error}); press Compare again")
+        return Outcome(
+            folder, (), 0, f"{path} cannot be read ({error}); press Export and Compare again"
+        )
     trouble = unfinished
     if not best and not unfinished:
         trouble = "no method could be measured: the shot has no truth"
@@ -78,7 +80,7 @@ def _unfinished(content: dict) -> str:
     if run.get("complete", True):
         return ""
     done = len(content["methods"][0]["frames"]) if content["methods"] else 0
-    return f"not finished: {done} of {run.get('framesAsked', '?')} frames; press Compare again"
+    return f"not finished: {done} of {run.get('framesAsked', '?')} frames; press Export and Compare again"
 
 
 def _ranking(content: dict) -> list[Rank]:

@@ -53,7 +53,7 @@ BUILT_IN = {
     ),
     "TAA": Preset(
         "TAA Study",
-        "Every method that accumulates frames, 32 frames from the present one with truth of each: flicker, ghosts and "
+        "Every method that accumulates frames but SMAA 4x, 32 frames from the present one with truth of each: flicker, ghosts and "
         "convergence can be judged",
         ("noaa", *_of_family("temporal", without=("smaa4x",))),
         32,

@@ -79,7 +79,8 @@ MethodDescriptor insideDescriptor() {
                              "length of the blur of what moves by more than 2 px, in frame intervals; the history "
                              "stays sharp; 0 = off, as the truth is an instant",
                              "[Pedersen 2016]"),
-                   temporal::warmupParam(), temporal::historyBitsParam(Space::encoded), temporal::ditherParam()},
+                   temporal::warmupParam(), temporal::historyBitsParam(Space::encoded),
+                   temporal::ditherParam(Space::encoded)},
         .create =
             [](const Params& p, const ShotInfo&) {
                 temporal::requireOrdered("inside", p);

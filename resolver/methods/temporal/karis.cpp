@@ -110,7 +110,7 @@ MethodDescriptor descriptor(const Preset& d) {
                        temporal::unjitterParam(false, "conventions 7.0; not in the source"),
                        temporal::dilationParam(d.dilation, d.source), temporal::historyFilterParam(d.history, d.source),
                        temporal::historyClampParam(), temporal::warmupParam(),
-                       temporal::historyBitsParam(Space::linear), temporal::ditherParam()},
+                       temporal::historyBitsParam(Space::linear), temporal::ditherParam(Space::linear)},
             .create = [id = d.id, pq = d.id == "donut"](const Params& p,
                                                         const ShotInfo&) { return std::make_unique<Karis>(id, p, pq); },
             .morePasses = temporal::dilationPasses};

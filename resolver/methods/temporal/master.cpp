@@ -175,7 +175,7 @@ MethodDescriptor masterDescriptor() {
              temporal::historyClampParam(),
              temporal::warmupParam(),
              temporal::historyBitsParam(Space::encoded),
-             temporal::ditherParam()},
+             temporal::ditherParam(Space::encoded)},
         .create = [](const Params& p, const ShotInfo&) {
             temporal::requireOrdered("master", p);
             return std::make_unique<Master>(p);

@@ -164,7 +164,7 @@ MethodDescriptor raptorDescriptor() {
                              "[Castorina 2023]: 1 is standard; its program has 0.1 (decisions 30)"),
                    temporal::warmupParam(),
                    temporal::historyBitsParam(Space::linear),
-                   temporal::ditherParam()},
+                   temporal::ditherParam(Space::linear)},
         .create =
             [](const Params& p, const ShotInfo&) {
                 temporal::requireOrdered("raptor", p);

@@ -46,7 +46,7 @@ MethodDescriptor taaSimplestDescriptor() {
                        temporal::unjitterParam(false, "conventions 7.0; not in the source"),
                        temporal::historyFilterParam("bilinear", "[Castorina 2023]"), temporal::historyClampParam(),
                        temporal::outsideParam(), temporal::warmupParam(), temporal::historyBitsParam(Space::linear),
-                       temporal::ditherParam()},
+                       temporal::ditherParam(Space::linear)},
             .create = [](const Params& p, const ShotInfo&) { return std::make_unique<TaaSimplest>(p); }};
 }
 }  // namespace aa

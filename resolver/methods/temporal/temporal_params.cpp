@@ -63,15 +63,19 @@ ParamSpec warmupParam() {
                        "conventions 7; none is the protocol of [Oliveros 2018, 4.2.1]");
 }
 ParamSpec historyBitsParam(Space space) {
+    const bool codes = space == Space::encoded;
     const std::string_view help =
-        "how colours are kept between frames: float, or rounded to binary16 or to 8 bits as on a graphics processor";
+        codes ? "how colours are kept between frames: float, or rounded to binary16 or to 8 bits as on a graphics "
+                "processor"
+              : "how colours are kept between frames: float, or rounded to binary16 as on a graphics processor";
     ParamSpec bits = choiceParam("historyBits", "32f", kHistoryBits, help, "conventions 8");
-    if (space == Space::linear) std::erase(bits.choices, "8");
+    if (!codes) std::erase(bits.choices, "8");
     return bits;
 }
-ParamSpec ditherParam() {
+ParamSpec ditherParam(Space space) {
     return flagParam("dither", false, "round up or down by chance, so that a slow history does not stall",
-                     "[Pedersen 2016]; conventions 8", "historyBits=16f|8");
+                     "[Pedersen 2016]; conventions 8",
+                     space == Space::encoded ? "historyBits=16f|8" : "historyBits=16f");
 }
 ParamSpec outsideParam() {
     return choiceParam("outside", "reject", {"reject", "clamp"},

@@ -17,7 +17,7 @@ ParamSpec neighbourhoodParam(std::string_view def, std::string_view source);
 ParamSpec clipTargetParam(std::string_view def, std::string_view source);
 ParamSpec warmupParam();
 ParamSpec historyBitsParam(Space space);  // eight bits hold display-encoded colours only
-ParamSpec ditherParam();
+ParamSpec ditherParam(Space space);
 ParamSpec outsideParam();
 ParamSpec sharpenParam(std::string_view def, std::string_view source);
 // The two ends of the luminance feedback (conventions 7.8).

@@ -59,7 +59,7 @@ MethodDescriptor descriptor(std::string_view id, std::string_view title, std::st
                        temporal::historyFilterParam("bilinear", "conventions 7.1"), temporal::historyClampParam(),
                        temporal::neighbourhoodParam("rounded", "[Oliveros 2018, 3.6.3]"),
                        temporal::clipTargetParam("aabbCentre", "decisions 6"), temporal::warmupParam(),
-                       temporal::historyBitsParam(Space::encoded), temporal::ditherParam()},
+                       temporal::historyBitsParam(Space::encoded), temporal::ditherParam(Space::encoded)},
             .create =
                 [id](const Params& p, const ShotInfo&) {
                     temporal::requireOrdered(id, p);
