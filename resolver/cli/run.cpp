@@ -131,7 +131,8 @@ void printTable(const RunResults& r) {
     if (!r.pairs.empty() && noaa)
         std::puts(
             "gain: over noaa; resolved: whether the interval excludes 0, else why not: noise = the truth's, varies = "
-            "the difference varies over the picture, too small = too little picture to judge");
+            "the difference varies over the picture, too small = too little picture to judge, same = the same "
+            "picture but for rounding");
     std::puts("ns/px: processor time of all threads, median and quartiles over the frames");
     for (const std::string& s : {leftOutInWords(r), busyInWords(r)})
         if (!s.empty()) std::puts(s.c_str());

@@ -52,7 +52,7 @@ enum class Unresolved {
     truthNoise,  // most of the doubt is the truth's noise: render the truth with more samples
     varies,      // the difference varies over the picture (or over time): more pictures would tell
     tooSmall,    // too few independent parts (or frames) for an interval
-    equal        // there is no difference
+    equal        // there is no difference, or none beyond the rounding of float
 };
 std::string_view nameOf(Unresolved why);             // in results.json
 Unresolved unresolvedByName(std::string_view name);  // throws std::runtime_error
@@ -61,12 +61,12 @@ std::string_view inShort(Unresolved why);  // for tables
 
 // Paired comparison of two methods over the same frames and truth.
 struct Comparison {
-    double mseDifference = 0;          // MSE(first) - MSE(second): negative when the first is nearer to the truth
-    double low = 0, high = 0;          // its 95 % interval
-    double gainDb = 0;                 // PSNR(first) - PSNR(second), against the exact truth
-    double gainLow = 0, gainHigh = 0;  // its 95 % interval [Fieller 1954], which holds 0 where the difference's does
-    bool resolved = false;             // the interval excludes zero
-    Unresolved why = Unresolved::equal;
+    double mseDifference = 0;            // MSE(first) - MSE(second): negative when the first is nearer to the truth
+    double low = 0, high = 0;            // its 95 % interval
+    double gainDb = 0;                   // PSNR(first) - PSNR(second), against the exact truth
+    double gainLow = 0, gainHigh = 0;    // its 95 % interval [Fieller 1954], which holds 0 where the difference's does
+    bool resolved = false;               // the interval excludes zero
+    Unresolved why = Unresolved::equal;  // then all of the above is 0
 };
 Comparison compareMethods(std::span<const ErrorParts> first, std::span<const ErrorParts> second);
 Comparison compareMethods(const TileErrors& first, const TileErrors& second);

@@ -151,6 +151,34 @@ TEST(ErrorBar, ReasonsAreNamed) {
         EXPECT_EQ(unresolvedByName(nameOf(why)), why);
     EXPECT_THROW(unresolvedByName("weather"), std::runtime_error);
 }
+// The same picture by another order of sums, as ssaa and msaa give it: whichever way its last places go is no
+// difference, even where it is the same way in every part.
+TEST(ErrorBar, RoundingIsNoDifference) {
+    const Rgb exact(160, 96, 0.5f);
+    Rgb one = exact;
+    for (int y = 0; y < 96; y++)
+        for (int x = 0; x < 160; x++) one.c[1].at(x, y) += 0.02f;
+    Rgb farther = one, other = one;
+    for (int y = 0; y < 96; y++)
+        for (int x = 0; x < 160; x += 3) {
+            farther.c[1].at(x, y) += 0x1p-24f;
+            other.c[1].at(x, y) += 0.0001f;  // less than a fortieth of an 8-bit code, and yet another picture
+        }
+    const auto errors = [&](const Rgb& image) { return tileErrors(image, exact, {}); };
+    ASSERT_NE(errors(one).totalSum(), errors(farther).totalSum());
+    const Comparison same = compareMethods(errors(one), errors(farther));
+    EXPECT_EQ(same.why, Unresolved::equal);
+    EXPECT_FALSE(same.resolved);
+    for (const double v : {same.mseDifference, same.low, same.high, same.gainDb, same.gainLow, same.gainHigh})
+        EXPECT_EQ(v, 0);
+    EXPECT_TRUE(compareMethods(errors(one), errors(other)).resolved);
+    // Sums that agree by chance make no two pictures one: a mirrored one has the same error elsewhere.
+    Rgb left = exact, right = exact;
+    for (int y = 0; y < 96; y++)
+        for (int x = 0; x < 80; x++) left.c[0].at(x, y) += 0.05f, right.c[0].at(159 - x, y) += 0.05f;
+    EXPECT_EQ(errors(left).totalSum(), errors(right).totalSum());
+    EXPECT_NE(compareMethods(errors(left), errors(right)).why, Unresolved::equal);
+}
 TEST(ErrorBar, PartsAreNearSquareAndHoldEveryTile) {
     for (const auto& [w, h, columns, rows] :
          {std::tuple{160, 90, 4, 4}, {400, 60, 8, 2}, {16, 900, 1, 16}, {24, 24, 3, 3}, {32, 32, 4, 4}}) {

@@ -40,19 +40,22 @@ std::vector<size_t> ranking(const RunResults& run) {
 
 std::string bestSentence(const RunResults& run, const std::vector<size_t>& order) {
     const MethodResult& best = run.methods[order[0]];
-    std::vector<std::string> peers;
+    std::vector<std::string> peers, same;
     size_t unjudged = 0;
     for (size_t i = 1; i < order.size(); i++)
         if (const auto c = compared(run, order[0], order[i]); c && !c->resolved) {
             if (c->why == Unresolved::tooSmall)
                 unjudged++;
             else
-                peers.push_back(run.methods[order[i]].text);
+                (c->why == Unresolved::equal ? same : peers).push_back(run.methods[order[i]].text);
         }
     std::string s = best.text + " is nearest to " +
                     (run.protocol.reference.empty() ? "the ground truth" : run.protocol.reference) + ": PSNR " +
                     decibels(best.pooled->mean.psnr);
     if (best.pooled->gainDb && best.id != "noaa") s += ", " + gain(run, best) + " over no anti-aliasing";
+    if (!same.empty())
+        s +=
+            "; " + enumerated(same, 4) + (same.size() == 1 ? " gives" : " give") + " the same picture but for rounding";
     if (!peers.empty()) s += "; " + enumerated(peers, 4) + " cannot be told apart from it";
     if (unjudged)
         s += "; to hold it against " + (unjudged + 1 == order.size() ? "the" : std::to_string(unjudged)) +
@@ -177,7 +180,7 @@ std::vector<std::string> unresolvedSentences(const RunResults& run) {
         {Unresolved::truthNoise, "Not told apart, for the truth's noise hides what they differ by"},
         {Unresolved::varies, "Not told apart, for now one is better and now the other over the picture"},
         {Unresolved::tooSmall, "Too little picture to judge: it has too few independent parts"},
-        {Unresolved::equal, "Equal"},
+        {Unresolved::equal, "Not told apart, for they give the same picture but for rounding"},
     };
     constexpr size_t kListed = 6;
     std::vector<std::string> sentences;

@@ -11,6 +11,7 @@
 #include "metrics/metric.h"
 #include "report/format.h"
 #include "report/web/web_files.h"
+#include "study/json_number.h"
 
 namespace aa {
 
@@ -58,6 +59,13 @@ nlohmann::ordered_json figureJson(const Figure& f) {
             {"about", f.help},
             {"better", f.higherIsBetter ? "high" : "low"},
             {"form", name(f.form)}};
+}
+nlohmann::ordered_json comparisonJson(const Comparison& c) {
+    return {{"gain", jsonNumber(c.gainDb)},
+            {"low", jsonNumber(c.gainLow)},
+            {"high", jsonNumber(c.gainHigh)},
+            {"resolved", c.resolved},
+            {"why", nameOf(c.why)}};
 }
 
 std::string sectionOf(const MeasuredSection& s, const std::filesystem::path& folder) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 namespace aa {
+struct Comparison;
 struct Figure;
 
 // `page` with each {{name}} replaced. What is put in is not searched for places again.
@@ -18,6 +19,8 @@ std::string forScript(const nlohmann::ordered_json& j);
 nlohmann::ordered_json errorColoursJson();
 // A figure of the program's table as the pages read it.
 nlohmann::ordered_json figureJson(const Figure& figure);
+// A gain as the pages read it, with its doubt: `doubt` of tables.js.
+nlohmann::ordered_json comparisonJson(const Comparison& c);
 
 // A section of the report that another command measured: the data of a JSON file and the script that draws them.
 struct MeasuredSection {

@@ -14,13 +14,6 @@ namespace aa {
 namespace {
 using json = nlohmann::ordered_json;
 
-json comparisonJson(const Comparison& c) {
-    return {{"gain", jsonNumber(c.gainDb)},
-            {"low", jsonNumber(c.gainLow)},
-            {"high", jsonNumber(c.gainHigh)},
-            {"resolved", c.resolved},
-            {"why", nameOf(c.why)}};
-}
 json intervalJson(const std::optional<std::pair<double, double>>& i) {
     return i ? json{jsonNumber(i->first), jsonNumber(i->second)} : json(nullptr);
 }

@@ -9,7 +9,7 @@
 #include "report/format.h"
 #include "report/page.h"
 #include "report/web/web_files.h"
-#include "study/non_finite.h"
+#include "study/json_number.h"
 
 namespace aa {
 namespace {
@@ -26,8 +26,8 @@ bool isNumeric(const SweepAxis& axis) { return std::all_of(axis.values.begin(), 
 struct Base {
     std::string text;
     std::vector<SweepVariant> ranked;
-    std::vector<SweepVariant> alike;  // that cannot be told apart from the best
-    size_t unjudged = 0;              // that this picture is too small to hold against the best
+    std::vector<SweepVariant> alike;     // that cannot be told apart from the best
+    std::vector<SweepVariant> unjudged;  // that this picture is too small to hold against the best
 };
 double mseOf(const RunResults& run, const SweepVariant& v) { return run.methods[v.method].pooled->mean.mse; }
 std::vector<Base> basesOf(const RunResults& run, const SweepOptions& o) {
@@ -41,12 +41,8 @@ std::vector<Base> basesOf(const RunResults& run, const SweepOptions& o) {
         std::stable_sort(b.ranked.begin(), b.ranked.end(),
                          [&](const auto& x, const auto& y) { return mseOf(run, x) < mseOf(run, y); });
         for (size_t i = 1; i < b.ranked.size(); i++)
-            if (const auto c = compared(run, b.ranked[0].method, b.ranked[i].method); c && !c->resolved) {
-                if (c->why == Unresolved::tooSmall)
-                    b.unjudged++;
-                else
-                    b.alike.push_back(b.ranked[i]);
-            }
+            if (const auto c = compared(run, b.ranked[0].method, b.ranked[i].method); c && !c->resolved)
+                (c->why == Unresolved::tooSmall ? b.unjudged : b.alike).push_back(b.ranked[i]);
     }
     return bases;
 }
@@ -85,14 +81,14 @@ void tell(const RunResults& run, const std::vector<SweepAxis>& axes, const Base&
     const auto noaa = noaaOf(run);
     if (const auto gain = noaa ? compared(run, best.method, *noaa) : std::nullopt)
         s += ", " + signedDecibelNumber(gain->gainDb) + " dB over no anti-aliasing " + intervalInBrackets(*gain);
-    if (b.unjudged)
-        s += "; to hold it against " + std::to_string(b.unjudged) +
-             (b.unjudged == 1 ? " other value" : " other values") + " this picture is too small";
+    const size_t unjudged = b.unjudged.size();
+    if (unjudged)
+        s += "; to hold it against " + std::to_string(unjudged) + (unjudged == 1 ? " other value" : " other values") +
+             " this picture is too small";
     if (b.alike.empty())
-        s += b.ranked.size() > 1 + b.unjudged
-                 ? (b.unjudged ? "; every value that can be judged" : "; every other value") +
-                       std::string(" is worse by more than the error bar.")
-                 : ".";
+        s += b.ranked.size() > 1 + unjudged ? (unjudged ? "; every value that can be judged" : "; every other value") +
+                                                  std::string(" is worse by more than the error bar.")
+                                            : ".";
     else if (b.alike.size() + 1 == b.ranked.size())
         s += "; no other value can be told apart from it.";
     else
@@ -104,20 +100,19 @@ void tell(const RunResults& run, const std::vector<SweepAxis>& axes, const Base&
                             signedDecibelNumber(loss->gainDb) + " dB against the best " + intervalInBrackets(*loss) +
                             ".");
     for (size_t a = 0; a < axes.size(); a++) {
-        const size_t at = best.at[a], count = axes[a].values.size();
-        if (count < 3 || !isNumeric(axes[a]) || (at > 0 && at + 1 < count)) continue;
-        if (isLimit(b.text, axes[a].name, std::strtod(axes[a].values[at].c_str(), nullptr))) continue;
-        words.push_back(b.text + ": the best " + axes[a].name + " lies at the " + (at == 0 ? "lower" : "upper") +
-                        " end of the values that were tried; go on beyond " + axes[a].values[at] + ".");
+        if (axes[a].values.size() < 3 || !isNumeric(axes[a])) continue;
+        std::vector<double> tried;
+        for (const auto& text : axes[a].values) tried.push_back(std::strtod(text.c_str(), nullptr));
+        const double at = tried[best.at[a]];
+        const auto [least, most] = std::minmax_element(tried.begin(), tried.end());
+        if ((at > *least && at < *most) || isLimit(b.text, axes[a].name, at)) continue;
+        const bool isLeast = at == *least;
+        words.push_back(b.text + ": the best " + axes[a].name + " lies at the " + (isLeast ? "lower" : "upper") +
+                        " end of the values that were tried; go on " + (isLeast ? "below " : "above ") +
+                        axes[a].values[best.at[a]] + ".");
     }
 }
-json numberOrName(double v) {
-    if (const char* word = nonFinite(v)) return word;
-    return v;
-}
-json interval(const std::optional<Comparison>& c) {
-    return c ? json{{"value", c->gainDb}, {"low", c->gainLow}, {"high", c->gainHigh}} : json();
-}
+json comparisonOrNull(const std::optional<Comparison>& c) { return c ? comparisonJson(*c) : json(); }
 
 // Figures that curves and maps can show, besides those with intervals.
 json figuresOf(const MethodResult& m, const RunResults& run, json& legend) {
@@ -125,7 +120,7 @@ json figuresOf(const MethodResult& m, const RunResults& run, json& legend) {
     const auto add = [&](const std::string& name, const std::string& title, const char* better, double v) {
         if (std::none_of(legend.begin(), legend.end(), [&](const json& f) { return f["name"] == name; }))
             legend.push_back({{"name", name}, {"title", title}, {"better", better}});
-        values[name] = numberOrName(v);
+        values[name] = jsonNumber(v);
     };
     if (m.pooled)
         for (const Figure* f : figuresIn(run))
@@ -183,19 +178,17 @@ std::string sweepHtml(const RunResults& run, const SweepOptions& o) {
     for (const SweepVariant& v : sweepVariants(run, o)) {
         const auto base = std::find_if(bases.begin(), bases.end(), [&](const Base& b) { return b.text == v.base; });
         const bool best = !base->ranked.empty() && base->ranked[0].method == v.method;
-        const bool alike =
-            std::any_of(base->alike.begin(), base->alike.end(), [&](const auto& x) { return x.method == v.method; });
-        json one = {{"text", run.methods[v.method].text},
-                    {"base", base - bases.begin()},
-                    {"at", v.at},
-                    {"best", best},
-                    {"alike", alike}};
-        one["gain"] = interval(noaa ? compared(run, v.method, *noaa) : std::nullopt);
+        const auto among = [&](const std::vector<SweepVariant>& some) {
+            return std::any_of(some.begin(), some.end(), [&](const auto& x) { return x.method == v.method; });
+        };
+        json one = {
+            {"text", run.methods[v.method].text}, {"base", base - bases.begin()},     {"at", v.at}, {"best", best},
+            {"alike", among(base->alike)},        {"unjudged", among(base->unjudged)}};
+        one["gain"] = comparisonOrNull(noaa ? compared(run, v.method, *noaa) : std::nullopt);
         if (best)
-            one["toBest"] = interval(Comparison{});
-        else
-            one["toBest"] = interval(base->ranked.empty() ? std::optional<Comparison>()
-                                                          : compared(run, v.method, base->ranked[0].method));
+            one["toBest"] = comparisonJson({});
+        else if (!base->ranked.empty())
+            one["toBest"] = comparisonOrNull(compared(run, v.method, base->ranked[0].method));
         one["values"] = figuresOf(run.methods[v.method], run, data["figures"]);
         data["variants"].push_back(std::move(one));
     }

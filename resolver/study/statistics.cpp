@@ -53,6 +53,9 @@ void addErrorsOverTime(RunResults& run) {
                                            [](auto& x, auto& y) { return x.count == y.count; });
         const auto base = [&](size_t i) { return withoutStages(run.methods[i].text); };
         if (samePixels && base(p.first) == base(p.second)) p.rejected = compareOverTime(a.rejected, b.rejected);
+        if (p.comparison.why == Unresolved::equal)  // whatever else the two differ by is rounding, too
+            for (auto* overTime : {&p.ghost, &p.flicker, &p.rejected})
+                if (*overTime) *overTime = TimeComparison{};
     }
 }
 
@@ -239,6 +242,9 @@ void finish(RunResults& run, const std::vector<TileErrors>& errors) {
         for (size_t k = i + 1; k < run.methods.size(); k++)
             if (comparable(run.methods[i], run.methods[k]))
                 run.pairs.push_back({i, k, compareMethods(run.methods[i].parts, run.methods[k].parts)});
+    for (const auto& p : run.pairs)
+        if (plain && p.comparison.why == Unresolved::equal && (p.first == *plain || p.second == *plain))
+            run.methods[p.first == *plain ? p.second : p.first].pooled->gainDb = 0;
     addErrorsOverTime(run);
 }
 

@@ -29,6 +29,10 @@ VISITOR = """
       band: Chart.getChart("curve").data.datasets.filter((d) => d.band).every((d, i, all) => d.data.every((p, k) => i % 2 || p.y <= all[i + 1].data[k].y)) });
   }
   pick("along", 0);
+  const fills = { [css("--panel")]: "hollow", [css("--line")]: "grey" };
+  told.fills = Chart.getChart("curve").data.datasets.flatMap((d) => d.pointBackgroundColor ?? []).map((c) => fills[c] ?? "filled");
+  told.table = $("all").innerText;
+  told.note = $("curve-note").textContent;
   const canvas = $("curve"), image = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
   told.drawn = image.some((v, i) => i % 4 === 3 && v > 0);
   told.contrast = [...document.querySelectorAll(".heat td")].every((td) => {
@@ -64,6 +68,25 @@ class Sweep(PageTest):
                     visited, "--virtual-time-budget=20000", f"--window-size={window}", *dark
                 )
                 self.told(self.collected(drawn), drawn)
+
+    def test_values_that_cannot_be_judged(self) -> None:
+        """A picture too small to hold values against each other: said of each of them, and never as if told apart."""
+        shot, out = self.folder / "shot", self.folder / "out"
+        self.synth("moving", shot, (16, 16), 3, "-q")
+        vary = ("--vary", "kmin=0.5,0.7,0.9", "--vary", "kmax=0.95,0.98")
+        said = self.aaresolve("sweep", shot, "-m", "uncharted", *vary, "-o", out, "-q").stdout
+        self.assertIn("to hold it against 5 other values this picture is too small", said)
+        visited = self.folder / "visited.html"
+        visited.write_text((out / "sweep.html").read_text() + VISITOR)
+        drawn = self.open(visited, "--virtual-time-budget=20000", "--window-size=1280,900")
+        told = self.collected(drawn)
+        cells = [cell for row in told["figures"][0]["heat"] for cell in row[:3]]
+        self.assertEqual(sorted(c[-1] for c in cells), ["?"] * 5 + ["★"])
+        self.assertNotIn("hollow", told["fills"])
+        self.assertEqual(told["fills"].count("grey"), 5)
+        self.assertIn("too small to hold it against the best", told["note"])
+        self.assertEqual(told["table"].count("? too small to judge"), 5)
+        self.assertNotIn("no interval", told["table"])
 
     def told(self, told: dict, drawn: str) -> None:
         self.assertTrue(told["drawn"])

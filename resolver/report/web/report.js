@@ -17,7 +17,7 @@
     (run.shot.static ? "static" : "moving") + " shot";
   $("words").append(...words.map((w) => element("li", {}, w)));
   // The sentences name the first pairs that are not told apart; here are all, of each method the others.
-  const whys = [["truthNoise", "The truth’s noise hides it"], ["varies", "Now one is better, now the other"], ["tooSmall", "Too little picture to judge"], ["equal", "Equal"]]
+  const whys = [["truthNoise", "The truth’s noise hides it"], ["varies", "Now one is better, now the other"], ["tooSmall", "Too little picture to judge"], ["equal", "The same picture but for rounding"]]
     .filter(([why]) => run.pairs.some((p) => !p.resolved && p.unresolved === why));
   const unresolvedPairs = run.pairs.filter((p) => !p.resolved);
   if (unresolvedPairs.length) {
@@ -83,7 +83,8 @@
     const place = ranked.indexOf(i);
     if (place < 1) return null;
     const p = pair(i, ranked[place - 1]);
-    return { gain: value(methods[i].pooled.psnr) - value(methods[ranked[place - 1]].pooled.psnr), doubt: p && compared(i, ranked[place - 1]) };
+    const doubt = p && compared(i, ranked[place - 1]);
+    return { gain: doubt?.why === "equal" ? 0 : value(methods[i].pooled.psnr) - value(methods[ranked[place - 1]].pooled.psnr), doubt };
   }
   const methodTable = (table, shown, columns) => sortableTable(table, shown, columns, (i) => methods[i], (m) => [...breakable(m.text), element("small", {}, m.title)]);
   const told = (table, columns) => table.closest(".scroll").after(columnNotes(columns));
@@ -92,7 +93,7 @@
   $("figures-note").textContent = judgedFrames
     ? `Figures of ${space}${region ? `, of the region of ${region} alone` : ""}, pooled over ${judgedFrames} frame${judgedFrames > 1 ? "s" : ""} with ${standIn ? "images of " + reference : "ground truth"}: the mean squared error is averaged, never the decibels. ` +
       (order.some((i) => columns[0].small(methods[i])) ? "Under a PSNR, “to”: what it is once the truth’s own noise is taken off. " : "") + "Under a gain stands its 95 % interval, for pictures like this one and an exact truth; where it holds 0 the gain is not resolved, and the table says why: " +
-      "most of the doubt is the truth’s noise (more samples help), or the difference varies over the picture (more pictures help), or the picture is too small to judge." +
+      "most of the doubt is the truth’s noise (more samples help), or the difference varies over the picture (more pictures help), or the picture is too small to judge, or both are the same picture but for rounding." +
       (figures.some((f) => f.spread) ? " Under FLIP: 1st quartile, median and 3rd quartile, weighted by the error." : "") +
       " Time: processor time of all threads; below it the quartiles over frames." + (run.run.load?.busy ? " The machine was busy." : "")
     : "This run has no ground truth, so only times are known.";

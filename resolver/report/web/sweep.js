@@ -5,16 +5,19 @@
   const $ = (id) => document.getElementById(id);
   const { axes, bases, variants } = data;
   const best = variants.find((v) => v.best) || variants[0];
+  const someUnjudged = variants.some((v) => v.unjudged);
+  const tooSmall = "this picture is too small to hold it against the best";
   const number = (v) => (v == null ? "–" : typeof v === "string" ? v : String(Number(v.toPrecision(5))).replace("-", "−"));
 
   // Figures with an interval first: gain over no anti-aliasing, and what is lost against the best of the same method.
+  const held = (c) => c && { ...c, value: c.gain };
   const figures = [
-    { name: "gain", title: "Gain over no anti-aliasing, dB", better: "high", of: (v) => v.gain, has: "its 95 % interval" },
-    { name: "toBest", title: "Difference from the best value, dB", better: "high", of: (v) => v.toBest, has: "the 95 % interval of the difference; where it holds 0, the value cannot be told apart from the best" },
+    { name: "gain", title: "Gain over no anti-aliasing, dB", better: "high", of: (v) => held(v.gain), has: "its 95 % interval" },
+    { name: "toBest", title: "Difference from the best value, dB", better: "high", of: (v) => held(v.toBest), has: "the 95 % interval of the difference; where it holds 0, the value cannot be told apart from the best" },
     ...data.figures.map((f) => ({ ...f, of: (v) => (v.values[f.name] == null ? null : { value: v.values[f.name] }), has: null })),
   ].filter((f) => variants.some((v) => f.of(v)));
   const shown = (f, e) => (e == null ? "–" : f.has ? signed(e.value) : number(e.value));
-  const interval = (e) => (e && e.low != null ? `${signed(e.low)} to ${signed(e.high)}` : null);
+  const interval = (e) => (e && e.low != null ? intervalText(e) : null);
 
   $("shot").textContent = `Sweep: ${data.shot}`;
   $("subtitle").textContent = `${variants.length} variants against ${data.reference}; ${data.protocol}; ${data.line}`;
@@ -63,10 +66,10 @@
       const points = few.map((v) => [v, f.of(v)]).filter(([, e]) => e && typeof e.value === "number").sort(([v], [w]) => v.at[a] - w.at[a]);
       // The band first, so that the line lies on it: its lower end, then its upper one, filled down to it.
       if (f.has) for (const [end, fill] of [["low", false], ["high", "-1"]])
-        datasets.push({ label, band: true, data: points.map(([v, e]) => ({ x: x(v), y: e[end] })), borderWidth: 0, pointRadius: 0, pointHitRadius: 0, backgroundColor: hue + "38", fill });
+        datasets.push({ label, band: true, data: points.map(([v, e]) => ({ x: x(v), y: typeof e[end] === "number" ? e[end] : null })), borderWidth: 0, pointRadius: 0, pointHitRadius: 0, backgroundColor: hue + "38", fill });
       datasets.push({ label, data: points.map(([v, e]) => ({ x: x(v), y: e.value, e, v })), borderColor: hue, backgroundColor: hue, borderDash: dash, borderWidth: 2,
         pointRadius: points.map(([v]) => (v.best ? 8 : 4)), pointStyle: points.map(([v]) => (v.best ? "star" : "circle")), pointBorderWidth: points.map(([v]) => (v.best ? 2.5 : 1.5)),
-        pointBackgroundColor: points.map(([v]) => (v.best || v.alike ? hue : css("--panel"))) });
+        pointBackgroundColor: points.map(([v]) => (v.best || v.alike ? hue : v.unjudged ? css("--line") : css("--panel"))) });
     });
     dressCharts();
     if (chart) chart.destroy();
@@ -75,9 +78,10 @@
         scales: { x: { type: along_.numeric ? "linear" : "category", ...axis(along_.name), offset: !along_.numeric }, y: axis(f.title) },
         plugins: { legend: { display: groups.length > 1, position: "bottom", labels: { filter: (item, all) => !all.datasets[item.datasetIndex].band } },
           tooltip: { filter: (t) => !t.dataset.band, callbacks: { title: (t) => (t.length ? `${along_.name}=${along_.values[t[0].raw.v.at[a]]}` : ""),
-            label: (t) => `${t.dataset.label}: ${shown(f, t.raw.e)}` + (interval(t.raw.e) ? ` (${interval(t.raw.e)})` : "") } } } } });
+            label: (t) => `${t.dataset.label}: ${shown(f, t.raw.e)}` + (interval(t.raw.e) ? ` (${interval(t.raw.e)})` : "") + (t.raw.v.unjudged ? `; ${tooSmall}` : "") } } } } });
     $("curve-title").textContent = `${f.title} against ${along_.name}: ${f.better === "high" ? "up" : "down"} is better`;
-    $("curve-note").textContent = (f.has ? `Band: ${f.has}. ` : "No interval is known for this figure. ") + "Star: the best PSNR of its method; filled: cannot be told apart from it.";
+    $("curve-note").textContent = (f.has ? `Band: ${f.has}. ` : "No interval is known for this figure. ") + "Star: the best PSNR of its method; filled: cannot be told apart from it; " +
+      (someUnjudged ? `grey: ${tooSmall}; ` : "") + "hollow: worse than it by what is resolved.";
   };
 
   // ---- heat maps ----
@@ -98,24 +102,27 @@
         const [red, green, blue] = colour(e.value);
         const light = 0.2126 * red + 0.7152 * green + 0.0722 * blue > 110;
         return element("td", { style: `background:rgb(${red} ${green} ${blue});color:${light ? "#000" : "#fff"}`, title: v.text + (interval(e) ? `: ${interval(e)}` : "") },
-          shown(f, e) + (v.best ? " ★" : v.alike ? " ≈" : ""));
+          shown(f, e) + (v.best ? " ★" : v.alike ? " ≈" : v.unjudged ? " ?" : ""));
       };
       return element("figure", { class: b ? "below" : null }, bases.length > 1 ? element("figcaption", {}, base) : null,
         element("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `${f.title} of ${base}` }, element("table", { class: "heat" },
           element("thead", {}, element("tr", {}, element("th", { scope: "col" }, `${axes[c].name} ↓  ${axes[a].name} →`), ...axes[a].values.map((value) => element("th", { scope: "col" }, value)))),
           element("tbody", {}, ...axes[c].values.map((value, k) => element("tr", {}, element("th", { scope: "row" }, value), ...axes[a].values.map((_, i) => cell(cells.get(`${i} ${k}`)))))))));
     }));
-    $("maps-note").textContent = `${f.title}; lighter is better. ★ the best PSNR of its method, ≈ cannot be told apart from it.`;
+    $("maps-note").textContent = `${f.title}; lighter is better. ★ the best PSNR of its method, ≈ cannot be told apart from it${someUnjudged ? `, ? ${tooSmall}` : ""}.`;
   };
 
   // ---- table ----
   const drawTable = () => {
     const order = [...variants].sort((v, w) => (Number(w.values.psnr) || -Infinity) - (Number(v.values.psnr) || -Infinity));
     const broken = (text) => text.split(/(?<=[:,])/).flatMap((part, i) => (i ? [element("wbr"), part] : [part]));
-    const mark = (v) => (v.best ? element("small", { class: "better" }, "★ best") : v.alike ? element("small", { class: "unresolved" }, "≈ not told apart from the best") : null);
+    const mark = (v) => (v.best ? element("small", { class: "better" }, "★ best") : v.alike ? element("small", { class: "unresolved" }, "≈ not told apart from the best") : v.unjudged ? element("small", { class: "unresolved" }, "? too small to judge") : null);
+    // Of the best value against itself there is nothing to doubt.
+    const doubts = (f, v) => (f.has && f.of(v) && !(v.best && f.name === "toBest") ? doubt(f.of(v)).filter(Boolean) : [])
+      .map((s) => element("small", { class: s.startsWith("not resolved") ? "unresolved" : null }, s));
     $("all").replaceChildren(element("thead", {}, element("tr", {}, ...["Variant", ...figures.map((f) => f.title)].map((h) => element("th", { scope: "col" }, h)))),
       element("tbody", {}, ...order.map((v) => element("tr", {}, element("th", { scope: "row" }, ...broken(v.text), mark(v)),
-        ...figures.map((f) => element("td", {}, shown(f, f.of(v)), interval(f.of(v)) && !(v.best && f.name === "toBest") ? element("small", {}, interval(f.of(v))) : null))))));
+        ...figures.map((f) => element("td", {}, shown(f, f.of(v)), ...doubts(f, v)))))));
     $("all-note").textContent = "Best PSNR first. Small: 95 % intervals.";
   };
   const draw = () => {

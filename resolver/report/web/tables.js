@@ -13,7 +13,7 @@ const short = (v) => (v == null ? "–" : Number.isFinite(value(v)) ? Number(val
 const inForm = (figure, v) => (v == null ? "–" : figure.form === "similarity" ? fixed(v, 6) : figure.form === "decibels" ? fixed(v, 2) : figure.form === "jod" ? fixed(v, 3) : short(v));
 
 // ---- doubt: a comparison is {gain, low, high, resolved, why} ----
-const reasons = { truthNoise: "not resolved: the truth’s noise", varies: "not resolved: varies over the picture", tooSmall: "not resolved: too small to judge", equal: "equal" };
+const reasons = { truthNoise: "not resolved: the truth’s noise", varies: "not resolved: varies over the picture", tooSmall: "not resolved: too small to judge", equal: "not resolved: the same picture but for rounding" };
 const intervalText = (c) => {
   const [low, high] = [c.low, c.high].map((v) => Number.isFinite(value(v)));
   return low && high ? `${signed(c.low)} to ${signed(c.high)}` : low ? `above ${signed(c.low)}` : high ? `below ${signed(c.high)}` : "no interval";
