@@ -40,7 +40,7 @@ RUN = (
     "--write",
     "none",
     "--metrics",
-    "mse",
+    "flip,ssimRgb",
     "-q",
     "-j",
     "1",

@@ -195,7 +195,8 @@ def table(bench: Bench, pairs: list[Pair], load: float) -> str:
         "",
         "Made by `make peers`; `tests/bench/peers.py` says what is held against what. "
         f"{processor_name()}, load {load:.1f} before; {o.size}, one thread, ns of processor time per pixel, median of "
-        f"{o.rounds} rounds (least to largest); ours x86-64-{o.isa}, theirs `{' '.join(FLAGS[:2])}`.",
+        f"{o.rounds} rounds (least to largest); ours x86-64-{o.isa}, theirs `{' '.join(FLAGS[:2])}`. Share: of their time; "
+        "goal: what we want it to be at most.",
         "",
         "| | ours | theirs | whose | share | goal |",
         "|---|---|---|---|---|---|",
