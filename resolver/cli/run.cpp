@@ -10,6 +10,7 @@
 #include "image/folder_claim.h"
 #include "report/advice.h"
 #include "report/format.h"
+#include "report/gallery.h"
 
 namespace aa {
 namespace {
@@ -63,53 +64,76 @@ void printReplaced(const RunResults& r, const std::filesystem::path& out) {
         std::fprintf(stderr, "%s: is of the earlier run; make it again\n", (out / file).c_str());
 }
 
+namespace {
+// PSNR, the gain over noaa with its interval, SSIM and FLIP.
+void printJudged(const RunResults& r, const MethodResult& m, bool withFlip) {
+    const auto noaa = noaaOf(r);
+    const auto index = size_t(&m - r.methods.data());
+    const auto versus = !noaa || index == *noaa ? std::nullopt : compared(r, index, *noaa);
+    if (r.isReference(m)) {
+        std::printf(" %9s %8s", "reference", "-");
+    } else if (m.pooled) {
+        std::printf(" %9.3f", m.pooled->mean.psnr);
+        if (m.pooled->gainDb)
+            std::printf(" %+8.3f", *m.pooled->gainDb);
+        else
+            std::printf(" %8s", "-");
+    } else {
+        std::printf(" %9s %8s", "-", "-");
+    }
+    std::printf(" %16s %9s", versus ? intervalInWords(*versus).c_str() : "-",
+                versus ? std::string(inShort(versus->why)).c_str() : "-");
+    if (m.pooled)
+        std::printf(" %8.6f", m.pooled->mean.others.at("ssimLuma"));
+    else
+        std::printf(" %8s", "-");
+    if (!withFlip) return;
+    const auto flip = m.pooled ? m.pooled->mean.figure(kFlip) : std::nullopt;
+    flip ? std::printf(" %6.4f", *flip) : std::printf(" %6s", "-");
+}
+void printCost(const RunResults& r, const MethodResult& m) {
+    if (m.nsPerPixel > 0) {
+        const double perPixel = 1e9 / (double(r.width) * r.height);
+        char spread[32];
+        std::snprintf(spread, sizeof spread, "%.3g to %.3g", m.secondsLow * perPixel, m.secondsHigh * perPixel);
+        std::printf(" %8.2f %13s", m.nsPerPixel, m.timings > 1 ? spread : "once");
+    } else {
+        std::printf(" %8s %13s", "-", "-");
+    }
+    std::printf(" %8.2f %8.2f", double(m.inputBytes) / (1 << 20), double(m.stateBytes) / (1 << 20));
+    if (m.deviceSecondsMedian) std::printf(" %10.4f", 1e3 * *m.deviceSecondsMedian);
+    std::puts("");
+}
+// Why there is no figure, and what one can do.
+void sayWithoutFigures(const RunResults& r) {
+    std::printf(
+        "no figures: none of these frames has a ground truth; export the shot with its truth, or hold the methods "
+        "against "
+        "one of them by --reference METHOD");
+    if (r.asked.find("frames=all") == std::string::npos || r.asked.find("write=none") != std::string::npos)
+        std::printf("; for their pictures %s", howToWriteAll(r).c_str());
+    std::puts("");
+}
+}  // namespace
+
 void printTable(const RunResults& r) {
     const auto rows = bestFirst(r);
     size_t width = 6;
     for (const auto* m : rows) width = std::max(width, m->text.size());
-    const auto noaa = noaaOf(r);
-    const bool withFlip =
-        std::any_of(rows.begin(), rows.end(), [](const auto* m) { return m->pooled && m->pooled->mean.figure(kFlip); });
-    std::printf("%-*s %9s %8s %16s %9s %8s%s %8s %13s %8s %8s%s\n", int(width), "method", "PSNR dB", "gain dB",
-                "95 % interval", "resolved", "SSIM", withFlip ? "   FLIP" : "", "ns/px", "quartiles", "input MB",
-                "state MB", r.device ? "  device ms" : "");
+    const bool judged = r.hasFigures(), withFlip = judged && std::any_of(rows.begin(), rows.end(), [](const auto*m) {
+                                                       return m->pooled && m->pooled->mean.figure(kFlip);
+                                                   });
+    std::printf("%-*s", int(width), "method");
+    if (judged)
+        std::printf(" %9s %8s %16s %9s %8s%s", "PSNR dB", "gain dB", "95 % interval", "resolved", "SSIM",
+                    withFlip ? "   FLIP" : "");
+    std::printf(" %8s %13s %8s %8s%s\n", "ns/px", "quartiles", "input MB", "state MB", r.device ? "  device ms" : "");
     for (const auto* m : rows) {
         std::printf("%-*s", int(width), m->text.c_str());
-        const auto index = size_t(m - r.methods.data());
-        const auto versus = !noaa || index == *noaa ? std::nullopt : compared(r, index, *noaa);
-        if (r.isReference(*m)) {
-            std::printf(" %9s %8s", "reference", "-");
-        } else if (m->pooled) {
-            std::printf(" %9.3f", m->pooled->mean.psnr);
-            if (m->pooled->gainDb)
-                std::printf(" %+8.3f", *m->pooled->gainDb);
-            else
-                std::printf(" %8s", "-");
-        } else {
-            std::printf(" %9s %8s", "-", "-");
-        }
-        std::printf(" %16s %9s", versus ? intervalInWords(*versus).c_str() : "-",
-                    versus ? std::string(inShort(versus->why)).c_str() : "-");
-        if (m->pooled)
-            std::printf(" %8.6f", m->pooled->mean.others.at("ssimLuma"));
-        else
-            std::printf(" %8s", "-");
-        if (withFlip) {
-            const auto flip = m->pooled ? m->pooled->mean.figure(kFlip) : std::nullopt;
-            flip ? std::printf(" %6.4f", *flip) : std::printf(" %6s", "-");
-        }
-        if (m->nsPerPixel > 0) {
-            const double perPixel = 1e9 / (double(r.width) * r.height);
-            char spread[32];
-            std::snprintf(spread, sizeof spread, "%.3g to %.3g", m->secondsLow * perPixel, m->secondsHigh * perPixel);
-            std::printf(" %8.2f %13s", m->nsPerPixel, m->timings > 1 ? spread : "once");
-        } else {
-            std::printf(" %8s %13s", "-", "-");
-        }
-        std::printf(" %8.2f %8.2f", double(m->inputBytes) / (1 << 20), double(m->stateBytes) / (1 << 20));
-        if (m->deviceSecondsMedian) std::printf(" %10.4f", 1e3 * *m->deviceSecondsMedian);
-        std::puts("");
+        if (judged) printJudged(r, *m, withFlip);
+        printCost(r, *m);
     }
+    if (!judged && r.complete) sayWithoutFigures(r);
     printOthers(r, rows, width);
     if (!r.complete)
         std::printf("%s: these figures are not those of the whole shot; the same command with --resume goes on\n",
@@ -128,7 +152,7 @@ void printTable(const RunResults& r) {
     if (r.truthClipped)
         std::printf("truth: %zu of %zu pixels (%.3g %%) exceed the display and are clipped\n", r.truthClipped->pixels,
                     r.truthClipped->of, 100 * double(r.truthClipped->pixels) / double(r.truthClipped->of));
-    if (!r.pairs.empty() && noaa)
+    if (!r.pairs.empty() && noaaOf(r))
         std::puts(
             "gain: over noaa; resolved: whether the interval excludes 0, else why not: noise = the truth's, varies = "
             "the difference varies over the picture, too small = too little picture to judge, same = the same "
@@ -137,7 +161,7 @@ void printTable(const RunResults& r) {
     for (const std::string& s : {leftOutInWords(r), busyInWords(r)})
         if (!s.empty()) std::puts(s.c_str());
     for (const auto& [kind, scale] : r.maps) std::printf("maps/%s: %s\n", kind.c_str(), scale.c_str());
-    std::printf("figures: %s\n", inWords(r.protocol).c_str());
+    if (judged) std::printf("figures: %s\n", inWords(r.protocol).c_str());
     for (const auto& [what, count] : r.sanitised)
         if (count > 0)
             std::printf("input values that no method can use: %s %llu\n", what.c_str(),

@@ -64,8 +64,7 @@ void draw(const SheetArguments& o) {
     const std::vector<size_t> order = chosenMethods(run, o.methods);
     const RunResults few = onlyMethods(run, order);
     const auto there = framesWithPictures(few);
-    if (there.empty())
-        throw InputError(o.run + ": no frame of which every method has an image; run again with --write exr");
+    if (there.empty()) throw InputError(o.run + ": no frame of which every method has an image; " + howToWriteAll(few));
     const auto frames = o.frames.empty() ? std::vector<int>() : framesOf(o, there);
     const int frame = !frames.empty() ? frames.back() : o.frame == 0 ? there.back() : o.frame;
     const Shown shown{run, order, [&](int number) { return loadPictures(few, o.run, number, exec); }};

@@ -12,6 +12,8 @@
 #include "image/error.h"
 #include "image/io.h"
 #include "image/json_text.h"
+#include "methods/choosing.h"
+#include "report/survey_questions.h"
 
 namespace aa {
 namespace {
@@ -31,7 +33,7 @@ std::string readText(const fs::path& file) {
 // ---- make ----
 struct MakeOptions {
     SurveyOptions survey;
-    std::vector<std::string> questions;
+    std::vector<std::string> questions, methods;
     std::string out, file, introFile, seed;
     bool overwrite = false, quiet = false;
     WorkOptions work;
@@ -48,8 +50,17 @@ void refuseAnotherKey(const fs::path& file, const std::string& survey) {
         throw InputError(file.string() + ": expected no other survey's key, found that of " + found +
                          ", which its answers need; give another -o, or --overwrite");
 }
+// -q was --question once: what stood behind it would be taken for a run.
+void refuseQuestionsAsRuns(const MakeOptions& o) {
+    for (const auto& run : o.survey.runs)
+        if (o.quiet && isQuestion(run) && !fs::exists(run))
+            throw UsageError("survey make: '" + run + "' is a question and no run's folder; give it by --question");
+}
 void make(MakeOptions& o, Context& context) {
     const Exec exec = o.work.exec();
+    refuseQuestionsAsRuns(o);
+    for (const auto& text : o.methods)
+        for (auto& method : splitMethods(text)) o.survey.methods.push_back(std::move(method));
     for (const auto& q : o.questions) o.survey.questions.push_back({q, "--question '" + q + "'", false});
     if (!o.file.empty()) {
         std::istringstream lines(readText(o.file));
@@ -208,15 +219,17 @@ void addMake(Command& survey, Context& context) {
     c.option("RUN", o->survey.runs, "output folders of `aaresolve run`, with images").required();
     c.option("-o,--out", o->out, "the page, NAME.html, or a folder for survey.html; the key NAME.key.json beside it")
         .required();
-    c.option("-q,--question", o->questions, std::string("one question; repeat for more:\n") + kQuestionForm).oneEach();
+    c.option("-Q,--question", o->questions, std::string("one question; repeat for more:\n") + kQuestionForm).oneEach();
     c.option("--questions", o->file, "a file with a question per line, in the same form; # begins a comment");
-    c.option("-m,--method", o->survey.methods, "a method for questions that name none; repeat for more; default all")
-        .oneEach();
+    c.option("-m,--method", o->methods,
+             "methods for questions that name none, comma-separated, or repeat the option; default all")
+        .oneEach()
+        .typeName("METHOD");
     c.option("--title", o->survey.title, "what participants read first");
     c.option("--intro", o->introFile, "a text file in place of the page's introduction, a paragraph per line");
     c.option("--seed", o->seed, "number from which the codes of pictures follow; default by chance");
     c.flag("--overwrite", o->overwrite, "replace the key of another survey: answers to it can then not be scored");
-    c.flag("--quiet", o->quiet, "no progress");
+    c.flag("-q,--quiet", o->quiet, "no progress");
     addWorkOptions(c, o->work);
     c.run([o, &context] { make(*o, context); });
 }

@@ -42,11 +42,11 @@ LinearPicture loadLinear(const fs::path& file, const RunResults& run) {
         throw InputError(file.string() + ": expected linear light, found 8-bit codes; run with --write exr");
     return {std::move(image.rgb), image.displayReferred};
 }
-const std::string& imageOf(const MethodResult& m, const fs::path& folder, int frame) {
+const std::string& imageOf(const RunResults& run, const MethodResult& m, const fs::path& folder, int frame) {
     const FrameResult* f = find(m, frame);
     if (!f)
         throw InputError(folder.string() + ": no image of frame " + std::to_string(frame) + " by '" + m.text +
-                         "'; run with --write exr and choose a frame that was written");
+                         "'; choose a frame that was written, or " + howToWriteAll(run));
     return f->image;
 }
 
@@ -165,11 +165,17 @@ std::vector<int> framesWithPictures(const RunResults& run) {
     return frames;
 }
 
+std::string howToWriteAll(const RunResults& run) {
+    const bool wroteNone = run.asked.find("write=none") != std::string::npos;
+    return std::string("run again with ") + (wroteNone ? "--write exr " : "") + "--write-frames all";
+}
+
 Pictures loadPictures(const RunResults& run, const fs::path& folder, int frame, const Exec& exec) {
     Pictures p;
     p.frame = frame;
     p.region = run.protocol.region;
-    for (const auto& m : run.methods) p.methods.push_back(loadEncoded(folder / imageOf(m, folder, frame), run, exec));
+    for (const auto& m : run.methods)
+        p.methods.push_back(loadEncoded(folder / imageOf(run, m, folder, frame), run, exec));
     if (const auto truth = run.truthImages.find(frame); truth != run.truthImages.end())
         p.truth = loadEncoded(folder / truth->second, run, exec);
     return p;
@@ -177,7 +183,7 @@ Pictures loadPictures(const RunResults& run, const fs::path& folder, int frame, 
 
 LinearPictures loadLinearPictures(const RunResults& run, const fs::path& folder, int frame) {
     LinearPictures p;
-    for (const auto& m : run.methods) p.methods.push_back(loadLinear(folder / imageOf(m, folder, frame), run));
+    for (const auto& m : run.methods) p.methods.push_back(loadLinear(folder / imageOf(run, m, folder, frame), run));
     if (const auto truth = run.truthImages.find(frame); truth != run.truthImages.end())
         p.truth = loadLinear(folder / truth->second, run);
     return p;

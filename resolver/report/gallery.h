@@ -17,6 +17,8 @@ struct Pictures {
 
 // Frames of which every method has an image on disk, ascending.
 std::vector<int> framesWithPictures(const RunResults& run);
+// What has a run write those that it lacks: "run again with --write-frames all".
+std::string howToWriteAll(const RunResults& run);
 // Throws InputError: no such frame, a file missing, damaged or of another size.
 Pictures loadPictures(const RunResults& run, const std::filesystem::path& folder, int frame, const Exec& exec);
 

@@ -38,18 +38,29 @@ std::vector<Crop> cropsOf(const Pictures& p, const SheetOptions& o, int most) {
 // Whether the truth is shown too. A reference method is a row of its own.
 bool showsTruth(const Pictures& p) { return !p.truth.empty(); }
 
-std::string titleOf(const RunResults& run) { return "anti-aliasing methods against " + referenceInWords(run.protocol); }
-std::string footOf(const SheetMethods& m, bool figures, bool errors, bool ownCrops) {
+std::string titleOf(const RunResults& run) {
+    return run.hasFigures() ? "anti-aliasing methods against " + referenceInWords(run.protocol)
+                            : "anti-aliasing methods, without a ground truth";
+}
+bool showsNoaa(const SheetMethods& m) {
+    const auto noaa = noaaOf(m.run);
+    return noaa && std::find(m.order.begin(), m.order.end(), *noaa) != m.order.end();
+}
+// `allFigures`: labels show them all, and else PSNR alone.
+std::string footOf(const SheetMethods& m, bool allFigures, bool errors, bool ownCrops) {
     const RunResults& run = m.run;
-    std::string text = "Best PSNR first. Crops: unfiltered pixels";
-    text += ownCrops ? ". " : ", where the methods differ most. ";
-    if (!m.best.empty()) text += "\u2605 best of the methods shown. ";
-    if (errors) text += "Figures and errors: " + inWords(run.protocol) + ". ";
-    if (figures && run.shownOn) text += "JOD as seen on " + run.shownOn->display + ". ";
-    if (figures && m.overTime)
-        text += run.isStatic
-                    ? "Flicker: spread over time, 8-bit codes. "
-                    : "Flicker along the motion in 8-bit codes; ghosts: error where something came into view. ";
+    const bool judged = m.figures.contains("psnr");
+    std::string text = judged ? "Best PSNR first. " : "";
+    text += std::string("Crops: unfiltered pixels") + (ownCrops ? ". " : ", where the methods differ most. ");
+    if (allFigures ? !m.best.empty() : m.best.contains("psnr")) text += "\u2605 best of the methods shown";
+    if (allFigures && m.marksTime() && showsNoaa(m)) text += "; of time without noaa, which does nothing";
+    if (text.back() != ' ') text += ". ";
+    if (judged || errors)
+        text += (!errors ? "Figures: " : judged ? "Figures and errors: " : "Errors: ") + inWords(run.protocol) + ". ";
+    if (allFigures && judged && run.shownOn) text += "JOD as seen on " + run.shownOn->display + ". ";
+    if (allFigures && m.figures.contains("flicker"))
+        text += run.isStatic ? "Flicker: spread over time, 8-bit codes. " : "Flicker along the motion in 8-bit codes. ";
+    if (allFigures && m.figures.contains("ghosts")) text += "Ghosts: error where something came into view. ";
     return text;
 }
 SheetLabel truthLabel(const RunResults& run, int width, const Theme& theme, const Canvas& pen, bool brief) {

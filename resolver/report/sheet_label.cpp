@@ -53,7 +53,7 @@ std::vector<ShownFigure> figuresOf(const RunResults& run, const MethodResult& m)
             {"ghosts", "ghosts", shortNumber(*m.temporal->ghostExcess), "x noaa", false, *m.temporal->ghostExcess});
     return all;
 }
-// What no anti-aliasing costs is no feat.
+// What no anti-aliasing costs is no feat; the sheet's foot says so.
 bool competes(const MethodResult& m, const std::string& key) {
     return m.id != "noaa" || (key != "time" && key != "device");
 }
@@ -65,10 +65,27 @@ std::string gainInterval(const RunResults& run, size_t method) {
     const std::string words = intervalInBrackets(*c);
     return words.substr(1, words.size() - 2);
 }
+// A method is better or worse than no anti-aliasing where that is resolved, by the rule of the report's tables.
+Colour toneOf(bool resolved, bool better, const Theme& theme) {
+    return !resolved ? theme.ink : better ? theme.better : theme.worse;
+}
+Colour gainTone(const RunResults& run, size_t method, const Theme& theme) {
+    const auto noaa = noaaOf(run);
+    const auto c = noaa ? compared(run, method, *noaa) : std::nullopt;
+    return toneOf(c && c->resolved, *run.methods[method].pooled->gainDb >= 0, theme);
+}
+Colour ghostTone(const RunResults& run, size_t method, const Theme& theme) {
+    const auto noaa = noaaOf(run);
+    const auto pair = std::find_if(run.pairs.begin(), run.pairs.end(), [&](const PairResult& p) {
+        return noaa && std::minmax(p.first, p.second) == std::minmax(method, *noaa);
+    });
+    const bool resolved = pair != run.pairs.end() && pair->ghost && pair->ghost->resolved;
+    return toneOf(resolved, *run.methods[method].temporal->ghostExcess <= 1, theme);
+}
 }  // namespace
 
 SheetMethods sheetMethods(const RunResults& run, const std::vector<size_t>& order) {
-    SheetMethods methods{run, order, {}, false};
+    SheetMethods methods{run, order, {}, {}};
     struct Top {
         double number;
         std::string text;
@@ -77,8 +94,8 @@ SheetMethods sheetMethods(const RunResults& run, const std::vector<size_t>& orde
     std::map<std::string, Top> tops;
     for (const size_t i : order) {
         const MethodResult& m = run.methods[i];
-        methods.overTime = methods.overTime || m.temporal.has_value();
         for (const ShownFigure& s : figuresOf(run, m)) {
+            methods.figures.insert(s.key);
             if (!competes(m, s.key) || s.number != s.number) continue;
             auto [top, isNew] = tops.try_emplace(s.key, Top{s.number, s.value, 0});
             top->second.count++;
@@ -131,12 +148,12 @@ SheetLabel SheetLabel::full(const SheetMethods& methods, size_t place, int width
     for (const ShownFigure& s : figuresOf(methods.run, m)) {
         const auto best = methods.best.find(s.key);
         const bool isBest = best != methods.best.end() && best->second == s.value && competes(m, s.key);
-        const Colour colour = s.key == "ghosts" ? (s.number <= 1 ? theme.better : theme.worse) : theme.ink;
+        const Colour colour = s.key == "ghosts" ? ghostTone(methods.run, methods.order[place], theme) : theme.ink;
         label.figure(s.name, s.value, s.unit, colour, isBest);
         if (!s.spread.empty()) label.small(s.spread);
         if (s.key != "psnr" || !m.pooled->gainDb || m.id == "noaa") continue;
         label.figure("over noaa", signedDecibelNumber(*m.pooled->gainDb), "dB",
-                     *m.pooled->gainDb >= 0 ? theme.better : theme.worse, false);
+                     gainTone(methods.run, methods.order[place], theme), false);
         if (const std::string interval = gainInterval(methods.run, methods.order[place]); !interval.empty())
             label.small(interval);
     }
@@ -160,7 +177,7 @@ SheetLabel SheetLabel::brief(const SheetMethods& methods, size_t place, int widt
                    14, theme.ink);
         if (m.pooled->gainDb && m.id != "noaa")
             label.text(signedDecibelNumber(*m.pooled->gainDb) + " dB over noaa", 13,
-                       *m.pooled->gainDb >= 0 ? theme.better : theme.worse);
+                       gainTone(methods.run, methods.order[place], theme));
     }
     return label;
 }

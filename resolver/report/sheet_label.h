@@ -1,6 +1,7 @@
 // What a contact sheet says of a method: its name, its figures, the best of each marked.
 #pragma once
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,9 @@ struct SheetMethods {
     // By the name of a figure, as it is printed: what several reach is marked at all of them. Only figures that two
     // methods or more have.
     std::map<std::string, std::string, std::less<>> best;
-    bool overTime = false;  // figures of flicker and ghosts are there
+    std::set<std::string, std::less<>> figures;  // that one of them has, by the same names
+
+    bool marksTime() const { return best.contains("time") || best.contains("device"); }
 
     const MethodResult& at(size_t place) const { return run.methods[order[place]]; }
 };

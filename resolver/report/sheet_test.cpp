@@ -235,6 +235,78 @@ TEST(Sheet, NamesAreWholeAndTheBestIsMarked) {
         EXPECT_EQ(stars, 2);  // PSNR, time; noaa's time does not count
     }
 }
+std::string allTexts(const Canvas& canvas) {
+    std::string all;
+    for (const auto& t : texts(canvas)) all += t + "\n";
+    return all;
+}
+TEST(Sheet, TheFootSaysWhatTheStarsLeaveOut) {
+    const Drawn d;
+    const auto foot = [&](const std::vector<size_t>& order, const SheetOptions& o) {
+        Shown shown = d.shown();
+        shown.order = order;
+        shown.pictures = [&](int f) {
+            Pictures p = d.shown().pictures(f);
+            p.methods.resize(order.size());
+            return p;
+        };
+        std::string all = allTexts(sheet(shown, 4, o, {})[0]);
+        std::replace(all.begin(), all.end(), '\n', ' ');
+        return all;
+    };
+    const SheetOptions rows{.crops = {kCrop}}, grid{.crops = {kCrop}, .arrangement = Arrangement::grid};
+    EXPECT_NE(foot({2, 1, 0}, rows).find("\u2605 best of the methods shown; of time without noaa"), std::string::npos);
+    EXPECT_NE(foot({2, 1}, rows).find("\u2605 best of the methods shown. "), std::string::npos);
+    EXPECT_NE(foot({2, 1, 0}, grid).find("\u2605 best of the methods shown. "), std::string::npos) << "PSNR alone";
+}
+TEST(Sheet, WithoutTruthNothingIsSaidOfIt) {
+    Drawn d;
+    for (MethodResult& m : d.run.methods) {
+        m.pooled.reset();
+        m.temporal.emplace();
+    }
+    for (const Arrangement a : {Arrangement::rows, Arrangement::grid}) {
+        Shown shown = d.shown();
+        shown.pictures = [&](int f) {
+            Pictures p = d.shown().pictures(f);
+            p.truth = {};
+            return p;
+        };
+        const std::string all = allTexts(sheet(shown, 4, {.crops = {kCrop}, .arrangement = a}, {})[0]);
+        EXPECT_NE(all.find("anti-aliasing methods, without a ground truth"), std::string::npos) << all;
+        for (const char* word : {"against", "PSNR", "Flicker", "hosts", "Figures", "Errors"})
+            EXPECT_EQ(all.find(word), std::string::npos) << word << " in " << all;
+        EXPECT_EQ(all.find("\u2605") != std::string::npos, a == Arrangement::rows) << "times alone have stars";
+    }
+}
+TEST(Sheet, GainsAndGhostsHaveAColourWhereTheyAreResolved) {
+    Drawn d;
+    d.run.methods[2].pooled->gainDb = -2;
+    for (size_t m : {1u, 2u}) {
+        d.run.methods[m].temporal.emplace().ghostExcess = m == 1 ? 0.5 : 1.5;
+        PairResult p;
+        p.second = m;
+        p.ghost.emplace();
+        d.run.pairs.push_back(p);
+    }
+    const Theme& theme = sheetTheme(false);
+    const auto colourOf = [&](const std::string& text, Arrangement a) {
+        const auto pages = sheet(d.shown(), 4, {.crops = {kCrop}, .arrangement = a}, {});
+        for (const auto& mark : pages[0].marks())
+            if (const auto* t = std::get_if<Canvas::Text>(&mark); t && t->text == text) return t->colour;
+        ADD_FAILURE() << text;
+        return Colour{};
+    };
+    const auto row = Arrangement::rows;
+    for (const bool resolved : {false, true}) {
+        for (PairResult& p : d.run.pairs) p.comparison.resolved = p.ghost->resolved = resolved;
+        EXPECT_EQ(colourOf("+1.00", row), resolved ? theme.better : theme.ink);
+        EXPECT_EQ(colourOf("-2.00", row), resolved ? theme.worse : theme.ink);
+        EXPECT_EQ(colourOf("0.5", row), resolved ? theme.better : theme.ink);
+        EXPECT_EQ(colourOf("1.5", row), resolved ? theme.worse : theme.ink);
+        EXPECT_EQ(colourOf("-2.00 dB over noaa", Arrangement::grid), resolved ? theme.worse : theme.ink);
+    }
+}
 TEST(Sheet, QuartilesStandUnderTheirFigure) {
     Drawn d;
     MethodResult& m = d.run.methods[2];

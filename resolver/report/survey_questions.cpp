@@ -6,11 +6,14 @@
 #include <sstream>
 
 #include "image/error.h"
+#include "methods/choosing.h"
 #include "study/survey.h"
 
 namespace aa {
 namespace {
 constexpr const char* kTruth = "truth";
+constexpr std::string_view kKinds[] = {"rank", "pair", "pairs", "rating"};
+bool isKind(std::string_view word) { return std::find(std::begin(kKinds), std::end(kKinds), word) != std::end(kKinds); }
 
 // Of "4,8,15,16" or "1-9", split at `separator`; nothing unless they are `count` whole numbers.
 std::optional<std::vector<int>> numbersOf(std::string_view text, char separator, size_t count) {
@@ -34,12 +37,12 @@ std::string joined(const std::vector<std::string>& texts) {
     for (const auto& t : texts) all += (all.empty() ? "" : ", ") + t;
     return all;
 }
+bool isQuestion(const std::string& text) { return isKind(text.substr(0, text.find(' '))); }
 QuestionWish wishOf(const std::string& text) {
     QuestionWish wish;
     std::istringstream in(text);
-    constexpr std::string_view kKinds[] = {"rank", "pair", "pairs", "rating"};
     in >> wish.kind;
-    if (std::find(std::begin(kKinds), std::end(kKinds), wish.kind) == std::end(kKinds)) {
+    if (!isKind(wish.kind)) {
         const std::string near = suggestion(wish.kind, {std::begin(kKinds), std::end(kKinds)});
         throw UsageError("expected rank, pair, pairs or rating first, found '" + wish.kind + "'" +
                          (near.empty() ? "" : "; did you mean '" + near + "'?"));
@@ -50,7 +53,7 @@ QuestionWish wishOf(const std::string& text) {
         const std::string name = word.substr(0, equals),
                           value = equals == std::string::npos ? "" : word.substr(equals + 1);
         if (equals == std::string::npos || name.find_first_of(":+") != std::string::npos) {
-            wish.methods.push_back(word);
+            for (auto& method : splitMethods(word)) wish.methods.push_back(std::move(method));
         } else if (name == "text") {
             std::getline(in, wish.text);
             wish.text = value + wish.text;
@@ -84,8 +87,8 @@ QuestionWish wishOf(const std::string& text) {
 
 std::vector<int> framesOf(const QuestionWish& wish, const SurveyRun& run) {
     if (run.frames.empty())
-        throw InputError(run.folder.string() +
-                         ": no frame of which every method has an image; run again with --write exr");
+        throw InputError(run.folder.string() + ": no frame of which every method has an image; " +
+                         howToWriteAll(run.results));
     if (!wish.frame.empty()) {
         const auto one = numbersOf(wish.frame, ',', 1);
         if (!one) throw UsageError("frame: expected a whole number, found '" + wish.frame + "'");
@@ -107,7 +110,7 @@ std::vector<int> framesOf(const QuestionWish& wish, const SurveyRun& run) {
         if (f >= range[0] && f <= range[1]) frames.push_back(f);
     if (frames.size() < 2)
         throw UsageError("frames: expected two or more with images, found " + std::to_string(frames.size()) + " in " +
-                         run.name + " (write them all: run --write exr --write-frames all)");
+                         run.name + " (" + howToWriteAll(run.results) + ")");
     return frames;
 }
 std::vector<std::string> methodsOf(const QuestionWish& wish, const SurveyRun& run,

@@ -24,6 +24,8 @@ struct QuestionWish {
     double framesPerSecond = 24;
 };
 
+// Whether a text begins with a kind of question.
+bool isQuestion(const std::string& text);
 // Of "KIND [METHOD...] [run=R] ...", see kQuestionForm.
 QuestionWish wishOf(const std::string& text);
 // Frames with pictures; of a run without any an InputError.

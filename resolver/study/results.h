@@ -165,6 +165,7 @@ struct RunResults {
     std::vector<PairResult> pairs;  // every pair of methods with truth
 
     size_t framesDone() const { return methods.empty() ? 0 : methods[0].frames.size(); }
+    bool hasFigures() const;     // of a method at least: its frames had a truth, or another method was the reference
     bool jitterCentred() const;  // |mean| below 1e-4 px
     // The method that the others are held against: it has time and pictures, and no figures.
     bool isReference(const MethodResult& m) const { return m.text == protocol.reference; }

@@ -172,6 +172,9 @@ std::string incompleteInWords(const RunResults& run) {
                        : "interrupted after " + std::to_string(run.framesDone()) + asked + " frames";
 }
 
+bool RunResults::hasFigures() const {
+    return std::any_of(methods.begin(), methods.end(), [](const MethodResult& m) { return m.pooled.has_value(); });
+}
 bool RunResults::jitterCentred() const { return std::abs(jitterMeanPx[0]) < 1e-4 && std::abs(jitterMeanPx[1]) < 1e-4; }
 
 std::vector<FrameSum> ghostSums(const MethodResult& m) {

@@ -142,7 +142,7 @@ class Choosing(ProgramTest):
         self.aaresolve("report", f"{name}/out", **any_bytes)
         page = f"{name}/survey.html"
         self.aaresolve(
-            "survey", "make", f"{name}/out", "-q", "rating noaa", "-o", page, **any_bytes
+            "survey", "make", f"{name}/out", "-Q", "rating noaa", "-o", page, **any_bytes
         )
         with open(f"{name}/survey.key.json", encoding="utf-8") as key:
             json.load(key)

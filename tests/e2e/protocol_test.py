@@ -319,7 +319,7 @@ class Protocol(ProgramTest):
         self.assertIn("msaa gets wrong counts as right", page)
         self.assertIn("against msaa (not the truth)", page)
         words = ("judged against msaa", "no images of the truth")
-        question = ("-o", self.folder / "survey.html", "-q", "pair noaa truth")
+        question = ("-o", self.folder / "survey.html", "-Q", "pair noaa truth")
         self.refused(3, "survey", "make", out, *question, says=words)
         plain = self.synth("circles", "plain", "--for", "noaa", frames=2)
         out = self.folder / "none"

@@ -278,6 +278,30 @@ class Sheet(ProgramTest):
                 self.assertEqual(len(done.stderr.splitlines()), 1)
                 self.assertFalse((self.folder / name).exists())
 
+    def test_of_a_run_without_truth(self) -> None:
+        shot, run = self.folder / "shot", self.folder / "blind"
+        self.synth("moving", shot, SIZE, 3)
+        manifest = json.loads((shot / "shot.json").read_text())
+        for frame in manifest["frames"]:
+            del frame["truth"]
+        (shot / "shot.json").write_text(json.dumps(manifest))
+        asked = ("run", shot, "-m", "noaa,fxaa311", "-o", run, "-q")
+        told = self.aaresolve(*asked).stdout
+        for words in ("none of these frames has a ground truth", "--reference METHOD", "all\n"):
+            self.assertIn(words, told)
+        for words in ("PSNR", "gain dB", "SSIM", "sRGB"):
+            self.assertNotIn(words, told)
+        # What is advised helps.
+        for command in (("sheet", run), ("survey", "make", run, "-o", self.folder / "s.html")):
+            self.refused(3, *command, says=("has an image; run again with --write-frames all",))
+        told = self.aaresolve(*asked, "--write-frames", "all").stdout
+        self.assertNotIn("--write-frames", told)
+        self.aaresolve("sheet", run)
+        self.aaresolve("survey", "make", run, "-q", "-o", self.folder / "s.html")
+        self.assertIn("PSNR", self.aaresolve(*asked, "--reference", "fxaa311").stdout)
+        self.aaresolve(*asked, "--write", "none")
+        self.refused(3, "sheet", run, says=("--write exr --write-frames all",))
+
     def test_what_is_refused(self) -> None:
         def refuse(code: int, *options: object, says: str, name: str = "o.png") -> None:
             line = self.refused(

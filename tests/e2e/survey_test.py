@@ -49,15 +49,26 @@ class Survey(ProgramTest):
         pooled = results["methods"][0]["pooled"]["psnr"]
         self.assertAlmostEqual(key["questions"][0]["pictures"][0]["run"]["psnr"], pooled)
         key, _ = self.made(
-            run, "-m", "smaa1x", "-m", "noaa", "-q", "pairs", "-q", "rating frames=2-3"
+            run, "-m", "smaa1x", "-m", "noaa", "-Q", "pairs", "-Q", "rating frames=2-3"
         )
         self.assertEqual(self.methods_of(key), [["smaa1x", "noaa"]] * 2)
+        # Commas as everywhere, in the option and in a question; -q is no progress.
+        comma, _ = self.made(
+            run, "-m", "smaa1x,noaa", "--question", "pairs", "-Q", "rank truth,noaa fxaa311"
+        )
+        self.assertEqual(self.methods_of(comma), [["smaa1x", "noaa"], ["truth", "noaa", "fxaa311"]])
+        quiet = self.aaresolve("survey", "make", run, "-q", "-o", self.folder / "quiet.html")
+        self.assertEqual(quiet.stderr, "")
+        self.refused(
+            2, "survey", "make", run, "-q", "rank noaa", "-o", self.folder / "quiet.html",
+            says=("'rank noaa' is a question", "--question"),
+        )  # fmt: skip
         self.assertEqual([q["kind"] for q in key["questions"]], ["pair", "rating"])
         self.assertEqual(key["questions"][1]["frames"], [2, 3])
         self.assertEqual(key["questions"][1]["framesPerSecond"], 24)
         # A region changes what was seen, so also its figures; the same picture keeps its code.
         key, _ = self.made(
-            run, "-q", "rank region=1,2,30,20", "-q", "pair noaa smaa1x region=1,2,30,20"
+            run, "-Q", "rank region=1,2,30,20", "-Q", "pair noaa smaa1x region=1,2,30,20"
         )
         self.assertNotEqual(key["questions"][0]["pictures"][0]["shown"]["psnr"], shown["psnr"])
         code = [{p["method"]: p["code"] for p in q["pictures"]} for q in key["questions"]]
@@ -82,7 +93,7 @@ class Survey(ProgramTest):
         same = self.folder / "again/moving"
         same.parent.mkdir()
         same.symlink_to(one)
-        key, _ = self.made(one, two, "-q", "rank", "-q", "pair run=other", "-q", "rating run=1")
+        key, _ = self.made(one, two, "-Q", "rank", "-Q", "pair run=other", "-Q", "rating run=1")
         self.assertEqual(
             [(q["kind"], q["run"]) for q in key["questions"]],
             [("rank", "moving"), ("rank", "other"), ("pair", "other"), ("rating", "moving")],
@@ -116,7 +127,7 @@ class Survey(ProgramTest):
 
     def test_no_name_of_a_method_is_in_the_page(self) -> None:
         run = self.run_of(METHODS)
-        self.made(run, "-q", "rank", "-q", "pair noaa truth")
+        self.made(run, "-Q", "rank", "-Q", "pair noaa truth")
         page = (self.folder / "survey/survey.html").read_text()
         readable = re.sub(r'"data:image/png;base64,[^"]*"', "", page)
         self.assertLess(len(readable), len(page))
@@ -129,10 +140,10 @@ class Survey(ProgramTest):
 
     def test_what_misleads_is_noted(self) -> None:
         run = self.run_of(METHODS[:2])
-        _, noted = self.made(run, "-q", "pair text=Is smaa1x, or fxaa311, better?")
+        _, noted = self.made(run, "-Q", "pair text=Is smaa1x, or fxaa311, better?")
         self.assertIn("q1: its text names the method fxaa311", noted)
         self.assertNotIn("same pixels", noted)
-        _, noted = self.made(run, "-q", "pair region=0,0,1,1")
+        _, noted = self.made(run, "-Q", "pair region=0,0,1,1")
         self.assertIn("q1: noaa and fxaa311 have the same pixels here", noted)
 
     def test_questions_are_checked(self) -> None:
@@ -140,7 +151,7 @@ class Survey(ProgramTest):
         page = self.folder / "survey.html"
 
         def refused(question: str, *says: str) -> None:
-            self.refused(2, "survey", "make", run, "-o", page, "-q", question, says=says)
+            self.refused(2, "survey", "make", run, "-o", page, "-Q", question, says=says)
 
         refused("ranks noaa", "did you mean 'rank'?")
         refused("rank noaa fxaa31", "no method 'fxaa31' in moving", "did you mean 'fxaa311'?")
@@ -168,7 +179,7 @@ class Survey(ProgramTest):
         self.refused(2, "survey", says=("expected make or score, found nothing",))
 
     def test_bad_answers_are_refused(self) -> None:
-        key, _ = self.made(self.run_of(METHODS[:2]), "-q", "rank", "-q", "pair")
+        key, _ = self.made(self.run_of(METHODS[:2]), "-Q", "rank", "-Q", "pair")
         page = self.folder / "survey/survey.html"
         codes = [p["code"] for p in key["questions"][0]["pictures"]]
         good = {
