@@ -14,6 +14,7 @@
 #include "shot/pass_table.h"
 #include "study/json_number.h"
 #include "study/machine_load.h"
+#include "study/megabyte.h"
 #include "study/provenance.h"
 
 namespace aa {
@@ -22,14 +23,15 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Options = BenchOptions;
 struct Error {  // against the double form, over all frames
-    double largest = NAN, rms = NAN;
+    double largest = 0, rms = 0;
     size_t nonFinite = 0;  // values of the results that are no numbers
 };
 struct Row {
     std::string text;
     Isa isa = bestIsa();
     Spread ns{};  // processor time per pixel
-    double wallNs = 0, nsPerEdgePixel = 0;
+    double wallNs = 0;
+    std::optional<double> nsPerEdgePixel{};  // where there are edges
     size_t inputBytes = 0, targetBytes = 0, stateBytes = 0;
     std::optional<Error> error{};
 };
@@ -58,7 +60,7 @@ Row time(const MethodSpec& spec, const Frames& all, const Exec& exec, int repeat
     row.inputBytes = bytesOf(spec.passes(), frames[0], all.info.subSamplePositionsPx.size());
     row.targetBytes = bytesOfTarget(all.info.width, all.info.height);
     row.ns = spreadOf(ns), row.wallNs = spreadOf(wallNs).median;
-    row.nsPerEdgePixel = all.edgeShare > 0 ? row.ns.median / all.edgeShare : NAN;
+    if (all.edgeShare > 0) row.nsPerEdgePixel = row.ns.median / all.edgeShare;
     return row;
 }
 
@@ -107,14 +109,14 @@ void printHead(const Options& o, const Frames& f) {
     }
     std::printf(
         "%s, %s\n%s, %dx%d, %zu frames, %.1f %% edge pixels; processor time\n"
-        "%-32s %9s %9s %9s %19s %9s %9s %9s %9s %9s %9s %7s %12s %12s\n",
+        "%-32s %9s %9s %9s %19s %9s %9s %9s %9s %9s %9s %7s%s\n",
         thisMachine().processor.c_str(),
         o.work.threads == 0   ? "all threads"
         : o.work.threads == 1 ? "1 thread"
                               : (std::to_string(o.work.threads) + " threads").c_str(),
         (o.shot.empty() ? f.scene : o.shot).c_str(), f.info.width, f.info.height, countOf(f), 100 * f.edgeShare,
         "method", "set", "ns/px", "min", "quartiles", "by clock", "ns/edge", "ms", "input MB", "target MB", "state MB",
-        "planes", "max error", "rms error");
+        "planes", o.noError ? "" : "    max error    rms error");
 }
 void printCounted(const SanitiseCounts& counts) {
     for (const auto& [what, count] : counted(counts))
@@ -124,18 +126,21 @@ void printCounted(const SanitiseCounts& counts) {
 }
 void printRow(const Options& o, const Row& row, const ShotInfo& info) {
     if (o.json) return;
-    const Error error = row.error.value_or(Error{});
     const double planes = statePlanes(row, info), ms = row.ns.median * 1e-6 * info.width * info.height;
-    if (o.markdown)
-        std::printf("| `%s` | %.1f | %.2g | %.2g |\n", row.text.c_str(), planes, error.largest, error.rms);
-    else
-        std::printf("%-32s %9s %9.2f %9.2f %9.2f %9.2f %9.2f %9.1f %9.3f %9.2f %9.2f %9.2f %7.1f %12.3g %12.3g\n",
-                    row.text.c_str(), std::string(name(row.isa)).c_str(), row.ns.median, row.ns.least, row.ns.low,
-                    row.ns.high, row.wallNs, row.nsPerEdgePixel, ms, double(row.inputBytes) / (1 << 20),
-                    double(row.targetBytes) / (1 << 20), double(row.stateBytes) / (1 << 20), planes, error.largest,
-                    error.rms);
-    if (error.nonFinite > 0)
-        std::printf("%s: %zu values of its results are no numbers\n", row.text.c_str(), error.nonFinite);
+    if (o.markdown) {
+        std::printf("| `%s` | %.1f | %.2g | %.2g |\n", row.text.c_str(), planes, row.error->largest, row.error->rms);
+    } else {
+        char edge[32] = "-";  // a picture without edges
+        if (row.nsPerEdgePixel) std::snprintf(edge, sizeof edge, "%.1f", *row.nsPerEdgePixel);
+        std::printf("%-32s %9s %9.2f %9.2f %9.2f %9.2f %9.2f %9s %9.3f %9.2f %9.2f %9.2f %7.1f", row.text.c_str(),
+                    std::string(name(row.isa)).c_str(), row.ns.median, row.ns.least, row.ns.low, row.ns.high,
+                    row.wallNs, edge, ms, double(row.inputBytes) / kMegabyte, double(row.targetBytes) / kMegabyte,
+                    double(row.stateBytes) / kMegabyte, planes);
+        if (row.error) std::printf(" %12.3g %12.3g", row.error->largest, row.error->rms);
+        std::puts("");
+    }
+    if (row.error && row.error->nonFinite > 0)
+        std::printf("%s: %zu values of its results are no numbers\n", row.text.c_str(), row.error->nonFinite);
     std::fflush(stdout);
 }
 Json jsonOf(const Row& row, const Frames& frames) {
@@ -147,7 +152,7 @@ Json jsonOf(const Row& row, const Frames& frames) {
               {"nsPerPixelHigh", row.ns.high},
               {"nsPerPixelMin", row.ns.least},
               {"wallNsPerPixel", row.wallNs},
-              {"nsPerEdgePixel", jsonNumber(row.nsPerEdgePixel)},
+              {"nsPerEdgePixel", jsonNumber(row.nsPerEdgePixel.value_or(NAN))},
               {"edgeShare", frames.edgeShare},
               {"inputBytes", row.inputBytes},
               {"targetBytes", row.targetBytes},

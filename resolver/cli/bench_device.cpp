@@ -8,6 +8,7 @@
 #include "image/error.h"
 #include "image/json_text.h"
 #include "methods/driver.h"
+#include "study/megabyte.h"
 
 namespace aa {
 namespace {
@@ -78,7 +79,7 @@ void print(const DeviceRow& r, double copyRate) {
     std::snprintf(size, sizeof size, "%dx%d", r.width, r.height);
     std::printf("%-28s %10s %9.4f %8.4f %8.4f %9.1f %9.1f %7.0f %8.0f%%  %.1f\n", r.text.c_str(), size,
                 1e3 * r.total.median, 1e3 * r.total.low, 1e3 * r.total.high, read / r.pixels(), written / r.pixels(),
-                1e-9 * r.bytesPerSecond(), 100 * r.bytesPerSecond() / copyRate, double(r.stateBytes) / (1 << 20));
+                1e-9 * r.bytesPerSecond(), 100 * r.bytesPerSecond() / copyRate, double(r.stateBytes) / kMegabyte);
     if (r.passes.size() > 1)
         for (const PassCost& p : r.passes)
             std::printf("    %-35s %9.4f\n", p.shader.c_str(), 1e3 * spreadOf(p.seconds).median);

@@ -7,6 +7,7 @@
 #include "report/html.h"
 #include "report/stability.h"
 #include "report/summary.h"
+#include "study/megabyte.h"
 
 namespace aa {
 namespace {
@@ -14,7 +15,7 @@ namespace fs = std::filesystem;
 struct ReportArguments {
     std::vector<std::string> runs;
     std::string out, embed = "full";
-    double limitMb = double(EmbedOptions().limitBytes) / 1e6;
+    double limitMb = double(EmbedOptions().limitBytes) / kMegabyte;
     bool hdr = false;
     WorkOptions work;
 };
@@ -56,13 +57,13 @@ void writeReport(const ReportArguments& o) {
                                      : o.embed == "crops" ? Embed::crops
                                                           : Embed::none,
                              .floats = o.hdr,
-                             .limitBytes = size_t(o.limitMb * 1e6)};
+                             .limitBytes = size_t(o.limitMb * kMegabyte)};
     withThreads(o.work.threads, [&] {
         const ViewerData viewer = viewerData(run, given, embed, exec);
         const std::string page = reportHtml(run, viewer, stabilityForReport(given) + anglesForReport(given));
         writeText(out, page);
-        std::printf("%s: %.1f MB, of which pictures %.1f MB", out.c_str(), double(page.size()) / 1e6,
-                    double(viewer.textBytes()) / 1e6);
+        std::printf("%s: %.1f MB, of which pictures %.1f MB", out.c_str(), double(page.size()) / kMegabyte,
+                    double(viewer.textBytes()) / kMegabyte);
         if (!viewer.views.empty()) {
             const auto& v = viewer.views[0];
             std::printf(" (%s, %d x %d px%s)", framesInWords(v.frames).c_str(), v.window.width, v.window.height,

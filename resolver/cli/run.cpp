@@ -11,6 +11,7 @@
 #include "report/advice.h"
 #include "report/format.h"
 #include "report/gallery.h"
+#include "study/megabyte.h"
 
 namespace aa {
 namespace {
@@ -100,7 +101,7 @@ void printCost(const RunResults& r, const MethodResult& m) {
     } else {
         std::printf(" %8s %13s", "-", "-");
     }
-    std::printf(" %8.2f %8.2f", double(m.inputBytes) / (1 << 20), double(m.stateBytes) / (1 << 20));
+    std::printf(" %8.2f %8.2f", double(m.inputBytes) / kMegabyte, double(m.stateBytes) / kMegabyte);
     if (m.deviceSecondsMedian) std::printf(" %10.4f", 1e3 * *m.deviceSecondsMedian);
     std::puts("");
 }

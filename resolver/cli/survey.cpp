@@ -14,6 +14,7 @@
 #include "image/json_text.h"
 #include "methods/choosing.h"
 #include "report/survey_questions.h"
+#include "study/megabyte.h"
 
 namespace aa {
 namespace {
@@ -100,7 +101,7 @@ void make(MakeOptions& o, Context& context) {
     for (const auto& note : survey.notes)
         std::fprintf(stderr, "aaresolve: survey: note: %s\n", onOneLine(note).c_str());
     std::printf("%zu questions, %zu pictures, %.1f MB\n", survey.key.questions.size(), survey.pictures,
-                double(survey.page.size()) / 1e6);
+                double(survey.page.size()) / kMegabyte);
     for (const auto& q : survey.key.questions) {
         std::printf("%-4s %-6s %s, ", q.id.c_str(), name(q.kind), q.run.c_str());
         if (q.isPlayed())
@@ -121,9 +122,8 @@ struct ScoreOptions {
     bool json = false;
 };
 std::string shownScore(const ScoredSet& set, const Estimate& e) {
-    const bool share = set.kind == QuestionKind::pair && !set.isBradleyTerry();
     char text[64];
-    const double by = share ? 100 : 1;
+    const double by = set.isShare() ? 100 : 1;
     if (e.low)
         std::snprintf(text, sizeof text, "%7.2f  %6.2f to %6.2f", by * e.value, by * *e.low, by * *e.high);
     else

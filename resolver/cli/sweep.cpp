@@ -72,7 +72,7 @@ void addSweep(CommandLine& line, Context& context) {
         .oneEach();
     c.option("--with", o->sweep.with, "methods to compare with, as they are, with commas; none = without")
         .typeName("METHOD");
-    c.option("--memory", o->sweep.memoryMb, "MiB that all variants may hold at a time; more are run in another pass")
+    c.option("--memory", o->sweep.memoryMb, "MB that all variants may hold at a time; more are run in another pass")
         .range(1.0, 1e7);
     addRunArguments(c, o->run);
     c.run([o, &context] { execute(*o, context); });

@@ -13,6 +13,7 @@
 #include "report/page.h"
 #include "report/survey_questions.h"
 #include "report/web/web_files.h"
+#include "study/megabyte.h"
 
 namespace aa {
 namespace {
@@ -278,7 +279,7 @@ class Maker {
                                                 {"surveyJs", web::surveyJs},
                                                 {"data", forScript(page)}});
         if (survey_.bytes > kLargePage)
-            survey_.notes.push_back("the page has " + std::to_string(survey_.page.size() / 1'000'000) +
+            survey_.notes.push_back("the page has " + std::to_string(size_t(double(survey_.page.size()) / kMegabyte)) +
                                     " MB; region= shows less of a picture, frames= fewer");
         return std::move(survey_);
     }

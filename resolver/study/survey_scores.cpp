@@ -196,6 +196,12 @@ void judgeRanks(ScoredSet& set, const SurveyKey& key, const Answers& answers) {
     for (const auto& p : set.pictures) squares += std::pow(m * p.score.value - m * (n + 1) / 2, 2);
     set.kendallW = 12 * squares / (m * m * (n * n * n - n));
 }
+// Of a share of wins, and of its difference from the other's: 2 share - 1.
+void giveWilsons(ScoredPicture& p) {
+    p.score = p.best;
+    if (!p.toNext || !p.best.low) return;
+    p.toNext->low = 2 * *p.best.low - 1, p.toNext->high = 2 * *p.best.high - 1;
+}
 void addIntervals(SurveyScores& scores, const std::vector<std::vector<Ballot>>& ballots,
                   const std::vector<FigureOfPictures>& figures) {
     Pcg32 random;
@@ -229,10 +235,13 @@ void addIntervals(SurveyScores& scores, const std::vector<std::vector<Ballot>>& 
     for (size_t s = 0; s < scores.sets.size(); s++)
         for (size_t a = 0; a < scores.sets[s].pictures.size(); a++) {
             ScoredPicture& p = scores.sets[s].pictures[a];
-            score[s][a].into(p.score);
-            if (!p.toNext) continue;
-            next[s][a].into(*p.toNext);
-            p.resolved = p.toNext->low && (*p.toNext->low > 0 || *p.toNext->high < 0);
+            if (scores.sets[s].isShare()) {
+                giveWilsons(p);
+            } else {
+                score[s][a].into(p.score);
+                if (p.toNext) next[s][a].into(*p.toNext);
+            }
+            p.resolved = p.toNext && p.toNext->low && (*p.toNext->low > 0 || *p.toNext->high < 0);
         }
     const auto give = [&](std::vector<Agreement>& to, std::vector<std::array<Resampled, 2>>& from) {
         for (size_t f = 0; f < figures.size(); f++) {

@@ -3,14 +3,14 @@
 //
 // - rank: score = sum over ranks of rank * share = mean rank; 1 is best.
 // - rating: the mean; 5 is best.
-// - pair: the share of wins, with the interval of [Wilson 1927]. Pair questions about the same part of the same frames
-// make one
-//   set; of three pictures or more it is scored by the model of [Bradley 1952], P(a beats b) = 1 / (1 + exp(s_b -
-//   s_a)), fitted as in [Hunter 2004] with half a win either way for every pair that was asked, so that who never lost
-//   stays finite; the scores of a set sum to 0, more is better.
+// - pair: the share of wins. Pair questions about the same part of the same frames make one set; of three pictures or
+//   more it is scored by the model of [Bradley 1952], P(a beats b) = 1 / (1 + exp(s_b - s_a)), fitted as in [Hunter
+//   2004] with half a win either way for every pair that was asked, so that who never lost stays finite; the scores of
+//   a set sum to 0, more is better.
 //
 // Intervals are 95 %, by 2000 bootstraps over participants: one draw serves every score, difference and correlation.
-// Shares of votes have Wilson's. Below kFewestForIntervals participants none is given: a two-sided sign test reaches
+// Shares of votes, and differences of two that add up to 1, have that of [Wilson 1927], which does not shrink to
+// nothing where all agree. Below kFewestForIntervals participants none is given: a two-sided sign test reaches
 // 5 % with six who all agree (2 / 2^6) and not with five.
 #pragma once
 #include <optional>
@@ -57,6 +57,7 @@ struct ScoredSet {
     std::vector<Agreement> agreements{};
     bool lowIsBetter() const { return kind == QuestionKind::rank; }
     bool isBradleyTerry() const { return kind == QuestionKind::pair && pictures.size() > 2; }
+    bool isShare() const { return kind == QuestionKind::pair && !isBradleyTerry(); }  // scores are shares of wins
 };
 struct SurveyScores {
     const SurveyKey* key = nullptr;  // outlives the scores

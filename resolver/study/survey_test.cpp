@@ -171,6 +171,29 @@ TEST(SurveyScores, OfThePublishedVotes) {  // questions 5 and 6: 65 of 66 and 63
     EXPECT_NEAR(*p.best.high, 0.99732, 5e-5);
     EXPECT_FALSE(scores.sets[0].isBradleyTerry());
     EXPECT_NEAR(p.score.value, 65.0 / 66, 1e-12);
+    EXPECT_NEAR(*p.score.low, 0.91904, 5e-5);
+    EXPECT_NEAR(*p.score.high, 0.99732, 5e-5);
+    const ScoredPicture& next = scores.sets[0].pictures[1];
+    EXPECT_NEAR(*next.toNext->low, 1 - 2 * 0.99732, 1e-4);
+    EXPECT_NEAR(*next.toNext->high, 1 - 2 * 0.91904, 1e-4);
+    EXPECT_TRUE(next.resolved);
+}
+TEST(SurveyScores, AShareOfVotesHasOneIntervalAndItIsWilsons) {
+    const SurveyKey key = keyOf({question("q1", QuestionKind::pair, {"a", "b"})});
+    std::vector<std::vector<int>> votes(6, {1, 0});
+    votes.insert(votes.end(), 2, {0, 1});
+    const SurveyScores scores = scoreSurvey(key, answersOf(votes));
+    const ScoredPicture &a = scores.sets[0].pictures[0], &b = scores.sets[0].pictures[1];
+    EXPECT_NEAR(*a.score.low, 0.40927, 5e-5);  // six of eight
+    EXPECT_NEAR(*a.score.high, 0.92852, 5e-5);
+    EXPECT_EQ(*a.score.low, *a.best.low);
+    EXPECT_EQ(*b.score.low, *b.best.low);
+    EXPECT_DOUBLE_EQ(*b.toNext->high, 2 * *b.best.high - 1);
+    EXPECT_FALSE(b.resolved) << "0.5 lies within";
+    // All agree: no interval without width, and six are told apart, as the sign test does.
+    const SurveyScores all = scoreSurvey(key, answersOf(std::vector<std::vector<int>>(6, {1, 0})));
+    EXPECT_LT(*all.sets[0].pictures[0].score.low, 0.7);
+    EXPECT_TRUE(all.sets[0].pictures[1].resolved);
 }
 
 // ---- by hand ----

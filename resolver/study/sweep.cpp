@@ -10,6 +10,7 @@
 
 #include "image/error.h"
 #include "methods/driver.h"
+#include "study/megabyte.h"
 #include "study/prepare.h"
 #include "study/resume.h"
 
@@ -181,7 +182,7 @@ Sweep::Sweep(const ShotReader& shot, const RunOptions& run, const SweepOptions& 
     const size_t each = std::max(bytesOf(variants[std::min(compared, variants.size() - 1)], shot, run),
                                  bytesOf(variants.back(), shot, run));
     const size_t perPart =
-        std::clamp<size_t>(size_t(o.memoryMb * (1 << 20)) / std::max<size_t>(each, 1), 1, variants.size());
+        std::clamp<size_t>(size_t(o.memoryMb * kMegabyte) / std::max<size_t>(each, 1), 1, variants.size());
     for (size_t first = 0; first < variants.size(); first += perPart) {
         parts_.emplace_back(variants.begin() + ptrdiff_t(first),
                             variants.begin() + ptrdiff_t(std::min(first + perPart, variants.size())));

@@ -134,7 +134,7 @@ def _row(method: str, of: dict[str, dict], base: dict[str, dict], sets: list[str
         *(f"{of[s]['nsPerPixel']:.1f}" for s in sets),
         *(f"{of[s]['nsPerPixel'] / base[s]['nsPerPixel']:.1f}" for s in sets),
         f"{100 * spread:.0f} %",
-        f"{last['stateBytes'] / 2**20:.1f}",
+        f"{last['stateBytes'] / 1e6:.1f}",
         "" if error is None else error if isinstance(error, str) else f"{error:.2g}",
     ]
 

@@ -95,7 +95,7 @@ def run_of(program: Path, frames: int, out: Path) -> dict:
     shot = repeating_shot(program, out, frames)
     shutil.rmtree(out / "run", ignore_errors=True)  # results that are there are read first
     _, used = called([program, "run", shot, "-o", out / "run", *RUN])
-    return {"frames": frames, **used}
+    return {"frames": frames, "run": " ".join(RUN), **used}
 
 
 def pieces(program: Path, out: Path) -> dict[str, object]:
@@ -174,7 +174,7 @@ def write_page(document: dict, docs: Path) -> None:
     page.say(
         "All figures of all frames are kept until the end, and the shot's list of frames is read as a whole: that is what memory "
         "grows by. Results are written anew every five seconds as they grow.",
-        f"Whole runs (`aaresolve run {' '.join(RUN)}`) at {SMALL}, reading and metrics with them, on one thread. A frame: what each costs above "
+        f"Whole runs (`aaresolve run {base['run']}`) at {SMALL}, reading and metrics with them, on one thread. A frame: what each costs above "
         f"the run of {FRAMES[0]}, whose start is most of it.",
     )
     page.picture("growth-frames.svg", "Peak memory over the number of frames")
@@ -183,11 +183,11 @@ def write_page(document: dict, docs: Path) -> None:
     )  # noqa: E731
     page.table(
         ["frames", "processor seconds", "ms per frame above", "peak memory, MB", f"of that of {FRAMES[0]}"],
-        [[f"{r['frames']}", f"{r['seconds']:.2f}", f"{1e3 * extra(r):.2f}" if r is not base else "–", f"{r['peakBytes'] / 2**20:.0f}",
+        [[f"{r['frames']}", f"{r['seconds']:.2f}", f"{1e3 * extra(r):.2f}" if r is not base else "–", f"{r['peakBytes'] / 1e6:.0f}",
           f"{r['peakBytes'] / base['peakBytes']:.3f}"] for r in runs],
     )  # fmt: skip
     write_svg(
-        docs / "growth-frames.svg", {"peak": [r["peakBytes"] / 2**20 for r in runs]},
+        docs / "growth-frames.svg", {"peak": [r["peakBytes"] / 1e6 for r in runs]},
         f"Peak memory of a run at {SMALL}", "MB", labels=[str(n) for n in FRAMES], along="frames", low=0,
     )  # fmt: skip
     page.heading("With the threads")

@@ -56,7 +56,9 @@ def measured(command: list[str]) -> Cost:
     if child.returncode != 0:
         sys.exit(f"whole_run: {' '.join(command)}: {said.strip()}")
     wall = time.perf_counter() - start
-    return Cost(used.ru_utime + used.ru_stime, wall, used.ru_maxrss / 1024)
+    return Cost(
+        used.ru_utime + used.ru_stime, wall, used.ru_maxrss * 1024 / 1e6
+    )  # the system counts in KiB
 
 
 def least(costs: list[Cost]) -> Cost:

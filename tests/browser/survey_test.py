@@ -285,6 +285,7 @@ class Survey(PageTest):
         self.assertEqual(len(pictures), 12)
         self.assertIn("fxaa311 is best, 1.29", drawn)
         self.assertIn("Kendall's W 0.92", drawn)
+        self.assertIn("8 of 14; by Wilson ", drawn)  # beside the bootstrap's under the score
 
 
 main()

@@ -93,6 +93,34 @@ class Choosing(ProgramTest):
         self.refused(2, "filter", "noaa,mlaa", "a.png", "b.png", says=("one method",))
         self.refused(2, "plan", "runnable", says=("there is none here",))
 
+    def test_tables_hold_what_was_measured(self) -> None:
+        """No column of what was not measured, and MB of 10^6 bytes, by `bench` as by `run`."""
+        size = ("--size", "480x270", "--frames", "1", "--repeats", "1")
+        bench = ("bench", "-m", "smaa1x", *size)
+        (whole,) = [r for r in json.loads(self.aaresolve(*bench, "--json").stdout)["methods"]]
+        table = self.aaresolve(*bench, "--no-error").stdout
+        self.assertNotIn("nan", table)
+        self.assertNotIn("error", table)
+        state = f"{whole['stateBytes'] / 1e6:.2f}"
+        self.assertNotEqual(state, f"{whole['stateBytes'] / 2**20:.2f}")
+        self.assertEqual(table.splitlines()[-1].split()[-2], state)
+        self.assertIn("max error", self.aaresolve(*bench).stdout)
+        plain = self.folder / "plain"
+        self.synth("half_plane", plain, (16, 16), 1, "--offset", "1000", "--for", "noaa,smaa1x")
+        told = self.aaresolve("bench", "-m", "noaa", "--shot", plain, "--repeats", "1").stdout
+        self.assertIn("0.0 % edge pixels", told)
+        self.assertNotIn("nan", told)
+        shot, out = self.folder / "shot", self.folder / "out"
+        self.synth("moving", shot, (480, 270), 1, "--for", "smaa1x")
+        table = self.aaresolve("run", shot, "-m", "smaa1x", "-o", out, "-q").stdout
+        row = next(w for w in table.splitlines() if w.startswith("smaa1x")).split()
+        self.assertEqual(row[-1], f"{self.method(out)['stateBytes'] / 1e6:.2f}")
+        self.assertEqual(row[-2], f"{self.method(out)['inputBytes'] / 1e6:.2f}")
+
+    def method(self, out: object) -> dict:
+        methods = json.loads((out / "results.json").read_text())["methods"]
+        return next(m for m in methods if m["id"] == "smaa1x")
+
     def test_list_finds_what_people_call_it(self) -> None:
         temporal = [m["id"] for m in self.known("temporal")]
         self.assertEqual([m["id"] for m in self.known("taa")], temporal)

@@ -121,7 +121,7 @@ def times(measured: dict) -> list[str]:
                 b = sum(p["bytesReadPerPixel"] + p["bytesWrittenPerPixel"] for p in r["passes"])
                 lines.append(
                     f"| `{r['method']}` | {t['medianMs']:.4f} | {t['lowQuartileMs']:.4f} to {t['highQuartileMs']:.4f} "
-                    f"| {b:.0f} | {100 * r['shareOfCopy']:.0f} % | {r['stateBytes'] / 2**20:.1f} |"
+                    f"| {b:.0f} | {100 * r['shareOfCopy']:.0f} % | {r['stateBytes'] / 1e6:.1f} |"
                 )
             lines.append("")
     return lines

@@ -68,7 +68,7 @@
     const heads = ["Method", set.score[0].toUpperCase() + set.score.slice(1), "To the next better", ...(counted(set) ? ranks.map((r) => `${set.kind} ${r}`) : ["Won"]), ...names.map((n) => n.title)];
     const rows = set.pictures.map((p) => [p.method, [scoreText(set, p.score.value), interval(p.score, (v) => scoreText(set, v))],
       p.toNextBetter ? [scoreText(set, p.toNextBetter.value), p.resolved ? null : "not resolved"] : "–",
-      ...(counted(set) ? p.counts.map((c, r) => [percent(p.shares[r]), `${c}`]) : [[percent(p.winShare.value), `${p.won} of ${p.asked}; ${interval(p.winShare, percent)}`]]),
+      ...(counted(set) ? p.counts.map((c, r) => [percent(p.shares[r]), `${c}`]) : [[percent(p.winShare.value), `${p.won} of ${p.asked}` + (isShare(set) ? "" : `; by Wilson ${interval(p.winShare, percent)}`)]]),
       ...names.map((n) => short(p[n.of][n.name]))]);
     const facts = [set.run, set.frames.length > 1 ? `frames ${set.frames[0]} to ${set.frames.at(-1)}, played` : `frame ${set.frames[0]}`,
       `${set.region[2]} × ${set.region[3]} px at ${set.region[0]}, ${set.region[1]}` + (set.zoom > 1 ? `, × ${set.zoom}` : ""), `median ${number(set.secondsMedian, 0)} s`];
@@ -81,7 +81,7 @@
       element("p", { class: "quiet" }, facts.join("; ") + "."),
       strip.length ? element("div", { class: "strip scroll", tabindex: "0", role: "region", "aria-label": "Pictures, best first" }, ...strip) : null,
       element("div", { class: "charts below" },
-        figure(set.kind === "rank" ? "Score: shorter is better" : "Score: longer is better", scoreCanvas, "Whiskers: 95 % over participants. Grey: not resolved from the one above.", !counted(set)),
+        figure(set.kind === "rank" ? "Score: shorter is better" : "Score: longer is better", scoreCanvas, `Whiskers: 95 %, ${isShare(set) ? "by Wilson" : "over participants"}. Grey: not resolved from the one above.`, !counted(set)),
         counted(set) ? figure("What participants gave", shareCanvas) : null),
       element("div", { class: "scroll below", tabindex: "0", role: "region", "aria-labelledby": id + "-title" }, element("table", {}, ...table(heads, rows))),
       element("details", {}, element("summary", {}, "Two by two"), element("div", { class: "scroll below" }, element("table", {}, ...table(["First", "Second", "Prefer the first", "95 %, Wilson"],
