@@ -49,11 +49,11 @@ void execute(AnglesArguments& o) {
         throw UsageError("--size: expected a square of " + std::to_string(kLeastSizePx) + " to " +
                          std::to_string(kMostSizePx) + " px, found '" + o.size + "'");
     o.study.sizePx = width;
+    if (!o.out.empty()) makeWritableFolder(o.out);  // before the minutes that the study takes
     AngleStudy study;
     withThreads(o.work.threads, [&] { study = studyAngles(o.study, o.work.exec()); });
     if (!o.out.empty()) {
         const std::filesystem::path folder = o.out;
-        makeWritableFolder(folder);
         writeText(folder / "angles.json", toJsonText(study));
         writeText(folder / "angles.csv", toCsvText(study));
         writeText(folder / "angles.svg", toSvgText(study));

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "image/error.h"
+#include "image/readable.h"
 #include "shot/import/folder.h"
 
 namespace aa {
@@ -70,8 +71,7 @@ FramePairs joined(const std::map<Key, fs::path>& a, const std::map<Key, fs::path
 }  // namespace
 
 FramePairs pairFrames(const fs::path& a, const fs::path& b, const std::string& by) {
-    for (const auto& p : {a, b})
-        if (!fs::exists(p)) throw InputError(p.string() + ": no such file or folder");
+    for (const auto& p : {a, b}) requireReadable(p);
     if (fs::is_directory(a) != fs::is_directory(b))
         throw UsageError("compare: '" + a.string() + "' and '" + b.string() +
                          "' must both be images or both be folders of frames");

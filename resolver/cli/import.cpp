@@ -77,7 +77,7 @@ int import(ImportArguments& o) {
     if (colon != std::string::npos) {
         char* end = nullptr;
         o.import.truthFilterWidthPx = std::strtod(o.truthFilter.c_str() + colon + 1, &end);
-        if (*end || !(o.import.truthFilterWidthPx > 0 && o.import.truthFilterWidthPx <= 1000))
+        if (*end || !(o.import.truthFilterWidthPx > 0 && kTruthFilterWidthPx.contains(o.import.truthFilterWidthPx)))
             throw UsageError("--truth-filter: expected NAME:WIDTH with a width in px, found '" + o.truthFilter + "'");
     }
     const FolderClaim claim(o.import.out);
@@ -128,15 +128,15 @@ void addImport(CommandLine& line, Context& context) {
     c.option("--ids", o->import.ids, "object ids: from the pass index, Cryptomatte, or the better of them")
         .oneOf({"auto", "index", "cryptomatte"});
     c.flag("--static", o->import.isStatic, "camera and objects rest; without it, the pixels tell");
+    c.option("--fps", o->import.fps, "frames per second").range(kFps.min, kFps.max);
     Option layout = c.option("--layout", o->layout,
                              "JSON that says how an engine writes its frames: files, channels, units and signs "
                              "(docs/format.md); it takes the place of all options but --name");
     layout.typeName("FILE");
     for (const char* other :
-         {"--view-layer", "--view", "--truth", "--truth-filter", "--jitter", "--camera", "--ids", "--static"})
+         {"--view-layer", "--view", "--truth", "--truth-filter", "--jitter", "--camera", "--ids", "--static", "--fps"})
         layout.excludes(other);
     c.option("--name", o->import.name, "of the shot; default the folder's, or the layout's");
-    c.option("--fps", o->import.fps, "frames per second").range(1e-3, 1e6);
     c.option("-j,--threads", o->threads, "threads; 0 = all processors").range(0, 1024);
     c.flag("--json", o->json, "the summary as JSON");
     c.flag("-q,--quiet", o->quiet, "no progress");

@@ -47,6 +47,17 @@ Sessions sessionsFor(const StabilityArguments& o, std::string& whyNone) {
     }
 }
 
+// Into the folder, except over a whole study where this one is not. Its file; empty: not written.
+std::filesystem::path written(const StabilityResults& results, const std::filesystem::path& folder) {
+    const std::filesystem::path file = folder / "stability.json";
+    if (!results.complete && holdsCompleteStability(file)) {
+        std::fprintf(stderr, "%s: kept, for this study was interrupted and that one is complete\n", file.c_str());
+        return {};
+    }
+    writeText(file, toJsonText(results));
+    return file;
+}
+
 void execute(StabilityArguments& o, Context& context) {
     if (o.json && o.markdown) throw UsageError("--json and --markdown: only one of them");
     StabilityOptions& s = o.study;
@@ -57,6 +68,7 @@ void execute(StabilityArguments& o, Context& context) {
     s.methods = o.shot.empty() ? chosen(o.methods) : chosenFor(o.shot, o.methods);
     std::tie(s.width, s.height) = sizeOf("--size", o.size);
     s.exec.parallel = o.threads != 1;
+    if (!o.out.empty()) makeWritableFolder(o.out);  // before the minutes that the study takes
     const Sessions sessions = sessionsFor(o, s.noDevice);
     s.exact = sessions.exact.get(), s.fast = sessions.fast.get();
     StabilityResults results;
@@ -67,15 +79,10 @@ void execute(StabilityArguments& o, Context& context) {
         interrupted = progress.interrupted();
     });
     if (interrupted) context.exitCode = 130;
-    if (!o.out.empty()) {
-        const std::filesystem::path folder = o.out;
-        makeWritableFolder(folder);
-        writeText(folder / "stability.json", toJsonText(results));
-    }
+    const std::filesystem::path file = o.out.empty() ? "" : written(results, o.out);
     const std::string text = o.json ? toJsonText(results) : o.markdown ? toMarkdown(results) : toText(results);
     std::fwrite(text.data(), 1, text.size(), stdout);
-    if (!o.json && !o.markdown && !o.out.empty())
-        std::printf("results: %s\n", (std::filesystem::path(o.out) / "stability.json").c_str());
+    if (!o.json && !o.markdown && !file.empty()) std::printf("results: %s\n", file.c_str());
 }
 }  // namespace
 

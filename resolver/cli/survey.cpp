@@ -12,6 +12,7 @@
 #include "image/error.h"
 #include "image/io.h"
 #include "image/json_text.h"
+#include "image/readable.h"
 #include "methods/choosing.h"
 #include "report/survey_questions.h"
 #include "study/megabyte.h"
@@ -26,11 +27,6 @@ constexpr const char* kIntro =
     "or do they flicker, crawl or leave trails?\n"
     "What counts is your impression; there is no right answer.";
 
-std::string readText(const fs::path& file) {
-    if (auto text = textOf(file)) return *std::move(text);
-    throw InputError(file.string() + ": no such file");
-}
-
 // ---- make ----
 struct MakeOptions {
     SurveyOptions survey;
@@ -42,6 +38,7 @@ struct MakeOptions {
 // A key that is lost leaves the answers to its survey without a meaning.
 void refuseAnotherKey(const fs::path& file, const std::string& survey) {
     if (!fs::exists(file)) return;
+    requireReadable(file);
     std::string found = "a damaged one";
     try {
         found = "survey " + readSurveyKey(file).survey;
@@ -64,7 +61,7 @@ void make(MakeOptions& o, Context& context) {
         for (auto& method : splitMethods(text)) o.survey.methods.push_back(std::move(method));
     for (const auto& q : o.questions) o.survey.questions.push_back({q, "--question '" + q + "'", false});
     if (!o.file.empty()) {
-        std::istringstream lines(readText(o.file));
+        std::istringstream lines(requiredText(o.file));
         std::string line;
         for (int number = 1; std::getline(lines, line); number++) {
             const size_t from = line.find_first_not_of(" \t\r");
@@ -74,7 +71,7 @@ void make(MakeOptions& o, Context& context) {
         }
         if (o.survey.questions.empty()) throw InputError(o.file + ": expected a question per line, found none");
     }
-    o.survey.intro = o.introFile.empty() ? kIntro : readText(o.introFile);
+    o.survey.intro = o.introFile.empty() ? kIntro : requiredText(o.introFile);
     if (!o.seed.empty()) {
         char* end = nullptr;
         o.survey.seed = std::strtoull(o.seed.c_str(), &end, 10);
@@ -183,8 +180,9 @@ void score(const ScoreOptions& o) {
         written.push_back(file);
     };
     const auto page = [&] {
-        return scoresHtml(scores, fs::path(o.survey).extension() == ".html" && fs::exists(o.survey) ? readText(o.survey)
-                                                                                                    : std::string());
+        return scoresHtml(scores, fs::path(o.survey).extension() == ".html" && fs::exists(o.survey)
+                                      ? requiredText(o.survey)
+                                      : std::string());
     };
     const fs::path out = o.out;
     const std::string kind = out.extension().string();

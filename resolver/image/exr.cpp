@@ -21,6 +21,7 @@
 #include "image/exr_header.h"
 #include "image/exr_lines.h"
 #include "image/io.h"
+#include "image/readable.h"
 
 namespace aa {
 namespace fs = std::filesystem;
@@ -174,6 +175,14 @@ bool isExr(const fs::path& file) {
     return std::memcmp(bytes, "\x76\x2f\x31\x01", sizeof bytes) == 0;
 }
 
+void requireWhole(const ExrPart& part, const std::string& where, const std::string& advice) {
+    if (!part.cropped()) return;
+    const Window stored{-part.shown.x, -part.shown.y, part.width, part.height};
+    throw InputError(where + ": expected a data window that is the display window (" +
+                     std::to_string(part.shown.width) + " x " + std::to_string(part.shown.height) + " px), found " +
+                     inWords(stored) + "; " + advice);
+}
+
 struct ExrFile::Input {
     explicit Input(const char* name) : file(name) {}
     Imf::MultiPartInputFile file;
@@ -184,7 +193,7 @@ ExrFile& ExrFile::operator=(ExrFile&&) noexcept = default;
 
 ExrFile::ExrFile(const fs::path& file, std::string advice) : path_(file), advice_("; " + std::move(advice)) {
     std::error_code ignored;
-    if (!fs::exists(file, ignored)) throw InputError(file.string() + ": no such file" + advice_);
+    requireReadable(file, advice_);
     if (fs::is_directory(file, ignored)) throw InputError(file.string() + ": is a folder; expected an EXR file");
     if (!fs::is_regular_file(file, ignored))
         throw InputError(file.string() + ": is a pipe or a device; expected an EXR file");

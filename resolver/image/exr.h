@@ -52,6 +52,10 @@ struct ChannelTarget {
 
 bool isExr(const std::filesystem::path& file);  // by its first bytes
 
+// Where every pixel must be there and no other, as in a shot: throws InputError for a region, overscan, or a data
+// window that is cut to its content. `where` begins the line, `advice` ends it.
+void requireWhole(const ExrPart& part, const std::string& where, const std::string& advice);
+
 // An EXR file opened for reading. Not thread-safe; open one per thread. Errors are InputErrors of one line.
 class ExrFile {
   public:

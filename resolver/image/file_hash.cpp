@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "image/error.h"
+#include "image/readable.h"
 #define XXH_INLINE_ALL  // nothing to link
 #include <xxhash.h>
 
@@ -26,6 +27,7 @@ std::string Hash::digits() const {
 }
 
 std::string hashOfFile(const std::filesystem::path& file) {
+    requireReadable(file, "; export the frame again");
     std::ifstream in(file, std::ios::binary);
     if (!in) throw InputError(file.string() + ": cannot be read; export the frame again");
     Hash hash;

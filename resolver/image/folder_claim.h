@@ -1,12 +1,15 @@
 // One writer per folder.
 #pragma once
 #include <filesystem>
+#include <functional>
+#include <string>
 
 namespace aa {
 
-// The file that a claim holds in its folder. A folder with nothing else counts as empty.
+// The file that a claim holds in its folder.
 inline constexpr const char* kClaimFile = ".aaresolve.lock";
-bool isEmptyButForClaim(const std::filesystem::path& folder);
+// Whether `isOurs` knows the name of every entry. False where the folder cannot be listed.
+bool holdsOnly(const std::filesystem::path& folder, const std::function<bool(const std::string& name)>& isOurs);
 
 // While it lives no other process of this program claims the folder. The claim ends with the process, however that
 // ends.

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <fstream>
 #include <optional>
 
 #include "image/error.h"
@@ -54,6 +55,39 @@ TEST_F(FolderClaims, EndWithTheProcess) {
     ::kill(child, SIGKILL);
     ::waitpid(child, nullptr, 0);
     FolderClaim ours(folder);
+}
+
+// What a killed run of another user leaves: a file that only its owner may write, in a folder that all may.
+TEST_F(FolderClaims, StaleOnesOfOtherUsersAreTaken) {
+    constexpr uid_t kNobody = 65534;
+    const fs::path stale = folder / kClaimFile;
+    std::ofstream(stale).close();
+    fs::permissions(stale, fs::perms(0444));
+    fs::permissions(folder, fs::perms::all);
+    const pid_t child = ::fork();
+    if (child == 0) {
+        // From within: folders above it may be closed to others.
+        if (::chdir(folder.c_str()) != 0 || (::geteuid() == 0 && ::setuid(kNobody) != 0)) ::_exit(2);
+        try {
+            FolderClaim ours(".");
+            ::_exit(0);
+        } catch (const std::exception&) {
+            ::_exit(1);
+        }
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_EQ(status, 0);
+}
+
+TEST_F(FolderClaims, HoldsOnlyWhatIsOurs) {
+    const auto isOurs = [](const std::string& name) { return name == kClaimFile; };
+    EXPECT_TRUE(holdsOnly(folder, isOurs));
+    const FolderClaim claim(folder);
+    EXPECT_TRUE(holdsOnly(folder, isOurs));
+    std::ofstream(folder / "a").close();
+    EXPECT_FALSE(holdsOnly(folder, isOurs));
+    EXPECT_FALSE(holdsOnly(folder / "nowhere", isOurs));
 }
 
 }  // namespace

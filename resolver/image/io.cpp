@@ -21,6 +21,7 @@
 #include "image/other_formats.h"
 #include "image/output_error.h"
 #include "image/png.h"
+#include "image/readable.h"
 
 namespace aa {
 namespace fs = std::filesystem;
@@ -196,7 +197,7 @@ void willRead(const fs::path& file) {
 
 LoadedImage readImage(const fs::path& file, const ReadOptions& o) {
     std::error_code ignored;
-    if (!fs::exists(file, ignored)) throw InputError(file.string() + ": no such file");
+    requireReadable(file);
     if (!fs::is_regular_file(file, ignored) && !fs::is_directory(file, ignored))
         throw InputError(file.string() + ": is a pipe or a device; expected an image, PNG or EXR");
     const bool exr = isExr(file);

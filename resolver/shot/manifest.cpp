@@ -7,6 +7,7 @@
 #include "image/error.h"
 #include "image/io.h"
 #include "image/json_text.h"
+#include "image/readable.h"
 #include "shot/frame_notes.h"
 
 namespace aa {
@@ -75,6 +76,7 @@ class Member {
         if (!(v >= min && v <= max)) fail(what);
         return v;
     }
+    double number(const NumberRange& range) const { return number(range.min, range.max, range.inWords); }
     int integer(int min, int max) const {
         const std::string expected = "an integer in " + std::to_string(min) + ".." + std::to_string(max);
         if (!value_.is_number_integer()) fail(expected);
@@ -145,7 +147,7 @@ Camera parseCamera(const Member& m, json& extra) {
 
 FrameEntry parseFrame(const Member& m) {
     FrameEntry f;
-    f.frame = m["frame"].integer(-1048574, 1048574);  // Blender's MINAFRAME..MAXFRAME
+    f.frame = m["frame"].integer(-kLastFrame, kLastFrame);
     f.file = m["file"].relativePath();
     if (const auto c = m.find("centre"); c && !c->value().is_null()) f.centre = c->relativePath();
     if (const auto t = m.find("truth"); t && !t->value().is_null()) f.truth = t->relativePath();
@@ -236,7 +238,7 @@ Manifest parseDocument(const Member& doc, FrameList& frames) {
     if (resolution.arraySize() != 2) resolution.fail("[width, height]");
     m.width = resolution.item(0).integer(1, kLargestSide);
     m.height = resolution.item(1).integer(1, kLargestSide);
-    if (const auto v = doc.find("fps")) m.fps = v->number(1e-3, 1e6, "frames per second in 0.001..1000000");
+    if (const auto v = doc.find("fps")) m.fps = v->number(kFps);
     m.extra = unknownMembers(doc.value(), {"format", "version", "name", "resolution", "fps", "jitter", "static",
                                            "subsamples", "objects", "truth", "frames"});
     if (const auto j = doc.find("jitter")) {
@@ -260,7 +262,7 @@ Manifest parseDocument(const Member& doc, FrameList& frames) {
     if (const auto t = doc.find("truth"); t && !t->value().is_null()) {
         if (const auto v = t->find("samples_per_half")) m.truthSamplesPerHalf = v->integer(0, INT32_MAX);
         if (const auto v = t->find("filter")) m.truthFilter = v->text();
-        if (const auto v = t->find("filter_width")) m.truthFilterWidthPx = v->number(0, 1000, "a width in px, 0..1000");
+        if (const auto v = t->find("filter_width")) m.truthFilterWidthPx = v->number(kTruthFilterWidthPx);
         if (const auto v = t->find("halves")) m.truthHalves = v->integer(1, 2);
         keepUnknown(m.extra, "truth", t->value(), {"samples_per_half", "filter", "filter_width", "halves"});
     }
@@ -297,14 +299,6 @@ json toJson(const FrameEntry& f) {
     return j;
 }
 
-namespace {
-
-std::string readText(const fs::path& file) {
-    if (auto text = textOf(file)) return *std::move(text);
-    throw InputError(file.string() + ": cannot be read; check its permissions");
-}
-}  // namespace
-
 std::optional<uint32_t> objectIdIn(const std::string& name) {
     if (name.empty() || name.size() > 10 || name.find_first_not_of("0123456789") != std::string::npos) return {};
     const uint64_t id = std::stoull(name);
@@ -329,15 +323,11 @@ Manifest parseManifest(const std::string& text, const fs::path& file) {
 Manifest readManifest(const fs::path& shot) {
     std::error_code ignored;
     const fs::path file = fs::is_directory(shot, ignored) ? shot / "shot.json" : shot;
-    if (!fs::exists(file, ignored))
-        throw InputError(file.string() + ": no such file; expected a shot (a folder with shot.json)");
-    return parseManifest(readText(file), file);
+    return parseManifest(requiredText(file, "; expected a shot (a folder with shot.json)"), file);
 }
 
 FrameNotes readFrameNotes(const fs::path& file) {
-    std::error_code ignored;
-    if (!fs::exists(file, ignored)) throw InputError(file.string() + ": no such file");
-    return parseFrameNotes(parseJson(readText(file), file.string(), kAdvice), file);
+    return parseFrameNotes(parseJson(requiredText(file), file.string(), kAdvice), file);
 }
 
 FrameNotes parseFrameNotes(const json& document, const fs::path& file) {
@@ -358,7 +348,7 @@ FrameNotes parseFrameNotes(const json& document, const fs::path& file) {
         if (const auto v = f.find("jitter")) note.jitterPx = v->offsetPx();
         if (const auto v = f.find("camera")) note.camera = parseCamera(*v, unused);
         if (const auto v = f.find("reset")) note.reset = v->flag();
-        const int number = f["frame"].integer(-1048574, 1048574);
+        const int number = f["frame"].integer(-kLastFrame, kLastFrame);
         if (!notes.frames.emplace(number, note).second)
             f["frame"].fail("a frame number of its own", std::to_string(number) + " for the second time");
     }

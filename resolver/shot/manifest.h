@@ -57,6 +57,16 @@ struct Manifest {
 };
 
 inline constexpr int kMaxSubSamples = 256;
+inline constexpr int kLastFrame = 1048574;  // Blender's MAXFRAME; its MINAFRAME is the same below 0
+
+// What members may hold, for all who fill a Manifest: a shot is never written that cannot be read.
+struct NumberRange {
+    double min, max;
+    const char* inWords;
+    bool contains(double v) const { return v >= min && v <= max; }
+};
+inline constexpr NumberRange kFps{1e-3, 1e6, "frames per second in 0.001..1000000"};
+inline constexpr NumberRange kTruthFilterWidthPx{0, 1000, "a width in px, 0..1000"};
 
 // SHOT may be the folder or its shot.json. Throws InputError: missing, not JSON, a missing required member, a wrong
 // type, a value out of range, frame numbers that do not increase, a path that leaves the shot's folder.

@@ -1,5 +1,7 @@
 #include "shot/reader.h"
 
+#include <algorithm>
+
 #include "image/error.h"
 #include "image/exr.h"
 #include "shot/pass_table.h"
@@ -8,6 +10,8 @@
 
 namespace aa {
 namespace {
+
+constexpr const char* kWholeFrames = "export whole frames, without a region, a crop or overscan";
 
 // Decodes one frame's file into a Frame, pass by pass.
 class FrameDecoder {
@@ -39,6 +43,7 @@ class FrameDecoder {
         if (!p)
             throw InputError(where() + " has no part '" + std::string(name) +
                              "'; export the shot again with this pass");
+        requireWhole(*p, where() + ", part '" + std::string(name) + "'", kWholeFrames);
         if (p->width != manifest_.width || p->height != manifest_.height)
             throw InputError(where() + ", part '" + std::string(name) + "': expected " +
                              size(manifest_.width, manifest_.height) + " pixels (shot.json), found " +
@@ -147,9 +152,28 @@ class FrameDecoder {
 ShotReader::ShotReader(const std::filesystem::path& shot, InputPolicy policy)
     : manifest_(readManifest(shot)), policy_(policy) {}
 
+size_t ShotReader::firstWithCentre() const {
+    const auto& frames = manifest_.frames;
+    const auto has = [](const FrameEntry& f) { return !f.centre.empty(); };
+    return size_t(std::find_if(frames.begin(), frames.end(), has) - frames.begin());
+}
+
+const std::string& ShotReader::fileOf(size_t index, Sampling sampling) const {
+    const FrameEntry& entry = manifest_.frames.at(index);
+    if (sampling != Sampling::centre) return entry.file;
+    if (entry.centre.empty())
+        throw InputError((manifest_.folder / "shot.json").string() + ": frame " + std::to_string(entry.frame) +
+                         ": expected `centre`, its samples at the pixel centres, as other frames have, found none; " +
+                         "export them for every frame");
+    return entry.centre;
+}
+
 PassSet ShotReader::offered(Sampling sampling) const {
-    const FrameEntry& first = manifest_.frames.at(0);
-    const ExrFile file(manifest_.folder / (sampling == Sampling::centre ? first.centre : first.file));
+    return offeredBy(sampling == Sampling::centre ? firstWithCentre() : 0, sampling);
+}
+
+PassSet ShotReader::offeredBy(size_t index, Sampling sampling) const {
+    const ExrFile file(manifest_.folder / fileOf(index, sampling));
     PassSet r;
     for (const auto& info : allPasses()) {
         const ExrPart* part = file.find(info.part);
@@ -175,7 +199,7 @@ Frame ShotReader::decode(size_t index, PassSet wanted, Sampling sampling, Saniti
     if (index > 0 && !entry.reset) f.previousCamera = manifest_.frames[index - 1].camera;
     f.passes = wanted;
     SanitiseCounts own;
-    FrameDecoder(manifest_, entry, centre ? entry.centre : entry.file, policy_, f, own).decode(wanted);
+    FrameDecoder(manifest_, entry, fileOf(index, sampling), policy_, f, own).decode(wanted);
     if (counts) *counts += own;
     return f;
 }
@@ -198,6 +222,7 @@ std::optional<Truth> ShotReader::readTruth(size_t index, SanitiseCounts* counts)
         const std::string where = file.path().string() + ": truth of frame " + std::to_string(entry.frame);
         if (!part)
             throw InputError(where + " has no part '" + name + "'; export the truth again (two independent halves)");
+        requireWhole(*part, where + ", part '" + name + "'", kWholeFrames);
         if (part->width != manifest_.width || part->height != manifest_.height)
             throw InputError(where + ", part '" + name + "': expected " + std::to_string(manifest_.width) + "x" +
                              std::to_string(manifest_.height) + " pixels (shot.json), found " +

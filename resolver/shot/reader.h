@@ -23,11 +23,14 @@ class ShotReader {
 
     InputPolicy policy() const { return policy_; }
 
-    // Passes that the shot offers, found in the header of the first frame's file. A static shot offers `motion` without
-    // storing it (zeros). Opens that file at every call.
+    // Passes that the shot offers, found in the header of the first file. A static shot offers `motion` without storing
+    // it (zeros). Opens that file at every call.
     PassSet offered(Sampling sampling = Sampling::jittered) const;
-    // Whether the shot holds frames sampled at the pixel centres beside jittered ones.
-    bool hasCentreFrames() const { return !manifest_.frames.at(0).centre.empty(); }
+    // Those of one frame's file.
+    PassSet offeredBy(size_t index, Sampling sampling = Sampling::jittered) const;
+    // Whether the shot holds frames sampled at the pixel centres beside jittered ones. One frame that lacks them is an
+    // error when it is read: methods would be judged on other samples there.
+    bool hasCentreFrames() const { return firstWithCentre() < manifest_.frames.size(); }
     // Decodes the wanted passes of manifest().frames[index]. Thread-safe. Throws InputError: file missing, truncated,
     // wrong resolution, missing part or channel (named), wrong type, NaN under InputPolicy::strict.
     Frame read(size_t index, PassSet wanted, SanitiseCounts* counts = nullptr) const;
@@ -39,6 +42,9 @@ class ShotReader {
     std::optional<Truth> readTruth(size_t index, SanitiseCounts* counts = nullptr) const;
 
   private:
+    size_t firstWithCentre() const;
+    // Of the frame's picture, relative to the shot. Throws InputError: none at the pixel centres.
+    const std::string& fileOf(size_t index, Sampling sampling) const;
     Frame decode(size_t index, PassSet wanted, Sampling sampling, SanitiseCounts* counts) const;
     Manifest manifest_;
     InputPolicy policy_;

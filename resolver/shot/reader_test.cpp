@@ -246,6 +246,22 @@ TEST_F(ReaderTest, ResolutionMustBeTheManifests) {
     }
 }
 
+TEST_F(ReaderTest, PixelsLieWhereTheDisplayWindowShowsThem) {
+    PlaneF c = plane(1);
+    writeParts(folder / "1.exr", {{"color", {{"R", &c}, {"G", &c}, {"B", &c}}, {}, Window{-3, -2, kWidth, kHeight}}});
+    EXPECT_THAT(errorOf(Pass::color),
+                HasSubstr("1.exr: frame 1, part 'color': expected a data window that is the display window (37 x 150 "
+                          "px), found 37 x 150 px at 3, 2; export whole frames"));
+    PlaneF half = plane(2);
+    writeParts(folder / "truth.exr", {{"a", {{"R", &half}, {"G", &half}, {"B", &half}}, {}, Window{-3, 0, 64, 150}}});
+    try {
+        ShotReader(folder).readTruth(0);
+        FAIL();
+    } catch (const InputError& e) {
+        EXPECT_THAT(e.what(), HasSubstr("truth of frame 1, part 'a': expected a data window"));
+    }
+}
+
 TEST_F(ReaderTest, MissingPartsAndChannelsAreNamed) {
     PlaneF z = plane(1);
     writeParts(folder / "1.exr", {{"color", {{"R", &z}, {"G", &z}}}, {"depth", {{"depth.Z", &z}}}});

@@ -72,6 +72,7 @@ class ExternalMethod : public Method {
                              std::to_string(pictures_.begin()->first) + " to " +
                              std::to_string(pictures_.rbegin()->first) + "); add it, or choose frames by --frames");
         LoadedImage image = readImage(it->second);
+        showDisplayWindow(image, it->second);
         const auto size = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };
         if (image.rgb.width() != frame.width || image.rgb.height() != frame.height)
             throw InputError(it->second.string() + ": expected " + size(frame.width, frame.height) +

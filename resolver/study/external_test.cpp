@@ -86,6 +86,23 @@ TEST_F(External, PngHoldsDisplayedColour) {
     EXPECT_FALSE(r.methods[0].pooled->mean.figure("relMse")) << "no linear light";
     ASSERT_TRUE(r.methods[0].temporal) << "over time though it is the only row";
 }
+TEST_F(External, TheDisplayWindowIsWhatIsHeldAgainstTheTruth) {
+    Rgb whole(48, 32), part(20, 10);
+    for (int y = 0; y < 10; y++)
+        for (int x = 0; x < 20; x++) whole.c[1].at(x + 7, y + 5) = part.c[1].at(x, y) = float(x + y) / 30;
+    for (const char* name : {"whole", "part", "over"}) makeWritableFolder(folder / name);
+    for (int f = 1; f <= 4; f++) {
+        const std::string file = std::to_string(f) + ".exr";
+        writeExr(folder / "whole" / file, whole, false);
+        writeExr(folder / "part" / file, part, false, {nullptr, Window{-7, -5, 48, 32}});
+        writeExr(folder / "over" / file, whole, false, {nullptr, Window{7, 5, 20, 10}});
+    }
+    const RunResults r =
+        runOf({externalMethod("whole", folder / "whole", {}), externalMethod("part", folder / "part", {})});
+    EXPECT_EQ(r.methods[0].pooled->mean.mse, r.methods[1].pooled->mean.mse);
+    EXPECT_NE(refusal(folder / "over").find("expected 48x32 pixels as in the shot, found 20x10"), std::string::npos)
+        << refusal(folder / "over");
+}
 TEST_F(External, ExposureAndTransferAreThoseOfTheProtocol) {
     RunOptions o = options();
     o.protocol.display = {1.0f, ToneMap::none, Transfer::identity};

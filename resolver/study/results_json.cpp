@@ -10,6 +10,7 @@
 #include "image/io.h"
 #include "image/json_stream.h"
 #include "image/json_text.h"
+#include "image/readable.h"
 #include "study/json_number.h"
 #include "study/results.h"
 
@@ -523,13 +524,10 @@ void checkPaths(const RunResults& run) {
 RunResults readResults(const fs::path& path) {
     std::error_code ignored;
     const fs::path file = fs::is_regular_file(path, ignored) ? path : path / "results.json";
-    const auto text = textOf(file);
-    if (!text)
-        throw InputError(file.string() +
-                         ": no such file; expected the output folder of `aaresolve run SHOT -m ... -o OUT`");
+    const std::string text = requiredText(file, "; expected the output folder of `aaresolve run SHOT -m ... -o OUT`");
     RunResults run;
     try {
-        const json j = parseJson(*text, file.string(), "run the shot again");
+        const json j = parseJson(text, file.string(), "run the shot again");
         if (j.at("format") != "aaresolve-results" || j.at("version") != 1)
             throw InputError(file.string() + ": not results of this program's version; run the shot again");
         members(Reader(j), run);

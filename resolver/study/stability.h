@@ -4,6 +4,7 @@
 // Everything is measured on frames that are made here, the same on every machine (study/stability_frames.h); errors,
 // amplification and ties on a shot's frames where one is given. Colours are display-encoded sRGB, without exposure.
 #pragma once
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -117,5 +118,7 @@ inline constexpr double kTieDistance = 1e-6, kTieJump = 100 * kTieDistance;
 std::string toJsonText(const StabilityResults& results);
 std::string toText(const StabilityResults& results);
 std::string toMarkdown(const StabilityResults& results);
+// Whether `file` is a stability.json that was not interrupted. False of a file that is damaged or something else.
+bool holdsCompleteStability(const std::filesystem::path& file);
 
 }  // namespace aa

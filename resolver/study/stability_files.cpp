@@ -228,4 +228,15 @@ std::string toMarkdown(const StabilityResults& r) {
     return text;
 }
 
+bool holdsCompleteStability(const std::filesystem::path& file) {
+    const auto text = textOf(file);
+    if (!text) return false;
+    try {
+        const auto j = parseJson(*text, file.string(), "");
+        return j.is_object() && j.value("format", "") == "aaresolve-stability" && j.value("complete", false);
+    } catch (const std::exception&) {
+        return false;
+    }
+}
+
 }  // namespace aa

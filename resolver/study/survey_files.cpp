@@ -5,6 +5,7 @@
 
 #include "image/error.h"
 #include "image/json_text.h"
+#include "image/readable.h"
 #include "study/json_number.h"
 #include "study/survey.h"
 
@@ -75,9 +76,7 @@ class Place {
 };
 
 json parsed(const fs::path& file, const std::string& what) {
-    const auto text = textOf(file);
-    if (!text) throw InputError(file.string() + ": no such file; expected " + what);
-    return parseJson(*text, file.string(), "expected " + what);
+    return parseJson(requiredText(file, "; expected " + what), file.string(), "expected " + what);
 }
 void checkFormat(const Place& top, const char* format, const std::string& what) {
     top.at("format").mustBe(format, ", " + what);

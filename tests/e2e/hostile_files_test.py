@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import os
 import resource
+import shutil
 import struct
 import sys
 from pathlib import Path
@@ -143,6 +144,42 @@ class HostileFiles(ProgramTest):
             self.refused(3, "filter", "noaa", path, self.folder / "o.png", says=(str(path)[:20],))
             self.refused(3, "compare", path, path, says=(str(path)[:20],))
             self.refused(3, "report", path, "-o", self.folder / "o.html", says=(str(path)[:20],))
+
+    def test_what_may_not_be_read_is_not_missing(self) -> None:
+        """Every kind of file: closed, it is said to be so; away, it is missing."""
+        self.run_methods()
+        layout, answers = self.folder / "layout.json", self.folder / "answers.json"
+        for file in (layout, answers):
+            file.write_text("{}")
+        engine = self.folder / "engine"
+        (engine / "color").mkdir(parents=True)
+        shutil.copy(self.shot / "frames/000001.exr", engine / "color/1.exr")
+        results, out = self.run_folder / "results.json", ("-o", self.folder / "o.html")
+        picture, frame = (
+            next((self.run_folder / "noaa").glob("*.exr")),
+            self.shot / "frames/000002.exr",
+        )
+        cases = (
+            (results, ("report", self.run_folder, *out)),
+            (results, ("gate", self.run_folder, self.run_folder)),
+            (results, ("sheet", self.run_folder)),
+            (picture, ("filter", "noaa", picture, self.folder / "o.png")),
+            (picture, ("compare", picture, picture)),
+            (frame, ("run", self.shot, "-m", "noaa", "-o", self.folder / "o", "-q")),
+            (self.shot / "shot.json", ("check", self.shot)),
+            (layout, ("import", engine, "--layout", layout, "-o", self.folder / "i", "-q")),
+            (answers, ("survey", "score", answers, "--survey", answers, "-o", self.folder / "s")),
+        )
+        # Root may read everything, so that another must try.
+        other = {"user": 65534} if os.geteuid() == 0 else {}
+        for path in (self.folder, *self.folder.rglob("*")):
+            path.chmod(0o777 if path.is_dir() else 0o666)
+        for file, command in cases:
+            file.chmod(0)
+            self.refused(3, *command, says=(f"{file}: cannot be read (Permission denied); check its permissions",), **other)  # fmt: skip
+            away = file.rename(file.with_suffix(".away"))
+            self.refused(3, *command, says=(f"{file}: no such file",), **other)
+            away.rename(file).chmod(0o666)
 
     def test_sizes_ask_for_no_memory(self) -> None:
         """Of a picture whose file cannot hold it, of an attribute, of one of many channels."""

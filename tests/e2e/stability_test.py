@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import signal
+import subprocess
 
 from json_schema import Schema
-from program import ROOT, ProgramTest, main
+from program import LIMIT_S, PROGRAM, ROOT, ProgramTest, main
 
 SMALL = "--size 48x27 --frames 8 --long-frames 128 -q".split()
 
@@ -73,6 +75,40 @@ class Stability(ProgramTest):
         karis = found["methods"][1]
         self.assertLess(karis["gpuExact"]["max"], 1e-3)
         self.assertGreater(karis["gpuFast"]["max"], karis["gpuExact"]["max"])
+
+    def test_an_interrupted_study_replaces_no_whole_one(self) -> None:
+        file = self.folder / "out" / "stability.json"
+        small = ("stability", "--device", "cpu", *SMALL[:-1], "-o", file.parent)
+        self.aaresolve(*small, "-m", "noaa")
+        whole = file.read_bytes()
+        long = ("stability", "--device", "cpu", *SMALL[:-1], "-j", 1)
+
+        def interrupted() -> str:
+            call = subprocess.Popen(
+                [PROGRAM, *map(str, long), "-o", file.parent],
+                stderr=subprocess.PIPE,
+                stdout=subprocess.DEVNULL,
+                text=True,
+            )
+            said = call.stderr.readline()  # the first of many methods is done
+            call.send_signal(signal.SIGINT)
+            said += call.communicate(timeout=LIMIT_S)[1]
+            self.assertEqual(call.returncode, 130, said)
+            return said
+
+        self.assertIn(f"{file}: kept, for this study was interrupted", interrupted())
+        self.assertEqual(file.read_bytes(), whole)
+        file.unlink()
+        self.assertNotIn("kept", interrupted())
+        self.assertFalse(json.loads(file.read_text())["complete"])
+        self.assertNotIn("kept", interrupted(), "over one that was interrupted, too")
+
+    def test_a_folder_that_cannot_be_written_is_said_first(self) -> None:
+        (self.folder / "file").touch()
+        out = ("-o", self.folder / "file" / "out")
+        long = ("--long-frames", 1000000)  # hours
+        self.refused(1, "stability", "-m", "inside", *long, *out, says=("not a writable folder",))
+        self.refused(1, "angles", "-m", "inside", "--angles", 3600, "--offsets", 256, "--frames", 1024, *out, says=("not a writable folder",))  # fmt: skip
 
     def test_wrong_usage(self) -> None:
         self.aaresolve("stability", "--frames", 1, expect=2)

@@ -90,10 +90,10 @@ class ShotCheck {
         const FrameEntry& entry = manifest_.frames[i];
         Frame f;
         try {
-            if (report_.passes.empty()) report_.passes = reader_.offered();
+            if (report_.passes.empty()) report_.passes = reader_.offeredBy(i);
             f = reader_.read(i, report_.passes);
         } catch (const InputError& e) {
-            find("files", entry.frame, "", std::nullopt, "a readable frame", e.what(), "export the frame again");
+            unreadable(entry.frame, "a readable frame", e.what());
             return std::nullopt;
         }
         numbers(f, "");
@@ -106,17 +106,22 @@ class ShotCheck {
     }
     void centreAt(size_t i) {
         const FrameEntry& entry = manifest_.frames[i];
-        if (entry.centre.empty() || entry.centre == lastCentre_) return;
+        if (!reader_.hasCentreFrames() || (!entry.centre.empty() && entry.centre == lastCentre_)) return;
         lastCentre_ = entry.centre;
         try {
-            if (report_.centrePasses.empty()) report_.centrePasses = reader_.offered(Sampling::centre);
+            if (report_.centrePasses.empty()) report_.centrePasses = reader_.offeredBy(i, Sampling::centre);
             const Frame f = reader_.readCentre(i, report_.centrePasses);
             numbers(f, "centre ");
             if (has(f, Pass::color)) registerAgainstTruth(i, f, dvec2(0.0));
         } catch (const InputError& e) {
-            find("files", entry.frame, "", std::nullopt, "a readable centre-sampled frame", e.what(),
-                 "export the frame again");
+            unreadable(entry.frame, "a readable centre-sampled frame", e.what());
         }
+    }
+    // `why` is an error's line, whose last words say what to do.
+    void unreadable(int frame, const char* expected, const std::string& why) {
+        const size_t advice = why.rfind("; ");
+        find("files", frame, "", std::nullopt, expected, why.substr(0, advice),
+             advice == std::string::npos ? "export the frame again" : why.substr(advice + 2));
     }
 
     void numbers(const Frame& f, const std::string& prefix) {

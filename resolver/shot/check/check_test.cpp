@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
+#include "image/error.h"
 #include "shot/manifest.h"
+#include "shot/reader.h"
 #include "shot/synth/synth.h"
 #include "shot/writer.h"
 
@@ -118,6 +121,35 @@ TEST_F(CheckTest, PremultipliedJitterIsALabelledVariant) {
     const CheckReport right = withManifest(o, [](Manifest&) {});
     EXPECT_TRUE(unlabelled.variants.empty() && right.variants.empty());
     EXPECT_GT(measured(unlabelled, "jitter.meanErrorPx"), 2 * measured(right, "jitter.meanErrorPx"));
+}
+
+TEST_F(CheckTest, AFrameWithoutItsCentreIsNamed) {
+    const SynthOptions o = options("moving");
+    for (const size_t lacking : {0, 2}) {
+        const CheckReport r = withManifest(o, [&](Manifest& m) {
+            for (auto& f : m.frames) f.centre = f.file;
+            m.frames[lacking].centre.clear();
+        });
+        const std::string frame = std::to_string(1 + lacking);
+        EXPECT_THAT(lines(r), HasSubstr("files: frame " + frame + ": expected a readable centre-sampled frame, found " +
+                                        (folder / "shot.json").string() + ": frame " + frame + ": expected `centre`"));
+        const ShotReader reader(folder);
+        EXPECT_TRUE(reader.hasCentreFrames());
+        EXPECT_THROW(reader.readCentre(lacking, Pass::color), InputError);
+        fs::remove_all(folder);
+    }
+}
+
+TEST_F(CheckTest, AnUnreadableFrameIsNamedOnceAndWithOneAdvice) {
+    writeSynth(options("moving"), folder);
+    fs::remove(folder / "frames/000001.exr");
+    std::ofstream(folder / "frames/000003.exr") << "no picture";
+    const CheckReport r = checkShot(folder);
+    EXPECT_EQ(lines(r), "files: frame 1: expected a readable frame, found " + (folder / "frames/000001.exr").string() +
+                            ": no such file; export the frame again\n" +
+                            "files: frame 3: expected a readable frame, found " +
+                            (folder / "frames/000003.exr").string() + ": not an EXR file; export the frame again\n");
+    EXPECT_TRUE(r.passes.has(Pass::color)) << "of the frames that are there";
 }
 
 TEST_F(CheckTest, CleanShotsAreClean) {

@@ -34,13 +34,14 @@ std::map<int, fs::path> filesOf(const fs::path& from, const std::string& pattern
             std::string_view(file).substr(before.size(), file.size() - before.size() - after.size());
         int number = 0;
         const auto [last, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-        if (error != std::errc{} || last != digits.data() + digits.size() || std::abs(number) > 1048574) continue;
+        if (error != std::errc{} || last != digits.data() + digits.size() || std::abs(number) > kLastFrame) continue;
         const auto [other, isNew] = files.emplace(number, it->path());
         if (!isNew)
             throw InputError(folder.string() + ": both " + other->second.filename().string() + " and " + file +
                              " are frame " + std::to_string(number) + "; keep one of them");
     }
-    if (failed) throw InputError(folder.string() + ": cannot be read (" + failed.message() + ")");
+    if (failed)
+        throw InputError(folder.string() + ": cannot be read (" + failed.message() + "); check its permissions");
     if (files.empty()) throw InputError(folder.string() + ": no file is named " + name + " with a number for {frame}");
     return files;
 }
@@ -52,7 +53,7 @@ class EngineImport {
     ImportReport run(const std::function<bool(int)>& goOn) {
         frames_ = filesOf(o_.from, colourFilesOf(o_.layout));
         const ExrFile first(frames_.begin()->second, kAdvice);
-        width_ = first.parts()[0].width, height_ = first.parts()[0].height;
+        width_ = first.parts()[0].shown.width, height_ = first.parts()[0].shown.height;
         layout_ = readEngineLayout(o_.layout, width_, height_);
         describe();
         std::vector<std::string> kinds = {"frames"};
@@ -202,6 +203,8 @@ class EngineImport {
                              (source.part.empty() ? "" : "a part '" + source.part + "' with ") + "channels " + wanted +
                              " (the layout's), found " + all);
         }
+        requireWhole(*part, file.path().string() + ": frame " + std::to_string(number),
+                     "write whole frames, without a region, a crop or overscan");
         if (part->width != width_ || part->height != height_)
             throw InputError(file.path().string() + ": expected " + std::to_string(width_) + "x" +
                              std::to_string(height_) + " pixels as in the first frame's colour, found " +

@@ -7,6 +7,8 @@
 
 #include "image/error.h"
 #include "image/json_text.h"
+#include "image/readable.h"
+#include "shot/manifest.h"
 #include "shot/pass_table.h"
 
 namespace aa {
@@ -168,9 +170,7 @@ void jitterOf(Object& o, int width, int height, EngineLayout& layout) {
     o.finish();
 }
 json parsed(const fs::path& file) {
-    const auto text = textOf(file);
-    if (!text) throw InputError(file.string() + ": no such file, or it cannot be read");
-    return parseJson(*text, file.string(), "correct it (docs/format.md describes it)");
+    return parseJson(requiredText(file), file.string(), "correct it (docs/format.md describes it)");
 }
 }  // namespace
 
@@ -194,7 +194,7 @@ EngineLayout readEngineLayout(const fs::path& file, int width, int height) {
     if (doc.number("version") != 1) doc.fail("version", "1 (what this program reads)");
     layout.name = doc.text("name").value_or("shot");
     layout.fps = doc.number("fps").value_or(24);
-    if (!(layout.fps > 0)) doc.fail("fps", "frames per second, above 0");
+    if (!kFps.contains(layout.fps)) doc.fail("fps", kFps.inWords);
     layout.isStatic = doc.flag("static", false);
     auto passes = doc.object("passes");
     if (!passes) doc.fail("passes", "an object");
@@ -213,6 +213,8 @@ EngineLayout readEngineLayout(const fs::path& file, int width, int height) {
         if (layout.truth.empty()) truth->fail("a", "an object: where the truth lies");
         layout.truthFilter = truth->text("filter").value_or("unknown");
         layout.truthFilterWidthPx = truth->number("filter_width").value_or(0);
+        if (!kTruthFilterWidthPx.contains(layout.truthFilterWidthPx))
+            truth->fail("filter_width", kTruthFilterWidthPx.inWords);
         const double samples = truth->number("samples_per_half").value_or(0);
         if (!(samples >= 0 && samples <= std::numeric_limits<int>::max() && samples == std::floor(samples)))
             truth->fail("samples_per_half", "a whole number from 0 on");

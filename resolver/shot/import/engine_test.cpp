@@ -9,6 +9,7 @@
 #include "image/error.h"
 #include "image/exr.h"
 #include "image/io.h"
+#include "shot/import/store.h"
 #include "shot/reader.h"
 #include "shot/synth/synth.h"
 
@@ -295,11 +296,61 @@ TEST_F(Engine, WhatDoesNotFitIsNamed) {
             j["passes"]["depth"]["channels"] = {"R"}, j.erase("frames");
         },
         "needs the frame's perspective camera");
+    says([](json& j) { j["fps"] = 1e7; }, "fps: expected frames per second in 0.001..1000000, found 10000000");
+    says([](json& j) { j["fps"] = 1e-9; }, "fps: expected frames per second in 0.001..1000000");
+    for (const double width : {-1.0, 1001.0})
+        says(
+            [&](json& j) {
+                j["truth"] = {{"a", source("color")}, {"filter_width", width}};
+            },
+            "truth.filter_width: expected a width in px, 0..1000");
     fs::remove(folder / "engine/color_2.exr");
     json gap = layout();
     EXPECT_TRUE(import(gap, "gap").manifest.frames[1].reset) << "a frame is missing: no history over the gap";
     writeParts(folder / "engine/color_3.exr", {{"", {{"R", &frames[0].depthView}}}});
     EXPECT_NE(refusal(gap).find("color_3.exr: expected channels R, G, B"), std::string::npos);
+}
+
+// Data that lies elsewhere than its display window shows would be held against the wrong pixels.
+TEST_F(Engine, WhatIsNotTheWholePictureIsRefused) {
+    const auto from = [&](const Window& shown) {
+        for (const Frame& f : frames) {
+            const Rgb& c = f.colorLinear;
+            writeParts(folder / "engine" / ("color_" + std::to_string(f.number) + ".exr"),
+                       {{"", {{"R", &c.c[0]}, {"G", &c.c[1]}, {"B", &c.c[2]}}, {}, shown}});
+        }
+        return refusal(layout());
+    };
+    EXPECT_NE(from({-10, -8, 64, 48})
+                  .find("color_1.exr: frame 1: expected a data window that is the display window (64 x 48 px), found "
+                        "32 x 20 px at 10, 8; write whole frames"),
+              std::string::npos);
+    EXPECT_NE(from({-10, 0, kWidth, kHeight}).find("found 32 x 20 px at 10, 0"), std::string::npos) << "only moved";
+    EXPECT_NE(from({4, 4, 24, 12}).find("found 32 x 20 px at -4, -4"), std::string::npos) << "overscan";
+    EXPECT_EQ(from({0, 0, kWidth, kHeight}), "");
+    fs::remove_all(folder / "refused");
+    // The first frame is whole, a later one is not.
+    const Rgb& c = frames[2].colorLinear;
+    writeParts(folder / "engine/color_3.exr",
+               {{"", {{"R", &c.c[0]}, {"G", &c.c[1]}, {"B", &c.c[2]}}, {}, Window{-1, 0, kWidth, kHeight}}});
+    EXPECT_NE(refusal(layout()).find("color_3.exr: frame 3: "), std::string::npos);
+}
+// An import that ends anywhere, and be it before its settings are written, goes on when it is called again.
+TEST_F(Engine, AnImportThatHardlyBeganGoesOn) {
+    writeColour();
+    makeWritableFolder(folder / "early/.aa");
+    EXPECT_EQ(import(layout(), "early").imported, size_t(kFrames));
+    makeWritableFolder(folder / "writing/.aa");
+    writeText(folder / "writing/.aa/.import.1234-1.partial.json", "{");
+    EXPECT_EQ(import(layout(), "writing").imported, size_t(kFrames));
+    const std::string noName(300, 'x');  // a folder that cannot be made, after one that can
+    const json settings = {{"from", "a"}};
+    EXPECT_THROW(ImportStore(folder / "folders", settings, {"frames", noName}), InputError);
+    EXPECT_NO_THROW(ImportStore(folder / "folders", settings, {"frames"}));
+    for (const char* foreign : {"foreign/.aa/notes", "foreign2/.aa/frames", "foreign3/.aa/../a"}) {
+        makeWritableFolder(folder / foreign);
+        EXPECT_THROW(import(layout(), fs::path(foreign).begin()->string()), UsageError) << foreign;
+    }
 }
 
 }  // namespace

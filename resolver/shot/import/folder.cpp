@@ -9,17 +9,16 @@
 #include "image/error.h"
 #include "image/lower_case.h"
 #include "shot/import/blender_exr.h"
+#include "shot/manifest.h"
 
 namespace aa {
 namespace fs = std::filesystem;
 namespace {
-constexpr int kLargestFrame = 1048574;  // Blender's MAXFRAME
-
 std::string lowerExtension(const fs::path& file) { return lowerCase(file.extension().string()); }
 int toFrame(std::string_view digits) {
     int n = -1;
     const auto [end, failed] = std::from_chars(digits.data(), digits.data() + digits.size(), n);
-    return failed == std::errc{} && end == digits.data() + digits.size() && n <= kLargestFrame ? n : -1;
+    return failed == std::errc{} && end == digits.data() + digits.size() && n <= kLastFrame ? n : -1;
 }
 }  // namespace
 

@@ -21,6 +21,15 @@ json readJson(const fs::path& file) {
     }
 }
 std::string shown(const json& value) { return value.dump(-1, ' ', true, json::error_handler_t::replace); }
+// Nothing is there but what an import leaves that ended before its settings were written: a folder .aa, perhaps with
+// their temporary file.
+bool mayBegin(const fs::path& out) {
+    const auto isOurs = [](const std::string& name) { return name == kClaimFile || name == ".aa"; };
+    const auto isSettings = [](const std::string& name) { return name.starts_with(".import."); };
+    const fs::path own = out / ".aa";
+    std::error_code ignored;
+    return holdsOnly(out, isOurs) && (!fs::exists(own, ignored) || holdsOnly(own, isSettings));
+}
 std::string numbered(const std::string& kind, int frame, const char* extension) {
     char text[32];
     std::snprintf(text, sizeof text, "/%06d%s", frame, extension);
@@ -33,7 +42,7 @@ ImportStore::ImportStore(fs::path out, const json& settings, const std::vector<s
     std::error_code ignored;
     const fs::path file = out_ / ".aa" / "import.json";
     const bool ours = fs::exists(file, ignored);
-    if (!ours && fs::exists(out_, ignored) && (!fs::is_directory(out_, ignored) || !isEmptyButForClaim(out_)))
+    if (!ours && fs::exists(out_, ignored) && (!fs::is_directory(out_, ignored) || !mayBegin(out_)))
         throw UsageError(out_.string() + ": is not empty and holds no import; choose a new folder");
     if (ours) {
         const json then = readJson(file);
@@ -44,11 +53,14 @@ ImportStore::ImportStore(fs::path out, const json& settings, const std::vector<s
                 throw UsageError(out_.string() + ": holds an import with another setting '" + key + "' (" +
                                  shown(then.value(key, json())) + ", now " + shown(value) + "); choose a new folder");
     }
+    // The settings first: with them the folder is known for an import, wherever that ends.
+    makeWritableFolder(out_);
+    makeWritableFolder(file.parent_path());
+    if (!ours) writeText(file, jsonText(settings) + "\n");
     for (const auto& kind : kinds) {
         makeWritableFolder(out_ / kind);
         makeWritableFolder(out_ / ".aa" / kind);
     }
-    if (!ours) writeText(file, jsonText(settings) + "\n");
 }
 
 std::string ImportStore::picture(const std::string& kind, int frame) { return numbered(kind, frame, ".exr"); }
