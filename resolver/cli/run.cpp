@@ -108,9 +108,9 @@ void printCost(const RunResults& r, const MethodResult& m) {
 // Why there is no figure, and what one can do.
 void sayWithoutFigures(const RunResults& r) {
     std::printf(
-        "no figures: none of these frames has a ground truth; export the shot with its truth, or hold the methods "
-        "against "
-        "one of them by --reference METHOD");
+        "no figures%s: none of these frames has a ground truth; export the shot with its truth, or hold the methods "
+        "against one of them by --reference METHOD",
+        r.maps.empty() ? "" : " and no maps");
     if (r.asked.find("frames=all") == std::string::npos || r.asked.find("write=none") != std::string::npos)
         std::printf("; for their pictures %s", howToWriteAll(r).c_str());
     std::puts("");
@@ -161,8 +161,10 @@ void printTable(const RunResults& r) {
     std::puts("ns/px: processor time of all threads, median and quartiles over the frames");
     for (const std::string& s : {leftOutInWords(r), busyInWords(r)})
         if (!s.empty()) std::puts(s.c_str());
-    for (const auto& [kind, scale] : r.maps) std::printf("maps/%s: %s\n", kind.c_str(), scale.c_str());
-    if (judged) std::printf("figures: %s\n", inWords(r.protocol).c_str());
+    if (judged) {
+        for (const auto& [kind, scale] : r.maps) std::printf("maps/%s: %s\n", kind.c_str(), scale.c_str());
+        std::printf("figures: %s\n", inWords(r.protocol).c_str());
+    }
     for (const auto& [what, count] : r.sanitised)
         if (count > 0)
             std::printf("input values that no method can use: %s %llu\n", what.c_str(),

@@ -103,6 +103,9 @@ class Rows {
           methods_(sheetMethods(shown.run, shown.order)) {
         if (o.cropColumns) crops_ = cropsOf(pictures_, o, kTellingCrops);
         if (showsTruth(pictures_)) maps_ = o.maps;
+        if (maps_.empty() && o.asksForMaps)
+            throw InputError("--columns " + std::string(o.maps[0]->name) + ": " + frameWord(frame) +
+                             " has no picture of a truth; leave the maps out, or choose another frame");
         const PageFormat format = formatOf(o.page);
         const int room = format.width > 0 ? format.width - 2 * kSheetMargin - kLabelWidth - kSheetGap : 0;
         layout_ = rowLayout({shown.run.width, shown.run.height, o.frameColumn, windowsOf(crops_), int(maps_.size()),
@@ -577,7 +580,7 @@ void chooseColumns(SheetOptions& o, const std::vector<std::string>& names) {
             std::string maps;
             for (const MapKind& kind : mapKinds()) {
                 maps += ", " + std::string(kind.name);
-                if (kind.name == name) o.maps.push_back(&kind);
+                if (kind.name == name) o.maps.push_back(&kind), o.asksForMaps = true;
             }
             if (o.maps.empty() || o.maps.back()->name != name)
                 throw UsageError("--columns: expected some of frame, crops" + maps + ", found '" + name + "'");

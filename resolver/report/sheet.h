@@ -30,6 +30,7 @@ struct SheetOptions {
     Arrangement arrangement = Arrangement::rows;
     bool frameColumn = true, cropColumns = true;  // of rows
     std::vector<const MapKind*> maps = {&mapKindByName("error")};
+    bool asksForMaps = false;  // without truth those that were not asked for are left out
     bool light = false;
     int zoom = 0;  // of crops; 0: what fits
     PageSize page = PageSize::free;

@@ -277,6 +277,9 @@ TEST(Sheet, WithoutTruthNothingIsSaidOfIt) {
         for (const char* word : {"against", "PSNR", "Flicker", "hosts", "Figures", "Errors"})
             EXPECT_EQ(all.find(word), std::string::npos) << word << " in " << all;
         EXPECT_EQ(all.find("\u2605") != std::string::npos, a == Arrangement::rows) << "times alone have stars";
+        SheetOptions maps{.crops = {kCrop}};
+        chooseColumns(maps, {"crops", "flip"});
+        EXPECT_THROW(sheet(shown, 4, maps, {}), InputError) << "a map was asked for that cannot be";
     }
 }
 TEST(Sheet, GainsAndGhostsHaveAColourWhereTheyAreResolved) {

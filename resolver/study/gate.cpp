@@ -346,6 +346,10 @@ GateReport gate(const RunResults& base, const RunResults& now, const GateOptions
     }
     for (const MethodResult& m : now.methods)
         if (!sameIn(base, m)) report.rows.push_back({.method = m.text, .figure = "", .verdict = Verdict::added});
+    // What holds nothing must not pass.
+    if (!base.hasFigures() && report.rows.size() == report.count(Verdict::added))
+        throw InputError(
+            "gate: the base has no figures, since none of its frames has a ground truth; run a shot with truth");
     return report;
 }
 

@@ -60,7 +60,8 @@ struct GateReport {
     size_t count(Verdict verdict) const;
     bool passed() const { return count(Verdict::worse) + count(Verdict::missing) == 0; }
 };
-// Throws InputError for what cannot be compared: an interrupted run, other shot, frames, resolution or protocol.
+// Throws InputError for what cannot be compared: an interrupted run, other shot, frames, resolution or protocol, a base
+// without figures.
 GateReport gate(const RunResults& base, const RunResults& now, const GateOptions& options);
 
 std::string toJsonText(const GateReport& report);

@@ -82,6 +82,15 @@ std::string refusal(const RunResults& before, const RunResults& now) {
     return "";
 }
 
+TEST(Gate, ABaseWithoutFiguresHoldsNothing) {
+    RunResults blind = base();
+    for (MethodResult& m : blind.methods) m.pooled.reset(), m.temporal.reset();
+    EXPECT_THROW(gate(blind, blind, {}), InputError);
+    EXPECT_THROW(gate(blind, base(), {}), InputError) << "every figure is new";
+    GateOptions times;
+    addTolerance(times, "time=50%");
+    EXPECT_TRUE(gate(blind, blind, times).passed()) << "times are there";
+}
 TEST(Gate, AnUnchangedRunIsTheSameToTheLastBit) {
     for (int k = 0; k < 20; k++) {
         const RunResults again = runOf(shotFolder("moving"), kMethods, k % 2);

@@ -294,9 +294,13 @@ class Sheet(ProgramTest):
         # What is advised helps.
         for command in (("sheet", run), ("survey", "make", run, "-o", self.folder / "s.html")):
             self.refused(3, *command, says=("has an image; run again with --write-frames all",))
-        told = self.aaresolve(*asked, "--write-frames", "all").stdout
+        told = self.aaresolve(*asked, "--write-frames", "all", "--maps", "error").stdout
         self.assertNotIn("--write-frames", told)
+        self.assertIn("no figures and no maps", told)
+        self.assertNotIn("maps/error", told)
         self.aaresolve("sheet", run)
+        self.refused(3, "sheet", run, "--columns", "crops,flip", says=("--columns flip", "truth"))
+        self.refused(3, "gate", run, run, says=("the base has no figures",))
         self.aaresolve("survey", "make", run, "-q", "-o", self.folder / "s.html")
         self.assertIn("PSNR", self.aaresolve(*asked, "--reference", "fxaa311").stdout)
         self.aaresolve(*asked, "--write", "none")
