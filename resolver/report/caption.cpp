@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "report/format.h"
+#include "report/gallery.h"
 #include "report/sheet.h"
 
 namespace aa {
@@ -219,7 +220,10 @@ std::vector<std::string> captions(const RunResults& run) {
         all.push_back("This run was " + incompleteInWords(run) +
                       ": its figures are not those of the whole shot. `run --resume` goes on with it.");
     if (order.empty()) {
-        all.push_back("This run has no ground truth: only times and pictures can be compared.");
+        all.push_back(framesWithPictures(run).empty()
+                          ? "This run has no ground truth and wrote no pictures: only times can be compared. "
+                            "`run --write-frames all` writes pictures of frames without truth, too."
+                          : "This run has no ground truth: only times and pictures can be compared.");
         return all;
     }
     if (const std::string& method = run.protocol.reference; !method.empty())

@@ -144,7 +144,7 @@ std::vector<std::string> sweepWords(const RunResults& run, const SweepOptions& o
     std::vector<const Base*> judged;
     for (const Base& b : bases)
         if (!b.ranked.empty()) judged.push_back(&b), tell(run, axes, b, words);
-    if (judged.empty()) return {"There is no ground truth: only times and pictures can be compared."};
+    if (judged.empty()) return {"There is no ground truth: only times can be compared."};
     if (judged.size() < 2) return words;
     std::stable_sort(judged.begin(), judged.end(),
                      [&](const Base* x, const Base* y) { return mseOf(run, x->ranked[0]) < mseOf(run, y->ranked[0]); });

@@ -39,7 +39,7 @@ expect "sentences" '<li>' 2
 expect "charts that were drawn" '<canvas id="(scatter|gain|frames)"[^>]*style="[^"]*(width|height)' 3
 expect "figures over time" 'Flicker in motion' 1
 expect "charts over time" '<canvas id="(flicker|ghost)"[^>]*style="[^"]*(width|height)' 2
-expect "memory" 'Kept, MB at 1080p' 1
+expect "memory" 'Kept at 480&nbsp;×&nbsp;270, MB' 1
 expect "stability, where it was measured" '>(The accuracy that speed costs|16-bit [0-9.]+)' 2
 expect "what stability was not measured of" 'Not measured: fxaa311, taaSimplest, unchartedNorm' 1
 expect "labels of the viewer's pictures" 'class="label"' 4

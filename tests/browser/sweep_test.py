@@ -29,7 +29,7 @@ VISITOR = """
       band: Chart.getChart("curve").data.datasets.filter((d) => d.band).every((d, i, all) => d.data.every((p, k) => i % 2 || p.y <= all[i + 1].data[k].y)) });
   }
   pick("along", 0);
-  const fills = { [css("--panel")]: "hollow", [css("--line")]: "grey" };
+  const fills = { [css("--panel")]: "hollow", [css("--quiet")]: "grey" };
   told.fills = Chart.getChart("curve").data.datasets.flatMap((d) => d.pointBackgroundColor ?? []).map((c) => fills[c] ?? "filled");
   told.table = $("all").innerText;
   told.note = $("curve-note").textContent;

@@ -9,7 +9,7 @@
   const canvas = element("canvas", { id: "angles", role: "img", "aria-label": "PSNR gain of every method by the direction of the edge; pooled figures are in the table below" });
   const heads = ["Method", "Gain, dB", "Least", "Most", "Mirrored, dB", "Quarter turn, dB", "Sub-samples"];
   const table = element("table", {}, element("thead", {}, element("tr", {}, ...heads.map((h) => element("th", { scope: "col" }, h)))),
-    element("tbody", {}, ...study.methods.map((m) => element("tr", {}, element("th", { scope: "row" }, m.text, element("small", {}, m.title)),
+    element("tbody", {}, ...study.methods.map((m) => element("tr", {}, element("th", { scope: "row" }, ...breakable(m.text), element("small", {}, m.title)),
       ...[number(m.pooledGainDb), at(m, extreme(m, (a, b) => a < b)), at(m, extreme(m, (a, b) => a > b)), number(m.mirrorDb), number(m.turnDb), m.subsamples || "none"]
         .map((t) => element("td", {}, t))))));
   const section = element("section", { "aria-labelledby": "angles-title" }, element("h2", { id: "angles-title" }, "Edges by direction"),
@@ -18,6 +18,7 @@
     element("div", { class: "charts" }, element("figure", { class: "wide" }, element("figcaption", {}, "Gain by the direction of the edge’s normal; click a name to hide it"), element("div", { class: "chart" }, canvas))),
     element("div", { class: "scroll", tabindex: "0", role: "region", "aria-labelledby": "angles-title" }, table));
   document.getElementById("details").before(section);
+  tellOfMoreColumns(table.closest(".scroll"));
 
   // As in the charts of the run, where the method is one of it.
   const own = methodLooks(study.methods.map((m) => methodIn(m.text))), looks = study.methods.map((m, i) => window.aaLooks?.get(m.text) ?? own[i]);
@@ -30,7 +31,7 @@
         borderDash: looks[i].dash, borderWidth: 2, pointRadius: 0, pointHitRadius: 8 })) },
       options: { animation: false, maintainAspectRatio: false, interaction: { mode: "nearest", axis: "x", intersect: false },
         scales: { x: { type: "linear", min: 0, max: 360, ticks: { stepSize: 45 }, title: { display: true, text: "direction, degrees" } }, y: { title: { display: true, text: "gain, dB" } } },
-        plugins: { legend: { position: "bottom" }, tooltip: { callbacks: { title: (t) => `${number(t[0].parsed.x, 1)}°`, label: (t) => `${t.dataset.label}: ${number(t.parsed.y)} dB` } } } },
+        plugins: { ...legendBelow(), tooltip: { callbacks: { title: (t) => `${number(t[0].parsed.x, 1)}°`, label: (t) => tipLines(t, `${t.dataset.label}: ${number(t.parsed.y)} dB`) } } } },
     });
   };
   draw();

@@ -8,7 +8,21 @@ const element = (name, attributes = {}, ...children) => {
 };
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 // A name that may be broken where a word of it ends: unchartedNo|Sharpen, smaa1x:|preset=|HIGH.
-const breakable = (name) => name.split(/(?<=[a-z0-9])(?=[A-Z])|(?<=[:,=+_])/).flatMap((part, k) => (k ? [element("wbr"), part] : [part]));
+const partsOf = (name) => name.split(/(?<=[a-z0-9])(?=[A-Z])|(?<=[:,=_])|(?<=\+)(?=[a-z])/); // and never a number from its sign
+const breakable = (name) => partsOf(name).flatMap((part, k) => (k ? [element("wbr"), part] : [part]));
+// A table wider than the window says so while there is more to its right.
+const tellOfMoreColumns = (box) => {
+  const hint = element("p", { class: "more-columns quiet", "aria-hidden": "true", hidden: "" }, "More columns: scroll sideways →");
+  box.before(hint);
+  const look = () => {
+    hint.hidden = box.scrollWidth <= box.clientWidth + 1;
+    hint.classList.toggle("seen", box.scrollLeft + box.clientWidth >= box.scrollWidth - 2);
+  };
+  box.addEventListener("scroll", look, { passive: true });
+  const watch = new ResizeObserver(look);
+  watch.observe(box);
+  if (box.firstElementChild) watch.observe(box.firstElementChild);
+};
 
 // ---- one method, one look in every page: it follows from the method's id, never from its rank ----
 // Twelve hues in two lightnesses, each at least 3:1 against the light panel and against the dark one.
@@ -67,11 +81,54 @@ const methodDash = (nth = 0) => [[], [6, 3], [2, 2], [8, 3, 2, 3]][nth % 4];
 
 // ---- charts, on pages that have Chart.js ----
 const dressCharts = () => {
+  Chart.register(namesBelow);
   Chart.defaults.color = css("--quiet");
   Chart.defaults.borderColor = css("--line");
   Chart.defaults.font.family = getComputedStyle(document.body).fontFamily;
   Chart.defaults.animation = false;
   Chart.defaults.maintainAspectRatio = false;
+};
+// A name in lines that are `most` px wide at most, broken where `breakable` breaks it; as one text where it fits.
+const inLines = (name, most, font = `12px ${Chart.defaults.font.family}`) => {
+  const pen = (inLines.pen ??= document.createElement("canvas").getContext("2d"));
+  pen.font = font;
+  const lines = [""], fits = (text) => pen.measureText(text).width <= most;
+  for (const part of partsOf(name).flatMap((p) => (fits(p) ? [p] : [...p])))
+    if (lines.at(-1) && !fits(lines.at(-1) + part)) lines.push(part);
+    else lines[lines.length - 1] += part;
+  return lines.length > 1 ? lines : name;
+};
+// A legend below the chart, of the page's own text: names break as in tables, where Chart.js cuts them. As options of
+// Chart.js's plugins; `labels` and `onClick` as for its own legend, which still makes the items.
+const legendBelow = ({ shown = true, onClick, ...labels } = {}) => ({ legend: { display: false, labels, ...(onClick && { onClick }) }, namesBelow: { shown } });
+const namesBelow = {
+  id: "namesBelow",
+  afterUpdate(chart, _, { shown }) {
+    if (!shown) return;
+    const { legend } = chart, box = chart.canvas.parentElement, focused = box.nextElementSibling?.querySelector(":focus")?.textContent;
+    if (!box.nextElementSibling?.classList.contains("legend")) box.after(element("div", { class: "legend" }));
+    box.nextElementSibling.replaceChildren(...legend.legendItems.map((item) => {
+      const button = element("button", { type: "button", class: item.hidden ? "off" : null }, legendSign(item, legend.options.labels.usePointStyle), element("span", {}, ...breakable(item.text)));
+      button.onclick = (e) => legend.options.onClick.call(legend, e, item, legend);
+      if (item.text === focused) setTimeout(() => button.focus());
+      return button;
+    }));
+  },
+};
+// The marker of a legend's item or a piece of its line.
+const legendSign = ({ fillStyle, strokeStyle, lineWidth, lineDash, pointStyle, rotation }, ofPoints) => {
+  const scale = window.devicePixelRatio || 1, [width, height] = [18, 14], canvas = element("canvas", { width: width * scale, height: height * scale });
+  const pen = canvas.getContext("2d");
+  pen.scale(scale, scale);
+  Object.assign(pen, { fillStyle, strokeStyle, lineWidth: ofPoints ? lineWidth : 2 });
+  if (ofPoints && pointStyle !== "line") Chart.helpers.drawPoint(pen, { pointStyle, rotation, radius: 4.5, borderWidth: lineWidth }, width / 2, height / 2);
+  else {
+    pen.setLineDash(lineDash ?? []);
+    pen.moveTo(0, height / 2);
+    pen.lineTo(width, height / 2);
+    pen.stroke();
+  }
+  return canvas;
 };
 const axis = (text, more = {}) => ({ title: { display: Boolean(text), text }, ...more, ticks: { maxRotation: 0, autoSkipPadding: 12, ...more.ticks } });
 // A logarithmic axis that holds all `values` with room at both ends, its ticks at 1, 2 and 5 of each decade.
@@ -87,17 +144,31 @@ const logarithmicAxis = (text, values, more = {}) => {
       scale.ticks = (inside.length > 12 ? inside.filter((_, k) => few.indexOf(inside[k]) % 3 === 0) : inside.length > 1 ? inside : [min * 1.3, max / 1.3]).map((v) => ({ value: v }));
     } });
 };
+// What a tooltip says of item `t`, never wider than its chart.
+const tipLines = (t, text) => inLines(text, t.chart.width - 60);
+// Horizontal bars named at their left: a name takes two fifths of the chart at most, and all bars stand as far apart as
+// the longest one asks for. The box grows with them, `more` px beyond.
+const namedRows = (canvas, labels, more = 60) => {
+  const nameOf = (k, width) => inLines(labels[k], 0.4 * width - 12);
+  const fit = (width) => {
+    const lines = Math.max(1, ...labels.map((_, k) => [nameOf(k, width)].flat().length));
+    canvas.parentElement.style.height = Math.max(160, more + (8 + 14 * lines) * labels.length) + "px";
+  };
+  fit(canvas.parentElement.clientWidth);
+  return { ticks: { autoSkip: false, callback(k) { return nameOf(k, this.chart.width); } }, onResize: (_, { width }) => fit(width) };
+};
 // Horizontal bars, as tall as their number asks for; whiskers from intervalOf(k), [from, to] or null; an end
 // without end goes to the chart's border.
 const barChart = (canvas, { labels, values, colours, axisTitle, tip, intervalOf, range = {} }) => {
-  canvas.parentElement.style.height = Math.max(160, 60 + 22 * labels.length) + "px";
+  const rows = namedRows(canvas, labels);
   const ends = intervalOf ? labels.flatMap((_, k) => intervalOf(k) ?? []).filter(Number.isFinite) : [];  // the whiskers stay within the chart
   const whole = ends.length ? { suggestedMin: Math.min(...ends), suggestedMax: Math.max(...ends), ...range } : range;
   return new Chart(canvas, {
     type: "bar",
     data: { labels, datasets: [{ data: values, backgroundColor: colours, maxBarThickness: 18 }] },
-    options: { indexAxis: "y", scales: { x: axis(axisTitle, whole), y: { ticks: { autoSkip: false } } },
-      plugins: { legend: { display: false }, tooltip: { callbacks: { label: (t) => tip(t.parsed.x, t.dataIndex) } } } },
+    options: { indexAxis: "y", scales: { x: axis(axisTitle, whole), y: { ticks: rows.ticks } },
+      onResize: rows.onResize,
+      plugins: { legend: { display: false }, tooltip: { callbacks: { title: ([t]) => tipLines(t, t.label), label: (t) => tipLines(t, tip(t.parsed.x, t.dataIndex)) } } } },
     plugins: intervalOf ? [{
       afterDatasetsDraw: (chart) => {
         const pen = chart.ctx;

@@ -13,9 +13,9 @@
 
   // ---- header and words ----
   $("shot").textContent = run.shot.name;
-  $("subtitle").textContent = "Anti-aliasing methods against " + reference + ", " + run.shot.resolution.join(" × ") + ", " +
-    (run.shot.static ? "static" : "moving") + " shot";
-  $("words").append(...words.map((w) => element("li", {}, w)));
+  $("subtitle").textContent = "Anti-aliasing methods" + (methods.some((m) => m.pooled) ? " against " + reference : "") + ", " + run.shot.resolution.join(" × ") + ", " +
+    (run.shot.static ? "static" : "moving") + " shot" + (methods.some((m) => m.pooled) ? "" : " without ground truth");
+  $("words").append(...words.map((w) => element("li", {}, ...breakable(w))));
   // The sentences name the first pairs that are not told apart; here are all, of each method the others.
   const whys = [["truthNoise", "The truth’s noise hides it"], ["varies", "Now one is better, now the other"], ["tooSmall", "Too little picture to judge"], ["equal", "The same picture but for rounding"]]
     .filter(([why]) => run.pairs.some((p) => !p.resolved && p.unresolved === why));
@@ -32,12 +32,14 @@
           ...whys.map(([why]) => element("td", {}, others(i, why).map((k) => methods[k].text).join(", ") || "–"))))));
     });
   }
-  $("advice").append(...advice.map((w) => element("li", {}, w)));
+  $("advice").append(...advice.map((w) => element("li", {}, ...breakable(w))));
   $("advice-box").hidden = !advice.length;
   $("version").textContent = run.run.program;
 
   // ---- the table of figures ----
-  const perPixel = (m, seconds) => seconds * 1e9 / (run.shot.resolution[0] * run.shot.resolution[1]);
+  const size = run.shot.resolution.join("\u00a0×\u00a0"), pixels = run.shot.resolution[0] * run.shot.resolution[1];
+  const perPixel = (m, seconds) => seconds * 1e9 / pixels;
+  const megabytes = (bytes) => (bytes / 1e6).toFixed(2);
   const pair = (a, b) => run.pairs.find((p) => (p.indices[0] === a && p.indices[1] === b) || (p.indices[0] === b && p.indices[1] === a));
   const noaa = methods.findIndex((m) => m.id === "noaa");
   // The comparison of a with b, whichever way round it was stored: gains are positive where a is nearer to the truth.
@@ -76,15 +78,15 @@
     methods.some((m) => m.nsPerPixel > 0) && { title: "Time, ns/px", better: "low", about: "processor time of the method alone, all threads together, per pixel; below it the quartiles over the frames", get: (m) => m.nsPerPixel || null,
       show: (m) => (m.nsPerPixel > 0 ? short(m.nsPerPixel) : "–"), small: (m) => (m.timings > 1 ? `${short(perPixel(m, m.secondsLow))} to ${short(perPixel(m, m.secondsHigh))}` : "measured once") },
     device && { title: onDevice, better: "low", about: "by the device’s own clock, without transfers", get: deviceMs, show: (m) => (deviceMs(m) == null ? "–" : short(deviceMs(m))) },
-    { title: "State, MB", better: "low", about: "memory that the method keeps between frames and works in, at this picture’s size", get: (m) => m.stateBytes, show: (m) => (m.stateBytes / 1048576).toFixed(2) },
+    { title: "State, MB", better: "low", about: "memory that the method keeps between frames and works in, at this picture’s size", get: (m) => m.stateBytes, show: (m) => megabytes(m.stateBytes) },
   ].filter(Boolean);
   const ranked = methods.map((m, i) => i).filter((i) => methods[i].pooled).sort((a, b) => value(methods[a].pooled.mse) - value(methods[b].pooled.mse));
   function toNext(i) {
     const place = ranked.indexOf(i);
     if (place < 1) return null;
     const p = pair(i, ranked[place - 1]);
-    const doubt = p && compared(i, ranked[place - 1]);
-    return { gain: doubt?.why === "equal" ? 0 : value(methods[i].pooled.psnr) - value(methods[ranked[place - 1]].pooled.psnr), doubt };
+    const held = p && compared(i, ranked[place - 1]);
+    return { gain: held?.why === "equal" ? 0 : value(methods[i].pooled.psnr) - value(methods[ranked[place - 1]].pooled.psnr), doubt: held };
   }
   const methodTable = (table, shown, columns) => sortableTable(table, shown, columns, (i) => methods[i], (m) => [...breakable(m.text), element("small", {}, m.title)]);
   const told = (table, columns) => table.closest(".scroll").after(columnNotes(columns));
@@ -109,10 +111,10 @@
       delete m.temporal.ghostHalfLifeFrames;
     }
   }
-  const judged = order.filter((i) => methods[i].temporal);
+  const timed = order.filter((i) => methods[i].temporal);
   const flickerOf = (i) => value(run.shot.static ? time(i).flickerStatic : time(i).flickerMoving);
   const flickerError = (i) => (run.shot.static ? null : time(i).flickerError);
-  const judgedHave = (key) => judged.some((i) => time(i)[key] != null);
+  const judgedHave = (key) => timed.some((i) => time(i)[key] != null);
   const timeColumn = (title, key, digits, about, more = {}) => judgedHave(key) && { title, better: "low", about, get: (m) => (m.temporal ? value(m.temporal[key]) : null),
     show: (m) => (m.temporal && m.temporal[key] != null ? (digits == null ? short(m.temporal[key]) : fixed(m.temporal[key], digits)) : "–"), ...more };
   const plusMinus = (key) => (m) => (m.temporal && m.temporal[key] > 0 ? "± " + Number(m.temporal[key].toPrecision(2)) : null);
@@ -134,6 +136,8 @@
     timeColumn("tPSNR, dB", "tPsnr", 2, "PSNR pooled over these frames alone, without those in which histories fill", { better: "high" }),
     timeColumn("Converged after, frames", "convergenceFrames", 0, "from which frame on PSNR stays within 0.5 dB of its last value"),
   ].filter(Boolean);
+  // Without truth most of it is not known, of a moving shot nothing.
+  const judged = timed.filter((i) => timeColumns.some((c) => c.get(methods[i], i) != null));
   $("time").hidden = !judged.length;
   if (judged.length) {
     const there = methodTable($("time-figures"), judged, timeColumns), has = (start) => there.some((c) => c.title.startsWith(start));
@@ -168,23 +172,21 @@
     return { render, all: render + (m.secondsMedian || (m.deviceSecondsMedian ?? 0)) };
   };
   const S = run.shot.subSamples || 0;
-  const megabytes1080 = (bytesPerPixel) => bytesPerPixel * 1920 * 1080 / 1048576;
-  const bytesAPixel = (bytes) => bytes / (run.shot.resolution[0] * run.shot.resolution[1]);
-  const stateOf = (m) => megabytes1080(bytesAPixel(m.stateBytes));
-  const passMemory = (m) => (!m.inputBytes ? null : megabytes1080(bytesAPixel(m.inputBytes) - (m.passes.includes("color") ? 12 : 0)));
+  const passBytes = (m) => (!m.inputBytes ? null : m.inputBytes - (m.passes.includes("color") ? 12 * pixels : 0));
   // Inputs, written picture and state, beyond those of a method that hands the picture on.
   const bytesOf = (m) => (m.inputBytes ?? 0) + (m.targetBytes ?? 0) + m.stateBytes;
-  const beyondNoaa = (m) => megabytes1080(bytesAPixel(bytesOf(m) - bytesOf(methods[noaa])));
+  const beyondNoaa = (m) => bytesOf(m) - bytesOf(methods[noaa]);
+  // Borders and what a method keeps whatever the size are not to be scaled: these are of this size alone.
+  const memory = (title, about, get, more = {}) => ({ title: `${title} at ${size}, MB`, better: "low", about, get, show: (m) => (get(m) == null ? "–" : megabytes(get(m))), ...more });
   const publishedMemory = (m) => published[m.id]?.megabytes ?? null;
   told($("price-figures"), methodTable($("price-figures"), order, [
     { title: "Passes, s per frame", better: "low", about: "render time of colour and of every pass that the method reads", get: (m, i) => priceOf(i)?.render ?? null },
     methods.some((m) => m.nsPerPixel > 0) && { title: "Method, ms per frame", better: "low", about: "processor time of the method alone", get: (m) => m.secondsMedian * 1000 || null },
     device && { title: "Method, " + onDevice, better: "low", about: "the method alone, by the device’s own clock", get: deviceMs },
-    { title: "Kept, MB at 1080p", better: "low", about: "history and working memory of the method, scaled from this picture’s size to 1920 × 1080", get: (m) => stateOf(m), show: (m) => stateOf(m).toFixed(1) },
-    { title: "Passes, MB at 1080p", better: "low", about: "what the method reads beside colour, in 32-bit floats" + (S ? ` with ${S} sub-samples per pixel` : "") + "; below it all that it reads",
-      get: (m) => passMemory(m), show: (m) => passMemory(m)?.toFixed(1) ?? "–", small: (m) => m.passes.join(", ") },
-    noaa >= 0 && { title: "All beyond noaa, MB at 1080p", better: "low", about: "passes with colour, the written picture and what is kept, less those of noaa", get: beyondNoaa, show: (m) => beyondNoaa(m).toFixed(1) },
-    { title: "Published extra, MB", better: "low", about: "extra memory of a GPU implementation as its authors state it" + (Object.keys(published).length ? " (" + [...new Set(Object.values(published).map((p) => p.source))].join(", ") + ")" : "") +
+    memory("Kept", "history and working memory of the method", (m) => m.stateBytes),
+    memory("Passes", "what the method reads beside colour, in 32-bit floats" + (S ? ` with ${S} sub-samples per pixel` : "") + "; below it all that it reads", passBytes, { small: (m) => m.passes.join(", ") }),
+    noaa >= 0 && memory("All beyond noaa", "passes with colour, the written picture and what is kept, less those of noaa", beyondNoaa),
+    { title: "Published extra at 1920 × 1080, MB", better: "low", about: "extra memory of a GPU implementation as its authors state it, in MB of 2²⁰ bytes where others here are of 10⁶" + (Object.keys(published).length ? " (" + [...new Set(Object.values(published).map((p) => p.source))].join(", ") + ")" : "") +
       ", which packs its buffers more tightly and counts its render targets; –: none is published", get: publishedMemory, show: (m) => (publishedMemory(m) == null ? "–" : publishedMemory(m).toFixed(1)) },
   ].filter(Boolean)));
   $("price-note").textContent = Object.keys(renderSeconds).length ? "" : "This shot does not say how long its passes took to render, so their time is not in the table; shots that the add-on exports say it.";
@@ -209,16 +211,21 @@
       pen.lineJoin = "round";
       chart.names = [];
       for (const k of datasets) {
-        const [p] = chart.getDatasetMeta(k).data, text = chart.data.datasets[k].label, w = pen.measureText(text).width;
-        const offers = [[-w / 2, -11 - high], [11, -high / 2], [-11 - w, -high / 2], [-w / 2, 10], [4, -11 - high], [-4 - w, -11 - high], [4, 10], [-4 - w, 10], [-w / 2, -26 - high], [-w / 2, 25]];
+        const [p] = chart.getDatasetMeta(k).data, text = chart.data.datasets[k].label, lines = [inLines(text, Math.min(220, 0.45 * whole.w), pen.font)].flat();
+        const w = Math.max(...lines.map((line) => pen.measureText(line).width)), h = high * lines.length;
+        const offers = [[-w / 2, -11 - h], [11, -h / 2], [-11 - w, -h / 2], [-w / 2, 10], [4, -11 - h], [-4 - w, -11 - h], [4, 10], [-4 - w, 10], [-w / 2, -26 - h], [-w / 2, 25]];
         const cost = (b) => 5 * (b.w * b.h - common(b, whole)) + 3 * chart.names.reduce((s, n) => s + common(b, n), 0) + boxes.reduce((s, o) => s + common(b, o), 0);
-        const best = offers.map(([dx, dy]) => ({ text, x: p.x + dx, y: p.y + dy, w, h: high })).reduce((a, b) => (cost(b) < cost(a) ? b : a));
+        const best = offers.map(([dx, dy]) => ({ text, x: p.x + dx, y: p.y + dy, w, h })).reduce((a, b) => (cost(b) < cost(a) ? b : a));
         chart.names.push(best);
-        pen.lineWidth = 4;
-        pen.strokeStyle = css("--panel");
-        pen.strokeText(text, best.x, best.y);
-        pen.fillStyle = css("--ink");
-        pen.fillText(text, best.x, best.y);
+        // No name is cut, even where there is no room beside its point.
+        const x = Math.max(0, Math.min(best.x, chart.width - w)), y = Math.max(0, Math.min(best.y, chart.height - h));
+        lines.forEach((line, n) => {
+          pen.lineWidth = 4;
+          pen.strokeStyle = css("--panel");
+          pen.strokeText(line, x, y + n * high);
+          pen.fillStyle = css("--ink");
+          pen.fillText(line, x, y + n * high);
+        });
       }
       pen.restore();
     },
@@ -233,7 +240,7 @@
       charts.push(new Chart($(id), config));
       return charts.at(-1);
     };
-    if (!shown.length) { $("charts").hidden = true; return; }
+    $("charts").hidden = !shown.length;
     // Cost against accuracy, for each of the costs that the run holds. The line joins the methods that no other one
     // beats in both: whoever is below and right of it costs more than one that is better.
     const front = (priced, costOf) => {
@@ -253,8 +260,8 @@
           pointRadius: best.includes(i) ? 8 : 6, pointHoverRadius: 9, ...markerOptions(looks[i]) })),
           { label: "best for its cost", data: steps, showLine: true, borderColor: css("--quiet"), borderWidth: 1.5, borderDash: [4, 3], pointRadius: 0, pointHoverRadius: 0, pointHitRadius: 0, pointStyle: "line" }] },
         options: { scales: { x: logarithmicAxis(axisTitle + " (logarithmic)", priced.map(costOf)), y: axis("PSNR, dB", { grace: "8%" }) },
-          plugins: { legend: { position: "bottom", labels: { usePointStyle: true, boxWidth: 8, boxHeight: 8 } },
-            tooltip: { callbacks: { label: (t) => `${t.dataset.label}: ${t.parsed.x.toPrecision(3)} ${unit}, ${t.parsed.y.toFixed(2)} dB` } } } },
+          plugins: { ...legendBelow({ usePointStyle: true }),
+            tooltip: { callbacks: { label: (t) => tipLines(t, `${t.dataset.label}: ${t.parsed.x.toPrecision(3)} ${unit}, ${t.parsed.y.toFixed(2)} dB`) } } } },
         plugins: [namesOfPoints(best.map((i) => priced.indexOf(i)))],
       });
     };
@@ -290,8 +297,8 @@
         type: "line",
         data: { labels, datasets: indices.map((i) => ({ label: methods[i].text, data: dataOf(i), hidden: !now.has(i), borderDash: looks[i].dash, borderWidth: 2, pointRadius: labels.length > 40 ? 0 : 3, spanGaps: true, ...markerOptions(looks[i]) })) },
         options: { interaction: { mode: "index", intersect: false }, scales: { x: axis(xTitle), y: yAxis },
-          plugins: { legend: { position: "bottom", labels: { usePointStyle: true, boxWidth: 8, boxHeight: 8, filter: (item) => !item.hidden }, onClick: (_, item) => choose((i) => i !== indices[item.datasetIndex] && now.has(i)) },
-            tooltip: { itemSort: (a, b) => b.parsed.y - a.parsed.y, callbacks: { label: (t) => `${t.dataset.label}: ${tip(t.parsed.y)}` } } } },
+          plugins: { ...legendBelow({ usePointStyle: true, filter: (item) => !item.hidden, onClick: (_, item) => choose((i) => i !== indices[item.datasetIndex] && now.has(i)) }),
+            tooltip: { itemSort: (a, b) => b.parsed.y - a.parsed.y, callbacks: { label: (t) => tipLines(t, `${t.dataset.label}: ${tip(t.parsed.y)}`) } } } },
       });
       figure.querySelector("details.lines")?.remove();
       if (indices.length < 2) return;

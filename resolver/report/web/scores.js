@@ -55,11 +55,12 @@
         axisTitle: set.score, tip: (v, k) => `${scoreText(set, v)}, ${interval(set.pictures[k].score, (x) => scoreText(set, x))}`, intervalOf: whiskers,
         range: set.kind === "rank" ? { min: 1, max: ranks.length } : set.kind === "rating" ? { min: 1, max: 5 } : isShare(set) ? { min: 0, max: 1 } : {} })];
       if (counted(set)) {
-        shareCanvas.parentElement.style.height = Math.max(160, 90 + 22 * labels.length) + "px";
+        const rows = namedRows(shareCanvas, labels, 90);
         const hueOf = (r) => rankHues[Math.round((set.kind === "rank" ? r : ranks.length - 1 - r) * (rankHues.length - 1) / Math.max(1, ranks.length - 1))];
         drawn.push(new Chart(shareCanvas, { type: "bar",
           data: { labels, datasets: ranks.map((r, k) => ({ label: set.kind + " " + r, data: set.pictures.map((p) => 100 * p.shares[k]), backgroundColor: hueOf(k), maxBarThickness: 18 })) },
-          options: { indexAxis: "y", scales: { x: axis("% of participants", { stacked: true, max: 100 }), y: { stacked: true, ticks: { autoSkip: false } } },
+          options: { indexAxis: "y", scales: { x: axis("% of participants", { stacked: true, max: 100 }), y: { stacked: true, ticks: rows.ticks } },
+            onResize: rows.onResize,
             plugins: { legend: { position: "bottom", labels: { boxWidth: 10, boxHeight: 10 } }, tooltip: { callbacks: { label: (t) => `${t.dataset.label}: ${t.parsed.x.toFixed(1)} %` } } } } }));
       }
       return drawn;
@@ -101,6 +102,7 @@
     $("agreements").append(...table(["Metric", "Questions", "Pairs", "Kendall’s τ", "Spearman’s ρ"],
       [...rows("all", scores.agreement), ...scores.sets.flatMap((set) => rows(set.questions.join(", "), set.agreement))]));
   }
+  document.querySelectorAll(".scroll:not(.strip)").forEach(tellOfMoreColumns);
   let charts = [];
   const draw = () => {
     charts.forEach((c) => c.destroy());

@@ -40,5 +40,6 @@
       (device ? `Shaders ran on ${device.name}${device.kind === "cpu" ? " (software)" : ""}. ` : `Shaders were left out: ${study.noDevice}. `) +
       (study.complete ? "" : "The measurement was interrupted. ") +
       (shared.length === 0 ? "None of this run’s methods was measured with its parameters; these are others." : missing.length ? `Not measured: ${missing.join(", ")}.` : ""))));
-  sortableTable(table, rows.map((_, k) => k), columns, (k) => rows[k], (m) => [m.method, element("small", {}, m.title)]);
+  sortableTable(table, rows.map((_, k) => k), columns, (k) => rows[k], (m) => [...breakable(m.method), element("small", {}, m.title)]);
+  tellOfMoreColumns(table.closest(".scroll"));
 })();

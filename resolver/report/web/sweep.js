@@ -69,16 +69,16 @@
         datasets.push({ label, band: true, data: points.map(([v, e]) => ({ x: x(v), y: typeof e[end] === "number" ? e[end] : null })), borderWidth: 0, pointRadius: 0, pointHitRadius: 0, backgroundColor: hue + "38", fill });
       datasets.push({ label, data: points.map(([v, e]) => ({ x: x(v), y: e.value, e, v })), borderColor: hue, backgroundColor: hue, borderDash: dash, borderWidth: 2,
         pointRadius: points.map(([v]) => (v.best ? 8 : 4)), pointStyle: points.map(([v]) => (v.best ? "star" : "circle")), pointBorderWidth: points.map(([v]) => (v.best ? 2.5 : 1.5)),
-        pointBackgroundColor: points.map(([v]) => (v.best || v.alike ? hue : v.unjudged ? css("--line") : css("--panel"))) });
+        pointBackgroundColor: points.map(([v]) => (v.best || v.alike ? hue : v.unjudged ? css("--quiet") : css("--panel"))) });
     });
     dressCharts();
     if (chart) chart.destroy();
     chart = new Chart($("curve"), { type: "line", data: { labels: along_.numeric ? undefined : along_.values, datasets },
       options: { interaction: { mode: "nearest", axis: "x", intersect: false },
         scales: { x: { type: along_.numeric ? "linear" : "category", ...axis(along_.name), offset: !along_.numeric }, y: axis(f.title) },
-        plugins: { legend: { display: groups.length > 1, position: "bottom", labels: { filter: (item, all) => !all.datasets[item.datasetIndex].band } },
+        plugins: { ...legendBelow({ filter: (item, all) => !all.datasets[item.datasetIndex].band, shown: groups.length > 1 }),
           tooltip: { filter: (t) => !t.dataset.band, callbacks: { title: (t) => (t.length ? `${along_.name}=${along_.values[t[0].raw.v.at[a]]}` : ""),
-            label: (t) => `${t.dataset.label}: ${shown(f, t.raw.e)}` + (interval(t.raw.e) ? ` (${interval(t.raw.e)})` : "") + (t.raw.v.unjudged ? `; ${tooSmall}` : "") } } } } });
+            label: (t) => tipLines(t, `${t.dataset.label}: ${shown(f, t.raw.e)}` + (interval(t.raw.e) ? ` (${interval(t.raw.e)})` : "") + (t.raw.v.unjudged ? `; ${tooSmall}` : "")) } } } } });
     $("curve-title").textContent = `${f.title} against ${along_.name}: ${f.better === "high" ? "up" : "down"} is better`;
     $("curve-note").textContent = (f.has ? `Band: ${f.has}. ` : "No interval is known for this figure. ") + "Star: the best PSNR of its method; filled: cannot be told apart from it; " +
       (someUnjudged ? `grey: ${tooSmall}; ` : "") + "hollow: worse than it by what is resolved.";
@@ -109,6 +109,7 @@
           element("thead", {}, element("tr", {}, element("th", { scope: "col" }, `${axes[c].name} ↓  ${axes[a].name} →`), ...axes[a].values.map((value) => element("th", { scope: "col" }, value)))),
           element("tbody", {}, ...axes[c].values.map((value, k) => element("tr", {}, element("th", { scope: "row" }, value), ...axes[a].values.map((_, i) => cell(cells.get(`${i} ${k}`)))))))));
     }));
+    $("heat").querySelectorAll(".scroll").forEach(tellOfMoreColumns);
     $("maps-note").textContent = `${f.title}; lighter is better. ★ the best PSNR of its method, ≈ cannot be told apart from it${someUnjudged ? `, ? ${tooSmall}` : ""}.`;
   };
 
@@ -133,5 +134,6 @@
   $("along").addEventListener("change", () => { fillAcross(), fillFixed(), draw(); });
   $("across").addEventListener("change", () => { fillFixed(), draw(); });
   fillAcross(), fillFixed(), drawTable(), draw();
+  tellOfMoreColumns($("all").closest(".scroll"));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => setTimeout(draw));
 })();

@@ -62,16 +62,3 @@ const sortableTable = (table, shown, allColumns, rowOf, headOf, first = "Method"
 // What each column of a table says, to unfold under it.
 const columnNotes = (columns) => element("details", { class: "columns" }, element("summary", {}, "What the columns say"),
   element("dl", {}, ...columns.filter((c) => c.about).flatMap((c) => [element("dt", {}, c.title), element("dd", {}, c.about)])));
-// A table wider than the window says so while there is more to its right.
-const tellOfMoreColumns = (box) => {
-  const hint = element("p", { class: "more-columns quiet", "aria-hidden": "true", hidden: "" }, "More columns: scroll sideways →");
-  box.before(hint);
-  const look = () => {
-    hint.hidden = box.scrollWidth <= box.clientWidth + 1;
-    hint.classList.toggle("seen", box.scrollLeft + box.clientWidth >= box.scrollWidth - 2);
-  };
-  box.addEventListener("scroll", look, { passive: true });
-  const watch = new ResizeObserver(look);
-  watch.observe(box);
-  if (box.firstElementChild) watch.observe(box.firstElementChild);
-};

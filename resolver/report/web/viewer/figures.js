@@ -87,7 +87,7 @@ const viewerFigures = (values, regionBox, store, pictures, names, kinds) => {
     regionRows.sort((a, b) => a.mse - b.mse);
     const plain = regionRows.find((r) => r.source === names.noaa), best = Math.max(...regionRows.map((r) => (Number.isFinite(r.psnr) ? r.psnr : 0)));
     body.replaceChildren(...regionRows.map((r) => element("tr", { "data-source": r.source, class: state.shown.includes(r.source) ? "shown" : null },
-      element("th", { scope: "row" }, mark(r.source), r.name),
+      element("th", { scope: "row" }, mark(r.source), ...breakable(r.name)),
       element("td", {}, Number.isFinite(r.psnr) ? r.psnr.toFixed(2) : "Inf"),
       element("td", {}, plain && r !== plain && Number.isFinite(r.psnr - plain.psnr) ? (r.psnr >= plain.psnr ? "+" : "−") + Math.abs(r.psnr - plain.psnr).toFixed(2) : "–"),
       element("td", {}, short(r.mse * 1e6)),

@@ -180,7 +180,7 @@ const viewerStage = (root, { state, set }, paint, pictures, data, names) => {
     if (wanted !== made) {
       made = wanted;
       labels.replaceChildren(...panes.flatMap((pane) => pane.places.map((place) => {
-        const select = element("select", { "aria-label": `Picture ${place + 1}`, title: "Another picture in this place" }, ...names.options(state.shown[place]));
+        const select = element("select", { "aria-label": `Picture ${place + 1}`, title: `${names.of(state.shown[place])}; another picture in this place` }, ...names.options(state.shown[place]));
         select.value = state.shown[place];
         select.addEventListener("change", () => {
           const shown = state.shown.slice(), other = shown.indexOf(select.value);
@@ -196,10 +196,12 @@ const viewerStage = (root, { state, set }, paint, pictures, data, names) => {
     for (const pane of panes)
       pane.places.forEach((place, side) => {
         const label = labels.children[k++], half = pane.places.length > 1;
-        label.style.maxWidth = (half ? pane.width / 2 : pane.width) - 8 + "px";
-        label.style.top = pane.top + 4 + "px";
-        if (half && side) { label.style.left = "auto"; label.style.right = width - pane.left - pane.width + 4 + "px"; }
-        else { label.style.right = "auto"; label.style.left = pane.left + 4 + "px"; }
+        // In shares of the stage, which on paper has another width than on the screen.
+        const across = (px) => `calc(${(100 * px) / width}% + 4px)`;
+        label.style.maxWidth = `calc(${(100 * (half ? pane.width / 2 : pane.width)) / width}% - 8px)`;
+        label.style.top = `calc(${(100 * pane.top) / height}% + 4px)`;
+        if (half && side) { label.style.left = "auto"; label.style.right = across(width - pane.left - pane.width); }
+        else { label.style.right = "auto"; label.style.left = across(pane.left); }
         const text = names.figure(what(place));
         if (label.lastChild.textContent !== text) label.lastChild.textContent = text;
       });
