@@ -4,6 +4,7 @@
 #include <map>
 
 #include "image/error.h"
+#include "image/lower_case.h"
 #include "image/readable.h"
 #include "shot/import/folder.h"
 
@@ -24,6 +25,11 @@ std::vector<fs::path> picturesIn(const fs::path& folder) {
     if (files.empty()) throw InputError(folder.string() + ": no PNG or EXR frames in this folder");
     return files;
 }
+// Of pictures that are there as EXR and as PNG: which of them goes with these. EXR holds more.
+PictureKind kindBeside(const std::vector<fs::path>& others) {
+    const auto isPng = [](const fs::path& p) { return lowerCase(p.extension().string()) == ".png"; };
+    return std::all_of(others.begin(), others.end(), isPng) ? PictureKind::png : PictureKind::exr;
+}
 // By a key; empty where two pictures share one or a name holds none, which `complaint` tells.
 template <class Key>
 std::map<Key, fs::path> keyed(const std::vector<fs::path>& files, Key (*keyOf)(const fs::path&),
@@ -34,7 +40,7 @@ std::map<Key, fs::path> keyed(const std::vector<fs::path>& files, Key (*keyOf)(c
         if (isNew) continue;
         complaint = file.parent_path().string() + ": " + other->second.filename().string() + " and " +
                     file.filename().string() + " are both frame " + file.stem().string() + "; keep one of them";
-        if constexpr (std::is_same_v<Key, int>)
+        if constexpr (std::is_same_v<Key, std::optional<int>>)
             complaint = file.parent_path().string() + ": " + other->second.filename().string() + " and " +
                         file.filename().string() + " have the same number or none; pair them by --pair order";
         return {};
@@ -42,7 +48,7 @@ std::map<Key, fs::path> keyed(const std::vector<fs::path>& files, Key (*keyOf)(c
     return all;
 }
 std::string nameOf(const fs::path& file) { return file.stem().string(); }
-int numberOf(const fs::path& file) { return frameNumberOf(file.filename().string()); }
+std::optional<int> numberOf(const fs::path& file) { return frameNumberOf(file.filename().string()); }
 
 template <class Key>
 bool sameKeys(const std::map<Key, fs::path>& a, const std::map<Key, fs::path>& b) {
@@ -76,7 +82,8 @@ FramePairs pairFrames(const fs::path& a, const fs::path& b, const std::string& b
         throw UsageError("compare: '" + a.string() + "' and '" + b.string() +
                          "' must both be images or both be folders of frames");
     if (!fs::is_directory(a)) return {{{a.filename().string(), a, b}}, ""};
-    const auto inA = picturesIn(a), inB = picturesIn(b);
+    const auto allA = picturesIn(a), allB = picturesIn(b);
+    const auto inA = ofOneKind(allA, kindBeside(allB)), inB = ofOneKind(allB, kindBeside(allA));
     if (by == "order") {
         if (inA.size() != inB.size())
             throw InputError(b.string() + ": expected " + std::to_string(inA.size()) + " frames as in " + a.string() +

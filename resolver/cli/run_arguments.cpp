@@ -71,6 +71,24 @@ void addRunArguments(Command& c, RunArguments& a) {
            "the methods run on the processor, and on the device for its time beside: both costs in one report");
 }
 
+namespace {
+// Of "exr,png" and its like.
+void chooseWritten(const std::string& text, RunOptions& run) {
+    run.writeExr = run.writePng = false;
+    if (text == "none") return;
+    std::string_view rest = text;
+    for (bool isLast = false; !isLast;) {
+        const size_t comma = rest.find(',');
+        const std::string_view kind = rest.substr(0, comma);
+        if (kind != "exr" && kind != "png")
+            throw UsageError("--write: expected exr, png, exr,png or none, found '" + text + "'");
+        (kind == "exr" ? run.writeExr : run.writePng) = true;
+        isLast = comma == std::string_view::npos;
+        if (!isLast) rest.remove_prefix(comma + 1);
+    }
+}
+}  // namespace
+
 ShotReader openShot(const RunArguments& a, RunOptions& run) {
     run.exec = a.work.exec();
     run.device = a.work.session();
@@ -93,10 +111,7 @@ ShotReader openShot(const RunArguments& a, RunOptions& run) {
                              ", where this run writes and clears; give the run another folder");
     }
     run.out = a.out;
-    run.writeExr = a.write.find("exr") != std::string::npos;
-    run.writePng = a.write.find("png") != std::string::npos;
-    if (!run.writeExr && !run.writePng && a.write != "none")
-        throw UsageError("--write: expected exr, png, exr,png or none, found '" + a.write + "'");
+    chooseWritten(a.write, run);
     run.writeAllFrames = a.writeFrames == "all";
     run.dither = a.dither;
     if (a.dither && !run.writePng) throw UsageError("--dither: no effect without --write png");

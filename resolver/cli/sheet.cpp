@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 
 #include "cli/cli.h"
 #include "image/error.h"
@@ -10,10 +11,11 @@
 
 namespace aa {
 namespace {
+constexpr int kNewest = std::numeric_limits<int>::min();  // no frame has this number
 struct SheetArguments {
     std::string run, out, frames, arrangement = "rows", page = "free", loop;
     std::vector<std::string> methods, crops, columns;
-    int frame = 0, zoom = 0;
+    int frame = kNewest, zoom = 0;
     double framesPerSecond = 0;
     bool light = false, dark = false;
     WorkOptions work;
@@ -66,7 +68,7 @@ void draw(const SheetArguments& o) {
     const auto there = framesWithPictures(few);
     if (there.empty()) throw InputError(o.run + ": no frame of which every method has an image; " + howToWriteAll(few));
     const auto frames = o.frames.empty() ? std::vector<int>() : framesOf(o, there);
-    const int frame = !frames.empty() ? frames.back() : o.frame == 0 ? there.back() : o.frame;
+    const int frame = !frames.empty() ? frames.back() : o.frame == kNewest ? there.back() : o.frame;
     const Shown shown{run, order, [&](int number) { return loadPictures(few, o.run, number, exec); }};
     const bool overFrames = loop ? o.loop == "frames" || (o.loop.empty() && frames.size() > 1) : !frames.empty();
     if (overFrames && frames.empty())
@@ -112,7 +114,7 @@ void addSheet(CommandLine& line, Context&) {
         .separatedBy(',');
     c.option("--arrange", o->arrangement, "rows = a row per method; grid = methods side by side, a row per crop")
         .oneOf({"rows", "grid"});
-    c.option("--frame", o->frame, "frame to show; 0 = the last that every method wrote").notNegative();
+    c.option("--frame", o->frame, "frame to show; default the last that every method wrote").defaultText("");
     c.option("--frames", o->frames, "frames, as 1-16,20: a strip over time per method, or what a loop plays")
         .excludes("--frame");
     c.option("--loop", o->loop, "methods = flip from method to method; frames = play --frames; default what is given")

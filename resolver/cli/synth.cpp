@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <tuple>
 
 #include "cli/choose.h"
@@ -104,7 +105,8 @@ void addSynth(CommandLine& line, Context& context) {
         .typeName("METHOD");
     c.option("--frames", o->synth.frames, "number of frames");
     c.option("--jitter", o->synth.jitter, "sequence; `none` samples pixel centres");
-    c.option("--start", o->synth.jitterStart, "index of the first point of halton23; -1 = its own");
+    c.option("--start", o->synth.jitterStart, "index of the first point of halton23; -1 = its own")
+        .range(-1, std::numeric_limits<int>::max());
     c.option("--period", o->synth.period, "frames after which the jitter repeats").range(1, 1 << 20);
     c.flag("--centre", o->synth.centred, "subtract the mean of one period from the jitter");
     c.option("--jitter-projection", o->jitterProjection,

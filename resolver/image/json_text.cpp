@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <set>
+#include <vector>
 
 #include "image/error.h"
 
@@ -30,7 +32,6 @@ class ListReader {
     bool keeps(int depth, Event event, const json& value) {
         if (depth == 1 && event == Event::key) {
             isNext_ = value.get_ref<const std::string&>() == list_.member;
-            if (isNext_) list_.begin();
         } else if (depth == 1) {
             isInside_ = event == Event::array_start && isNext_;
         } else if (depth == 2 && isInside_ && isEnd(event)) {
@@ -46,10 +47,28 @@ class ListReader {
     bool isNext_ = false, isInside_ = false;
 };
 
+// The members of the objects that are open. A member that stands twice has two values, of which nobody knows which was
+// meant.
+class OpenObjects {
+  public:
+    bool isSecond(Event event, const json& value) {
+        if (event == Event::object_start) members_.emplace_back();
+        if (event == Event::object_end) members_.pop_back();
+        return event == Event::key && !members_.back().insert(value.get_ref<const std::string&>()).second;
+    }
+
+  private:
+    std::vector<std::set<std::string>> members_;
+};
+
 template <class Keeps>
 json parsed(const std::string& text, const std::string& file, const std::string& advice, const Keeps& keeps) {
+    OpenObjects objects;
     try {
         return json::parse(text, [&](int depth, Event event, json& value) {
+            if (objects.isSecond(event, value))
+                throw InputError(file + ": member '" + value.get_ref<const std::string&>().substr(0, 40) +
+                                 "' stands twice in one object; " + advice);
             if (depth > kMaxDepth)
                 throw InputError(file + ": nested deeper than " + std::to_string(kMaxDepth) + " levels; " + advice);
             return keeps(depth, event, value);

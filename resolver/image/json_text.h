@@ -17,13 +17,12 @@ std::string jsonText(const Json& value, int indent = 1) {
 }
 
 // `file` begins the message of an error and `advice` ends it. Throws InputError, one line: not JSON (with line and
-// column), nested too deep, a number beyond a double.
+// column), nested too deep, a number beyond a double, a member that stands twice.
 nlohmann::json parseJson(const std::string& text, const std::string& file, const std::string& advice);
 // A list that is read as it goes: a member of the document whose elements are handed on one by one and left out of the
 // tree, which takes ten times the room of its text. Where the member is no list nothing is handed on.
 struct JsonList {
     std::string_view member;
-    std::function<void()> begin;  // also where a document has the member a second time, which then counts
     std::function<void(const nlohmann::json&)> element;
 };
 nlohmann::json parseJson(const std::string& text, const std::string& file, const std::string& advice,

@@ -71,6 +71,7 @@ Params::Params(std::string_view method, const std::vector<ParamSpec>& table,
             throw UsageError(where + " does not exist" + didYouMean(key, known) +
                              (known.empty() ? "; this method has no parameters" : " (known: " + joined(known) + ")"));
         }
+        if (!given_.insert(key).second) throw UsageError(where + " is given twice; leave one of them out");
         std::string value = text;
         switch (p->type) {
             case ParamSpec::Type::real:
@@ -87,7 +88,6 @@ Params::Params(std::string_view method, const std::vector<ParamSpec>& table,
                                      didYouMean(text, p->choices));
         }
         values_[key] = value;
-        given_.insert(key);
     }
     for (const auto& [key, text] : given) {  // after all are set: does each one act?
         std::string_view name = key;

@@ -186,8 +186,7 @@ class FrameList {
   public:
     explicit FrameList(const std::string& file) : file_(file) {}
     JsonList list() {
-        return {"frames", [this] { entries_.clear(), firstWithoutJitter_.reset(), fault_ = nullptr; },
-                [this](const json& element) { add(element); }};
+        return {"frames", [this](const json& element) { add(element); }};
     }
     std::vector<FrameEntry> take(const Member& frames, bool jittered) {
         frames.arraySize();

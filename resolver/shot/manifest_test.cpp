@@ -202,14 +202,14 @@ TEST(Manifest, NamesOfMembersMayHoldAnything) {
     j["frames"][0]["render_seconds"][std::string("a\0b", 3)] = 1.5;
     EXPECT_EQ(parse(j).frames[0].renderSeconds.at(std::string("a\0b", 3)), 1.5);
 }
-// As everywhere in JSON the last of two members of one name counts.
-TEST(Manifest, OfTwoListsOfFramesTheLastCounts) {
+// JSON lets the last of two members of one name count; nobody knows which was meant.
+TEST(Manifest, AMemberThatStandsTwiceIsNamed) {
     const std::string text = validShot().dump(), frame = R"({"frame": 3, "file": "frames/3.exr", "jitter": [0, 0]})";
     const auto with = [&](const std::string& more) { return text.substr(0, text.size() - 1) + ", " + more + "}"; };
-    const Manifest m = parseManifest(with(R"("frames": [)" + frame + "]"), "SHOT/shot.json");
-    ASSERT_EQ(m.frames.size(), 1u);
-    EXPECT_EQ(m.frames[0].frame, 3);
-    EXPECT_THAT(errorOf(with(R"("frames": [])")), HasSubstr("at least one frame"));
+    for (const std::string name : {"frames", "resolution"})
+        EXPECT_THAT(errorOf(with("\"" + name + "\": [16, 8]")),
+                    HasSubstr("shot.json: member '" + name + "' stands twice in one object; correct it"));
+    EXPECT_THAT(errorOf(with(R"("other": [{"a": {"b": 1, "c": 2, "b": 3}}])")), HasSubstr("member 'b' stands twice"));
     EXPECT_EQ(parseManifest(with(R"("other": {"frames": [)" + frame + "]}"), "SHOT/shot.json").frames.size(), 2u);
 }
 

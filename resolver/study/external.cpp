@@ -31,14 +31,15 @@ std::map<int, fs::path> picturesIn(const fs::path& folder) {
     if (failed)
         throw InputError(folder.string() + ": cannot be read (" + failed.message() + "); check its permissions");
     std::sort(files.begin(), files.end());
+    files = ofOneKind(std::move(files), PictureKind::exr);
     std::map<int, fs::path> pictures;
     for (const auto& file : files) {
-        const int number = frameNumberOf(file.filename().string());
-        if (number < 0) throw InputError(file.string() + ": no frame number in its name; name it like 0001.exr");
-        const auto [other, isNew] = pictures.emplace(number, file);
+        const std::optional<int> number = frameNumberOf(file.filename().string());
+        if (!number) throw InputError(file.string() + ": no frame number in its name; name it like 0001.exr");
+        const auto [other, isNew] = pictures.emplace(*number, file);
         if (!isNew)
             throw InputError(folder.string() + ": both " + other->second.filename().string() + " and " +
-                             file.filename().string() + " are frame " + std::to_string(number) +
+                             file.filename().string() + " are frame " + std::to_string(*number) +
                              "; give each sequence a folder of its own");
         if (lowerExtension(file) != lowerExtension(files[0]))
             throw InputError(folder.string() + ": holds both EXR and PNG; give each kind a folder of its own");
@@ -111,6 +112,11 @@ void requireName(const std::string& name) {
     const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '.' || c == '_' || c == '-'; };
     if (name.empty() || name[0] == '.' || name[0] == '-' || !std::all_of(name.begin(), name.end(), fits))
         throw UsageError("--external: expected a name of letters, digits, '.', '_' and '-', found '" + name + "'");
+    // Beside the folders lie results.json, sheet.png and their like.
+    for (const char* ending : {".json", ".csv", ".html", ".svg", ".png", ".exr", ".pdf", ".webp", ".gif", ".apng"})
+        if (lowerCase(name).ends_with(ending))
+            throw UsageError("--external: '" + name + "' is a file's name, expected a row's; leave out '" + ending +
+                             "'");
     const auto isTaken = [&](const auto& m) { return m.id == name; };
     if (name == "truth" || name == "maps" || std::any_of(registry().begin(), registry().end(), isTaken))
         throw UsageError("--external: '" + name + "' is taken; give the pictures another name");

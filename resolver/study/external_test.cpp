@@ -86,6 +86,16 @@ TEST_F(External, PngHoldsDisplayedColour) {
     EXPECT_FALSE(r.methods[0].pooled->mean.figure("relMse")) << "no linear light";
     ASSERT_TRUE(r.methods[0].temporal) << "over time though it is the only row";
 }
+// As a run with --write exr,png leaves them, and of frames before 0.
+TEST_F(External, FoldersOfOurOwnRunsAreRead) {
+    fs::path both = copied("karis", ".exr", "both");
+    copied("karis", ".png", "both");
+    EXPECT_EQ(externalMethod("a", both, {}).outputSpace(), Space::linear) << "the EXR, which holds more";
+    makeWritableFolder(folder / "before");
+    writeExr(folder / "before/-00005.exr", Rgb(48, 32), false);
+    EXPECT_NE(refusal(folder / "before").find("no picture of frame 1 among its 1 (-5 to -5)"), std::string::npos)
+        << refusal(folder / "before");
+}
 TEST_F(External, TheDisplayWindowIsWhatIsHeldAgainstTheTruth) {
     Rgb whole(48, 32), part(20, 10);
     for (int y = 0; y < 10; y++)
@@ -154,7 +164,7 @@ TEST_F(External, WhatDoesNotFitIsOneClearLine) {
     makeWritableFolder(folder / "unnumbered");
     writeExr(folder / "unnumbered/final.exr", Rgb(48, 32), false);
     EXPECT_NE(refusal(folder / "unnumbered").find("no frame number in its name"), std::string::npos);
-    for (const char* name : {"", "a b", "../x", "noaa", "truth", "-x"})
+    for (const char* name : {"", "a b", "../x", "noaa", "truth", "-x", "results.json", "results.csv", "sheet.PNG"})
         EXPECT_THROW(externalMethod(name, fewer, {}), UsageError) << name;
     EXPECT_THROW(externalMethod("dlss", DisplayChain{}), UsageError);
     EXPECT_THROW(externalMethod("dlss=", DisplayChain{}), UsageError);

@@ -142,7 +142,7 @@ Earlier::Earlier(const RunOptions& o) {
         find(o.out / folder, runs.contains(folder));
         for (const auto& kind : before.maps) find(o.out / "maps" / kind.first / folder, false);
     }
-    for (const char* file : {"sheet.png", "report.html"})
+    for (const char* file : {"sheet.png", "report.html", "sweep.html"})
         if (fs::exists(o.out / file, ignored)) files_.emplace_back(file);
 }
 bool Earlier::mayBeReplacedBy(const RunResults& sofar) const {

@@ -180,13 +180,14 @@ TEST_F(Resume, StalePicturesAreRemovedAndNamed) {
     go(options({"noaa", "fxaa311", "uncharted"}, "out"));
     writeText(folder / "out/fxaa311/notes.txt", "mine");
     writeText(folder / "out/report.html", "of the earlier run");
+    writeText(folder / "out/sweep.html", "of a sweep");
     makeWritableFolder(folder / "out/mine");
     writeText(folder / "out/mine/000001.exr", "not the program's");
     RunOptions fewer = options({"noaa"}, "out");
     fewer.frames = {0, 1};
     const RunResults now = go(fewer);
     EXPECT_EQ(now.replacedMethods, (std::vector<std::string>{"fxaa311", "uncharted"}));
-    EXPECT_EQ(now.outdatedFiles, (std::vector<std::string>{"report.html"}));
+    EXPECT_EQ(now.outdatedFiles, (std::vector<std::string>{"report.html", "sweep.html"}));
     EXPECT_FALSE(fs::exists(folder / "out/uncharted"));
     EXPECT_FALSE(fs::exists(folder / "out/maps/error/uncharted"));
     EXPECT_FALSE(fs::exists(folder / "out/noaa/000003.exr")) << "a frame that this run has not";

@@ -181,6 +181,18 @@ class BadInput(ProgramTest):
         tiff.write_bytes(tiff.read_bytes()[:200])
         self.refused(3, "filter", "noaa", tiff, png, says=("in.tif",))
 
+    def test_words_that_are_nearly_right(self) -> None:
+        run = ("run", self.shot, "-o", self.folder / "o", "-q", "-m")
+        for kinds in ("pngexrjunk", "none,exr", "exr,", "jpg"):
+            self.refused(2, *run, "noaa", "--write", kinds, says=(f"--write: expected exr, png, exr,png or none, found '{kinds}'",))  # fmt: skip
+        self.refused(2, *run, "fxaa311:subpix=0,subpix=1", says=("parameter 'subpix' is given twice",))  # fmt: skip
+        self.refused(2, *run, "noaa", "--external", f"results.json={self.shot / 'truth'}", says=("'results.json' is a file's name",))  # fmt: skip
+        self.assertFalse((self.folder / "o").exists(), "told before anything is computed")
+        self.refused(2, "synth", "moving", "-o", self.folder / "s", "--start", -2, says=("--start", "-2"))  # fmt: skip
+        layout = self.folder / "layout.json"
+        layout.write_text("{}")
+        self.refused(2, "import", self.shot, "-o", self.folder / "i", "--layout", layout, "--fps", 30, says=("--fps", "--layout"))  # fmt: skip
+
     def test_usage(self) -> None:
         self.refused(2, "run", self.shot, says=("--out",))
         self.refused(2, "nonsense", says=("nonsense",))

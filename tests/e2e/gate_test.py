@@ -287,6 +287,33 @@ class Gate(ProgramTest):
             says=("no picture of frame 3 among its 3 (1 to 4)",),
         )
 
+    def test_folders_with_both_kinds_of_picture_are_compared(self) -> None:
+        both, pngs = self.folder / "both", self.folder / "pngs"
+        shot = self.folder / "small"
+        self.synth("moving", shot, (24, 16), 2, "-q")
+        for out, kinds in ((both, "exr,png"), (pngs, "png")):
+            self.aaresolve(
+                *("run", shot, "-m", "noaa,fxaa311", "-o", out, "-q"),
+                *("--write", kinds, "--write-frames", "all"),
+            )
+        # EXR with EXR, which holds more; PNG where the other folder holds nothing else. What is not meant is not read.
+        for name in ("noaa", "fxaa311"):
+            (both / name / "000001.png").write_text("not read")
+        said = json.loads(self.aaresolve("compare", both / "noaa", both / "fxaa311", "--json").stdout)  # fmt: skip
+        self.assertEqual(said["frames"], 2)
+        (both / "noaa/000002.exr").write_text("not read")
+        shutil.copy(pngs / "noaa/000001.png", both / "noaa")
+        said = json.loads(self.aaresolve("compare", both / "noaa", pngs / "noaa", "--json").stdout)
+        self.assertEqual(said["pooled"]["mse"], 0)
+        (both / "noaa/000001.exr").unlink()  # no longer every picture twice
+        self.refused(
+            3,
+            "compare",
+            both / "noaa",
+            both / "fxaa311",
+            says=("are both frame", "keep one of them"),
+        )
+
     def test_frames_are_paired(self) -> None:
         shot, out = self.folder / "shot", self.folder / "out"
         self.synth("moving", shot, (32, 20), 3, "--for", "noaa")

@@ -248,11 +248,32 @@ class HostileFiles(ProgramTest):
         )
 
     def test_frames_before_0(self) -> None:
-        self.run_methods("--write", "png")
+        """A frame's number says which is meant, 0 and those below it, too."""
+        shot, run = self.folder / "before", self.run_folder
+        self.synth("moving", shot, (24, 16), 3, "-q")
+        self.edit(
+            shot / "shot.json", lambda j: [f.update(frame=f["frame"] - 2) for f in j["frames"]]
+        )
+        self.aaresolve("run", shot, "-m", "noaa", "-o", run, "-q", "--write-frames", "all", "--write", "exr,png")  # fmt: skip
+        pages = {}
+        for frame in (-1, 0, 1):
+            page = self.folder / f"{frame}.png"
+            self.aaresolve("sheet", run, "--frame", frame, "-o", page)
+            pages[page.read_bytes()] = frame
+        self.aaresolve("sheet", run, "-o", self.folder / "last.png")
+        self.assertEqual(len(pages), 3)
+        self.assertEqual(pages[(self.folder / "last.png").read_bytes()], 1)
         line = self.refused(
-            2, "sheet", self.run_folder, "--frame", "-2", "-o", self.folder / "s.png", says=("-2",)
+            3, "sheet", run, "--frame", "-2", "-o", self.folder / "s.png", says=("frame -2",)
         )
         self.assertLess(len(line), 200)
+        out = ("-o", self.folder / "again", "-q")
+        self.aaresolve("run", shot, "-m", "noaa", "--external", f"b={run / 'noaa'}", *out)
+        results = json.loads((self.folder / "again/results.json").read_text())
+        noaa, same = (m["frames"] for m in results["methods"])
+        self.assertEqual([f["frame"] for f in same], [-1, 0, 1])
+        for one, other in zip(noaa, same, strict=True):
+            self.assertEqual(one["metrics"]["mse"], other["metrics"]["mse"])
 
 
 if __name__ == "__main__":

@@ -313,7 +313,8 @@ class Sheet(ProgramTest):
             )
             self.assertLess(len(line), 500)
 
-        refuse(2, "--frame", "-2", says="from 0 on, found '-2'")
+        refuse(2, "--frame", "last", says="--frame = last")
+        refuse(3, "--frame", "0", says="no image of frame 0")
         refuse(3, "--frame", "77", says="no image of frame 77")
         refuse(3, "--frames", "7-9", says="it has pictures of 1 to 6")
         refuse(2, "--frames", "4..2", says="numbers and ranges")

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
-#include <optional>
-#include <vector>
+#include <set>
 
 #include "image/error.h"
 #include "image/lower_case.h"
@@ -80,9 +79,18 @@ int frameOf(const fs::path& file) {
 }
 }  // namespace
 
-int frameNumberOf(const std::string& fileName) {
+std::optional<int> frameNumberOf(const std::string& fileName) {
     const std::vector<Digits> digits = digitsOf(fs::path(fileName).stem().string());
-    return digits.empty() ? -1 : digits.back().number;
+    if (digits.empty() || digits.back().number < 0) return std::nullopt;
+    return digits.back().negative ? -digits.back().number : digits.back().number;
+}
+
+std::vector<fs::path> ofOneKind(std::vector<fs::path> files, PictureKind kept) {
+    std::set<fs::path> exrs, pngs;
+    for (const auto& file : files) (lowerExtension(file) == ".exr" ? exrs : pngs).insert(file.stem());
+    if (exrs != pngs) return files;
+    std::erase_if(files, [&](const auto& f) { return (lowerExtension(f) == ".exr") != (kept == PictureKind::exr); });
+    return files;
 }
 
 std::map<int, fs::path> renderedFrames(const fs::path& folder) {

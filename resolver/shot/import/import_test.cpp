@@ -301,8 +301,11 @@ TEST_F(ImportTest, NotMultilayer) {
 TEST_F(ImportTest, FrameNumbers) {
     EXPECT_EQ(frameNumberOf("shot_v2_0013.exr"), 13);
     EXPECT_EQ(frameNumberOf("0007.exr"), 7);
-    EXPECT_EQ(frameNumberOf("picture.exr"), -1);
-    EXPECT_EQ(frameNumberOf("99999999999999999999.exr"), -1);
+    EXPECT_EQ(frameNumberOf("picture.exr"), std::nullopt);
+    EXPECT_EQ(frameNumberOf("99999999999999999999.exr"), std::nullopt);
+    EXPECT_EQ(frameNumberOf("-00005.png"), -5);
+    EXPECT_EQ(frameNumberOf("shot_-0005.png"), -5);
+    EXPECT_EQ(frameNumberOf("shot-0004.png"), 4);
     const Channels c = nativeOf(shot("moving", 1).frame(0));
     writeNative(folder / "in" / "picture.exr", c, {{"Frame", "0042"}});
     EXPECT_EQ(renderedFrames(folder / "in").begin()->first, 42);
