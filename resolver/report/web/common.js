@@ -155,7 +155,7 @@ const namedRows = (canvas, labels, more = 60) => {
     canvas.parentElement.style.height = Math.max(160, more + (8 + 14 * lines) * labels.length) + "px";
   };
   fit(canvas.parentElement.clientWidth);
-  return { ticks: { autoSkip: false, callback(k) { return nameOf(k, this.chart.width); } }, onResize: (_, { width }) => fit(width) };
+  return { ticks: { autoSkip: false, callback(k) { return nameOf(k, this.chart.width); } }, onResize: (_, { width }) => width > 0 && fit(width) };  // not where it is out of sight
 };
 // Horizontal bars, as tall as their number asks for; whiskers from intervalOf(k), [from, to] or null; an end
 // without end goes to the chart's border.

@@ -33,7 +33,7 @@
   const table = (heads, rows) => [element("thead", {}, element("tr", {}, ...heads.map((h) => element("th", { scope: "col" }, h)))),
     element("tbody", {}, ...rows.map((row) => element("tr", {}, ...row.map((cell, k) => {
       const [text, small] = Array.isArray(cell) ? cell : [cell];
-      return element(k ? "td" : "th", { scope: k ? null : "row" }, text, small ? element("small", { class: small === "not resolved" ? "unresolved" : null }, small) : null);
+      return element(k ? "td" : "th", { scope: k ? null : "row" }, ...breakable(text), small ? element("small", { class: small === "not resolved" ? "unresolved" : null }, small) : null);
     }))))];
   const figureNames = (set) => {
     const names = new Map();
