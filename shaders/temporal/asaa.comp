@@ -36,8 +36,9 @@
 #include "../common/layers.glsl"
 #include "../common/rejection.glsl"
 
-// Clip position of a static surface point at pixel position p and depth z in another camera, as three rows x, y, w:
-// z (perDepth.xyz . (p, 1)) + constant.xyz . (p, 1).
+// Clip position of the static surface point that the pixel at p samples at depth z, in another camera jittered as this
+// frame, as three rows x, y, w: z (perDepth.xyz . (p, 1)) + constant.xyz . (p, 1). Jittered, for the sample lies at
+// p + jitter: less p the position is how far the point moved.
 struct CameraPath {
     vec4 perDepth[3], constant[3];
 };
@@ -73,7 +74,7 @@ layout(constant_id = 15) const bool BOTH_SIDES = false;
 
 const float MOST_COUNT = 16777215.0;  // the last whole step of float
 
-// Displacement in px from p to where a static surface point lay in another camera; NaN behind it. Without fused
+// Displacement in px of the pixel's surface, were it static, into another camera; NaN behind it. Without fused
 // multiply-adds: a small difference of large numbers.
 vec2 cameraDisplacement(CameraPath path, bool moves, float depth, ivec2 p) {
     if (!moves) return vec2(0.0);

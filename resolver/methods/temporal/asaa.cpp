@@ -76,7 +76,11 @@ CameraPath cameraPath(const Frame& frame, const Camera* other) {
     const auto rays = viewRays(frame);
     if (!rays || !other || other->kind != frame.camera->kind) return path;
     path.moves = other->view != frame.camera->view || other->projection != frame.camera->projection;
-    const glm::dmat4 m = other->projection * other->view * glm::inverse(frame.camera->view);
+    glm::dmat4 m = other->projection * other->view * glm::inverse(frame.camera->view);
+    for (int i = 0; i < 4; i++) {  // jittered as this frame: a sample at p + jitter that did not move then lies at p
+        m[i][0] -= 2 * frame.jitterPx.x / frame.width * m[i][3];
+        m[i][1] += 2 * frame.jitterPx.y / frame.height * m[i][3];
+    }
     const int rows[3] = {0, 1, 3};
     for (int r = 0; r < 3; r++) {
         const int i = rows[r];

@@ -31,8 +31,9 @@ MethodDescriptor asaaDescriptor();
 size_t asaaQuadrant(glm::dvec2 jitterPx);
 glm::vec2 asaaOffsetPx(size_t quadrant);
 
-// Clip position of a static surface point at pixel position p and depth z in another camera, as three rows x, y, w:
-// z * (perDepth . (p, 1)) + constant . (p, 1).
+// Clip position of the static surface point that the pixel at p samples at depth z, in another camera jittered as this
+// frame, as three rows x, y, w: z * (perDepth . (p, 1)) + constant . (p, 1). Less p it is how far the point moved; the
+// sample itself lies at p + jitter, as the motion pass has it (conventions 3).
 struct CameraPath {
     bool moves = false;  // false: the same camera, no displacement
     float perDepth[3][3] = {}, constant[3][3] = {};

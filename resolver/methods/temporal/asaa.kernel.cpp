@@ -4,7 +4,7 @@
 
 namespace AA_ARCH {
 
-// Displacement in px from p to where a static surface point lay in another camera.
+// Displacement in px of the pixel's surface, were it static, into another camera.
 template <class R>
 AA_INLINE Motion<R> cameraDisplacement(const CameraPath& path, const TemporalIn& in, R depth, int x, int y) {
     using T = Elem<R>;

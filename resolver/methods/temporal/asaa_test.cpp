@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "image/error.h"
 #include "methods/method.h"
 #include "methods/temporal/temporal_kernels.h"
@@ -45,6 +47,41 @@ TEST(Asaa, BuffersFollowTheMotion) {
     RunningMethod flipped = running("asaa", 30, 20);
     for (int n = 0; n < 24; n++) flipped.resolve(rampFrame(n, v * double(n), -v), {}, {});
     EXPECT_GT(std::fabs(flipped.out.c[0].at(15, 10) - m.out.c[0].at(15, 10)), 5e-3f);
+}
+// The camera of frame n of a shot whose picture moves by v px a frame, surfaces at `depthView`.
+Camera pannedCamera(int n, glm::dvec2 v, double depthView) {
+    Camera c;
+    c.projection = glm::dmat4(1.2, 0, 0, 0, 0, 1.8, 0, 0, 0, 0, -1.002, -1, 0, 0, -0.2002, 0);
+    c.view[3] = {n * v.x * 2 / 30 * depthView / 1.2, -n * v.y * 2 / 20 * depthView / 1.8, 0, 1};
+    return c;
+}
+// The same pictures and motion, moved by the camera or, without one, by the object: the same place in every buffer. A
+// camera's displacement not counted from the sample, at p + jitter, would be off by (1 - age) jitter.
+TEST(Asaa, CameraMotionAndObjectMotionAgree) {
+    const glm::dvec2 v(0.3, -0.2);
+    for (const char* text : {"asaa", "asaa:unjitter=on", "asaa:blurMode=eq331"}) {
+        RunningMethod withCamera = running(text, 30, 20), without = running(text, 30, 20);
+        std::optional<Camera> before;
+        for (int n = 0; n < 12; n++) {
+            Frame f = rampFrame(n, v * double(n), v);
+            f.jitterPx += glm::dvec2(0.03 * (n % 3), -0.02 * (n % 5));
+            for (auto& p : f.colorEncoded.c) {  // a pattern that shows a shift of a tenth of a pixel
+                for (int y = 0; y < 20; y++)
+                    for (int x = 0; x < 30; x++)
+                        p.at(x, y) = float(0.5 + 0.4 * std::sin(2 * (x + f.jitterPx.x - v.x * n)) *
+                                                     std::cos(1.5 * (y + f.jitterPx.y - v.y * n)));
+                p.fillBorder();
+            }
+            without.resolve(f, {}, {});
+            f.camera = pannedCamera(n, v, 5);
+            f.previousCamera = std::exchange(before, f.camera);
+            withCamera.resolve(f, {}, {});
+            for (int y = 0; y < 20; y++)
+                for (int x = 0; x < 30; x++)
+                    ASSERT_NEAR(withCamera.out.c[0].at(x, y), without.out.c[0].at(x, y), 2e-5)
+                        << text << " " << n << " " << x << " " << y;
+        }
+    }
 }
 // Static, one quadrant per frame: weights (.75, .25) squared, of every buffer alike.
 TEST(Asaa, OutputIsATentOfOnePixelRadius) {
