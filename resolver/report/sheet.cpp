@@ -113,9 +113,9 @@ class Rows {
                             room, format.name);
         int x = kSheetMargin + kLabelWidth + kSheetGap;
         frameX_ = x;
-        if (o.frameColumn) x += layout_.frame.width + kSheetGap;
-        for (const CellSize& c : layout_.crops) cropX_.push_back(x), x += c.width + kSheetGap;
-        for (size_t i = 0; i < maps_.size(); i++) mapX_.push_back(x), x += layout_.frame.width + kSheetGap;
+        if (o.frameColumn) x += layout_.frame.column() + kSheetGap;
+        for (const CellSize& c : layout_.crops) cropX_.push_back(x), x += c.column() + kSheetGap;
+        for (size_t i = 0; i < maps_.size(); i++) mapX_.push_back(x), x += layout_.mapColumn() + kSheetGap;
     }
     std::vector<Canvas> pages() {
         SheetSection section;
@@ -161,10 +161,11 @@ class Rows {
         std::string frame = frameWord(pictures_.frame);
         if (layout_.frame.magnification > 1) frame += ", x" + std::to_string(layout_.frame.magnification);
         if (layout_.frame.magnification == 0) frame += ", shrunk to " + std::to_string(layout_.frame.width) + " px";
-        if (options_.frameColumn) add(frameX_, layout_.frame.width, frame);
+        if (options_.frameColumn) add(frameX_, layout_.frame.column(), frame);
         for (size_t i = 0; i < crops_.size(); i++)
-            add(cropX_[i], layout_.crops[i].width, nameOf(crops_[i], layout_.crops[i].magnification), theme_.ofCrop(i));
-        for (size_t i = 0; i < maps_.size(); i++) add(mapX_[i], layout_.frame.width, std::string(maps_[i]->name));
+            add(cropX_[i], layout_.crops[i].column(), nameOf(crops_[i], layout_.crops[i].magnification),
+                theme_.ofCrop(i));
+        for (size_t i = 0; i < maps_.size(); i++) add(mapX_[i], layout_.mapColumn(), std::string(maps_[i]->name));
         size_t most = 0;
         for (const Head& h : all) most = std::max(most, h.lines.size());
         return {int(most) * kHeadStep + 14, [all, most, this](Canvas& canvas, int y) {
@@ -221,19 +222,19 @@ class Rows {
         const Rgb drawn = kind.draw(image, pictures_.truth, exec_);
         return isShrunk ? shrunk(drawn, width, height, exec_) : drawn;
     }
-    int scaleInset() const { return std::min(24, layout_.frame.width / 10); }
+    int scaleInset() const { return std::min(24, layout_.mapColumn() / 10); }
     std::vector<std::string> scaleWords(const MapKind& kind) const {
         return pen_.wrapped(kind.name == "error" ? "error per pixel, " + spaceInWords(shown_.run.protocol) +
                                                        " 0 to 1: RMS over R, G, B; the same scale on every sheet"
                                                  : std::string(kind.scale),
-                            layout_.frame.width - 2 * scaleInset(), 14);
+                            layout_.mapColumn() - 2 * scaleInset(), 14);
     }
     int scaleHeight(const MapKind& kind) const {
         return int(scaleWords(kind).size()) * 19 + (scaleOf(kind) ? 60 : 0) + 10;
     }
     // The one scale of all maps of a kind, in the truth's own cell.
     void scale(Canvas& canvas, const MapKind& kind, int x, int y, int height) {
-        const int width = layout_.frame.width, barWidth = width - 2 * scaleInset(), barX = x + scaleInset();
+        const int width = layout_.mapColumn(), barWidth = width - 2 * scaleInset(), barX = x + scaleInset();
         const auto most = scaleOf(kind);
         const auto words = scaleWords(kind);
         int line = y + (height - int(words.size()) * 19 - (most ? 60 : 0)) / 2;

@@ -29,11 +29,10 @@ RowLayout rowOf(const RowContent& c, int height, int cropHeight) {
     // A low and wide crop is no wider than one and a half square ones.
     for (const Window& crop : c.crops)
         l.crops.push_back(cropCell(crop, c.zoom, std::min(side, std::max(1, 3 * side / 2 / crop.width) * crop.height)));
-    const int frames = (c.frame ? 1 : 0) + c.maps;
-    l.width = frames * (l.frame.width + kSheetGap) - kSheetGap;
-    if (frames > 0) l.height = l.frame.height;
+    l.width = (c.frame ? l.frame.column() + kSheetGap : 0) + c.maps * (l.mapColumn() + kSheetGap) - kSheetGap;
+    if (c.frame || c.maps > 0) l.height = l.frame.height;
     for (const CellSize& crop : l.crops) {
-        l.width += crop.width + kSheetGap;
+        l.width += crop.column() + kSheetGap;
         l.height = std::max(l.height, crop.height);
     }
     return l;
@@ -45,6 +44,10 @@ std::string sizes(const std::vector<Window>& crops) {
     return all;
 }
 }  // namespace
+
+std::string smallerAdvice(const std::string& less, const std::string& page) {
+    return "choose " + less + (page == "free" ? " or a smaller --zoom" : ", a smaller --zoom or --page free");
+}
 
 RowLayout rowLayout(const RowContent& c, int room, const std::string& page) {
     if (room == 0) {
@@ -59,8 +62,8 @@ RowLayout rowLayout(const RowContent& c, int room, const std::string& page) {
         if (const RowLayout l = rowOf(c, height, height); l.width <= room) return l;
     throw UsageError("--page " + page + ": " + std::to_string((c.frame ? 1 : 0) + c.maps) +
                      " whole frames and crops of " + (c.crops.empty() ? "none" : sizes(c.crops)) + " px do not fit " +
-                     std::to_string(room) +
-                     " px side by side; leave out --columns, choose smaller crops, a smaller --zoom or --page free");
+                     std::to_string(room) + " px side by side; leave out --columns, " +
+                     smallerAdvice("smaller crops", page));
 }
 
 GridLayout gridLayout(const std::vector<Window>& crops, size_t columns, int zoom, int room, int roomHeight,
@@ -95,7 +98,7 @@ GridLayout gridLayout(const std::vector<Window>& crops, size_t columns, int zoom
         throw UsageError("--page " + page + ": crops of " + sizes(crops) + " px" +
                          (zoom > 0 ? " at --zoom " + std::to_string(zoom) : std::string()) + " do not fit " +
                          std::to_string(room) + (roomHeight > 0 ? " x " + std::to_string(roomHeight) : std::string()) +
-                         " px; choose smaller crops, a smaller --zoom or --page free");
+                         " px; " + smallerAdvice("smaller crops", page));
     // As many in the last block as in the others, or nearly.
     best.columns = (int(columns) + blocks(best) - 1) / blocks(best);
     return best;

@@ -1,5 +1,6 @@
 // Sizes of the pictures on a contact sheet: as large as the page allows, crops by whole factors.
 #pragma once
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,12 @@ namespace aa {
 struct CellSize {
     int width = 0, height = 0;  // px of the sheet
     int magnification = 0;      // px of the sheet per px of the picture; 0: shrunk
+    // Of its column, whose head must find room above a picture of one pixel, too.
+    int column() const { return std::max(width, kLeastColumn); }
+    static constexpr int kLeastColumn = 64;
 };
+// What ends a refusal: another page is no advice to who has asked for the free one.
+std::string smallerAdvice(const std::string& less, const std::string& page);
 
 // A row of a method: the whole frame, crops, maps of the whole frame.
 struct RowContent {
@@ -25,6 +31,9 @@ struct RowLayout {
     CellSize frame;  // of maps too
     std::vector<CellSize> crops;
     int width, height;  // of the pictures, with the gaps between them
+    // Of a map, whose scale is explained beside the truth.
+    int mapColumn() const { return std::max(frame.width, kLeastMapColumn); }
+    static constexpr int kLeastMapColumn = 144;
 };
 // `room`: width in px; 0: no limit. Throws UsageError when even the smallest do not fit.
 RowLayout rowLayout(const RowContent& content, int room, const std::string& page);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "image/error.h"
+#include "report/sheet_layout.h"
 
 namespace aa {
 namespace {
@@ -31,8 +32,9 @@ std::vector<std::vector<Placed>> flow(const std::vector<SheetSection>& sections,
             if (bottom > 0 && y + needed > bottom) {
                 if (top + lead + s.rows[r].height > bottom)
                     throw UsageError("--page " + std::string(page) + ": a row of " + std::to_string(s.rows[r].height) +
-                                     " px does not fit " + std::to_string(bottom - top - lead) +
-                                     "; choose smaller crops, fewer columns, a smaller --zoom or --page free");
+                                     " px below heads of " + std::to_string(lead) + " does not fit " +
+                                     std::to_string(bottom - top) + "; " +
+                                     smallerAdvice("smaller crops, fewer columns", page));
                 pages.emplace_back();
                 y = top;
                 for (const auto& item : s.lead) put(item);

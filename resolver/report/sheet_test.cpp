@@ -57,6 +57,18 @@ TEST(SheetLayout, GridsFillThePageWithFewBlocks) {
     EXPECT_THROW(gridLayout({{0, 0, 2000, 10}}, 2, 0, 1864, 700, "slide"), UsageError);
 }
 
+TEST(SheetLayout, HeadsHaveRoomAboveNarrowPictures) {
+    const RowLayout l = rowLayout({1, 300, true, {{0, 0, 1, 48}}, 1, 0}, 0, "free");
+    EXPECT_EQ(l.frame.width, 1);
+    EXPECT_EQ(l.width, 2 * CellSize::kLeastColumn + RowLayout::kLeastMapColumn + 2 * kSheetGap);
+    for (const char* page : {"slide", "free"}) try {
+            gridLayout({{0, 0, 2000, 10}}, 2, 0, 1864, 700, page);
+            ADD_FAILURE();
+        } catch (const UsageError& e) {
+            EXPECT_EQ(std::string(e.what()).ends_with("--page free"), std::string(page) == "slide") << e.what();
+        }
+}
+
 // ---- pages ----
 TEST(SheetPages, RowsFlowAndHeadsRepeat) {
     int heads = 0, rows = 0;

@@ -8,6 +8,7 @@
 #include "image/error.h"
 #include "image/io.h"
 #include "image/lower_case.h"
+#include "image/readable.h"
 #include "shot/import/folder.h"
 
 namespace aa {
@@ -19,8 +20,7 @@ std::string lowerExtension(const fs::path& file) { return lowerCase(file.extensi
 // One picture for each frame.
 std::map<int, fs::path> picturesIn(const fs::path& folder) {
     std::error_code failed;
-    if (!fs::is_directory(folder, failed))
-        throw InputError(folder.string() + ": no such folder; expected one EXR or PNG for each frame");
+    requireFolder(folder, "; expected one EXR or PNG for each frame");
     std::vector<fs::path> files;
     for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
         const std::string extension = lowerExtension(it->path());

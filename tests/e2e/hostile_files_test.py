@@ -177,6 +177,11 @@ class HostileFiles(ProgramTest):
         for file, command in cases:
             file.chmod(0)
             self.refused(3, *command, says=(f"{file}: cannot be read (Permission denied); check its permissions",), **other)  # fmt: skip
+            if file.parent != self.folder:
+                file.chmod(0o666)
+                file.parent.chmod(0)
+                self.refused(3, *command, says=("Permission denied", "permissions"), **other)  # fmt: skip
+                file.parent.chmod(0o777)
             away = file.rename(file.with_suffix(".away"))
             self.refused(3, *command, says=(f"{file}: no such file",), **other)
             away.rename(file).chmod(0o666)

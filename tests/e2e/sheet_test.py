@@ -306,6 +306,14 @@ class Sheet(ProgramTest):
         self.aaresolve(*asked, "--write", "none")
         self.refused(3, "sheet", run, says=("--write exr --write-frames all",))
 
+    def test_pictures_of_one_column_fit_every_page(self) -> None:
+        """The heads of their columns were one letter wide and higher than a page."""
+        shot, run = self.folder / "narrow", self.folder / "narrow_run"
+        self.synth("moving", shot, (1, 300), 2, "-q")
+        self.aaresolve("run", shot, "-m", "noaa,fxaa311", "-o", run, "-q")
+        for page in ("free", "a4", "a4-portrait", "slide"):
+            self.aaresolve("sheet", run, "--page", page, "-o", self.folder / f"{page}.png")
+
     def test_what_is_refused(self) -> None:
         def refuse(code: int, *options: object, says: str, name: str = "o.png") -> None:
             line = self.refused(

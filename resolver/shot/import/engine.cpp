@@ -8,6 +8,7 @@
 
 #include "image/error.h"
 #include "image/exr.h"
+#include "image/readable.h"
 #include "shot/import/store.h"
 #include "shot/pass_table.h"
 #include "shot/writer.h"
@@ -24,7 +25,7 @@ std::map<int, fs::path> filesOf(const fs::path& from, const std::string& pattern
     const size_t at = name.find("{frame}");
     const std::string before = name.substr(0, at), after = name.substr(at + 7);
     std::error_code failed;
-    if (!fs::is_directory(folder, failed)) throw InputError(folder.string() + ": no such folder; the layout names it");
+    requireFolder(folder, "; the layout names it");
     std::map<int, fs::path> files;
     for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
         const std::string file = it->path().filename().string();

@@ -7,6 +7,7 @@
 
 #include "image/error.h"
 #include "image/lower_case.h"
+#include "image/readable.h"
 #include "shot/import/blender_exr.h"
 #include "shot/manifest.h"
 
@@ -94,9 +95,8 @@ std::vector<fs::path> ofOneKind(std::vector<fs::path> files, PictureKind kept) {
 }
 
 std::map<int, fs::path> renderedFrames(const fs::path& folder) {
+    requireFolder(folder, "; expected rendered frames (OpenEXR MultiLayer)");
     std::error_code failed;
-    if (!fs::is_directory(folder, failed))
-        throw InputError(folder.string() + ": no such folder; expected rendered frames (OpenEXR MultiLayer)");
     std::vector<fs::path> files;
     size_t displayReferred = 0;
     for (fs::directory_iterator it(folder, failed), end; it != end; it.increment(failed)) {
