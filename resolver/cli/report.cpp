@@ -53,6 +53,7 @@ void writeReport(const ReportArguments& o) {
                          "report then shows it, or open " + (folder / "angles.svg").string());
     const RunResults run = readResults(given);
     const fs::path out = o.out.empty() ? fs::path(given) / "report.html" : fs::path(o.out);
+    requireWritable(out);
     const EmbedOptions embed{.what = o.embed == "full"    ? Embed::full
                                      : o.embed == "crops" ? Embed::crops
                                                           : Embed::none,

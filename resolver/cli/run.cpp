@@ -8,6 +8,7 @@
 #include "cli/run_arguments.h"
 #include "image/error.h"
 #include "image/folder_claim.h"
+#include "image/io.h"
 #include "report/advice.h"
 #include "report/format.h"
 #include "report/gallery.h"
@@ -278,7 +279,7 @@ void execute(const RunCommandArguments& o, Context& context) {
     if (!o.methods.empty()) run.methods = chosenFor(o.run.shot, o.methods);
     if (!o.add) addBaseline(run.methods, o);  // what is added to has its own
     run.debugLayers = o.debugLayers;
-    if (!o.trace.empty()) run.trace = std::make_shared<Trace>();
+    if (!o.trace.empty()) requireWritable(o.trace), run.trace = std::make_shared<Trace>();
     run.provenance =
         provenanceOf(context.arguments, {"-m", "--method", "-o", "--out", "--external"}, {"--resume", "--add"});
     const ShotReader shot = openShot(o.run, run);

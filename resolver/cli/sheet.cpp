@@ -6,6 +6,7 @@
 
 #include "cli/cli.h"
 #include "image/error.h"
+#include "image/io.h"
 #include "report/document.h"
 #include "study/prepare.h"
 
@@ -58,6 +59,7 @@ void draw(const SheetArguments& o) {
     const std::filesystem::path out =
         o.out.empty() ? std::filesystem::path(o.run) / "sheet.png" : std::filesystem::path(o.out);
     const DocumentKind kind = documentKindOf(out, "-o");
+    requireWritable(out);
     const SheetOptions options = sheetOptions(o, run);
     const bool loop = !o.loop.empty() || !holdsPages(kind);
     if (loop && !holdsLoops(kind))

@@ -79,6 +79,7 @@ void make(MakeOptions& o, Context& context) {
     }
     fs::path page = o.out;
     if (page.extension() != ".html") page /= "survey.html";
+    if (page.has_parent_path()) makeWritableFolder(page.parent_path());
     Survey survey;
     {
         std::optional<TerminalProgress> progress;  // ends its line before the results
@@ -92,7 +93,6 @@ void make(MakeOptions& o, Context& context) {
         return;
     }
     if (!o.overwrite) refuseAnotherKey(keyBeside(page), survey.key.survey);
-    if (page.has_parent_path()) makeWritableFolder(page.parent_path());
     writeText(page, survey.page);
     writeText(keyBeside(page), toJsonText(survey.key));
     for (const auto& note : survey.notes)

@@ -97,6 +97,14 @@ void giveUpWriting(const fs::path& file, const std::string& why) {
     throw OutputError(file.string() + ": cannot be written (" + why + "); check permissions and free disk space");
 }
 
+void requireWritable(const fs::path& file) {
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+    std::error_code ignored;
+    if (::access(folder.c_str(), W_OK | X_OK) != 0) giveUpWriting(file, std::generic_category().message(errno));
+    if (!fs::is_directory(folder, ignored)) giveUpWriting(file, std::generic_category().message(ENOTDIR));
+    if (fs::is_directory(file, ignored)) giveUpWriting(file, std::generic_category().message(EISDIR));
+}
+
 void writeStream(const fs::path& file, const std::function<void(std::ostream&)>& content) {
     const fs::path temporary = temporaryName(file);
     std::ofstream out(temporary, std::ios::binary);

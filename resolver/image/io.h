@@ -72,6 +72,8 @@ std::filesystem::path temporaryName(const std::filesystem::path& file);
 void renameInto(const std::filesystem::path& temporary, const std::filesystem::path& file);  // throws InputError
 // Removes the temporary file and throws InputError.
 [[noreturn]] void giveUpWriting(const std::filesystem::path& file, const std::string& why);
+// For what is written at the end of long work: throws at its beginning what the writing would.
+void requireWritable(const std::filesystem::path& file);
 // Write a file through a temporary name: what `content` puts into the stream, bytes, a text. Throw InputError when they
 // cannot.
 void writeStream(const std::filesystem::path& file, const std::function<void(std::ostream&)>& content);

@@ -16,6 +16,7 @@
 #include "image/error.h"
 #include "image/exr.h"
 #include "image/io_testing.h"
+#include "image/output_error.h"
 #include "image/png.h"
 
 namespace aa {
@@ -551,15 +552,25 @@ TEST_F(ImageFiles, AFileThatIsAskedForClearsWhatKilledProcessesLeftOfIt) {
     EXPECT_TRUE(fs::exists(other / "a.png"));
 }
 TEST_F(ImageFiles, WhatCannotBeWrittenIsSaidAndLeavesNothing) {
-    for (const char* name : {"a.png", "a.exr"}) {
+    for (const char* name : {"a.png", "a.exr", "asked"}) {
         const fs::path file = folder / "nowhere" / name;
         try {
-            file.extension() == ".png" ? writePng(file, ramp()) : writeExr(file, ramp(), false);
+            if (file.extension() == ".png")
+                writePng(file, ramp());
+            else if (file.extension() == ".exr")
+                writeExr(file, ramp(), false);
+            else
+                requireWritable(file);
             ADD_FAILURE() << name;
         } catch (const InputError& e) {
             EXPECT_THAT(e.what(), AllOf(HasSubstr(name), HasSubstr("cannot be written"), HasSubstr("No such file")));
         }
     }
+    EXPECT_THROW(requireWritable(folder), OutputError) << "a folder is there";
+    writeText(folder / "a", "");
+    EXPECT_THROW(requireWritable(folder / "a" / "b"), OutputError) << "in a file";
+    EXPECT_NO_THROW(requireWritable(folder / "a"));
+    EXPECT_NO_THROW(requireWritable(folder / "new"));
 }
 
 }  // namespace

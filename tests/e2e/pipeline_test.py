@@ -75,9 +75,10 @@ class Pipeline(ProgramTest):
         for one, next_one in zip(spans, spans[1:]):
             self.assertLessEqual(one["ts"] + one["dur"], next_one["ts"] + 1)
         self.refused(
-            *(1, *command, "-o", self.folder / "out", "--trace", self.folder / "none/trace.json"),
+            *(1, *command, "-o", self.folder / "late", "--trace", self.folder / "none/trace.json"),
             says=("trace.json", "cannot be written"),
         )
+        self.assertFalse((self.folder / "late").exists(), "told before the run, not after it")
 
     def test_same_bits_for_threads_and_instruction_sets(self) -> None:
         shot = self.folder / "shot"
