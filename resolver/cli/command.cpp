@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <sstream>
 
@@ -12,11 +13,22 @@ namespace aa {
 
 Option& Option::required() { return option_->required(), *this; }
 Option& Option::range(int least, int most) { return option_->check(CLI::Range(least, most)), *this; }
-Option& Option::range(double least, double most) { return option_->check(CLI::Range(least, most)), *this; }
+Option& Option::range(double least, double most) {
+    const auto within = [=](const std::string& text) {
+        double value = NAN;
+        if (CLI::detail::lexical_cast(text, value) && value >= least && value <= most) return std::string();  // no NaN
+        std::ostringstream refusal;
+        refusal << "expected a number in [" << least << " - " << most << "], found '" << text << "'";
+        return refusal.str();
+    };
+    std::ostringstream limits;
+    limits << "FLOAT in [" << least << " - " << most << "]";
+    return option_->check(CLI::Validator([within](std::string& text) { return within(text); }, limits.str())), *this;
+}
 Option& Option::notNegative() {
     const auto refusal = [](const std::string& text) {
         double value = 0;
-        if (CLI::detail::lexical_cast(text, value) && value >= 0) return std::string();
+        if (CLI::detail::lexical_cast(text, value) && value >= 0 && std::isfinite(value)) return std::string();
         return "expected a number from 0 on, found '" + text + "'";
     };
     return option_->check(CLI::Validator([refusal](std::string& text) { return refusal(text); }, "NUMBER >= 0")), *this;
@@ -28,7 +40,8 @@ Option& Option::oneOf(std::initializer_list<int> numbers) {
     return option_->check(CLI::IsMember(std::vector<int>(numbers))), *this;
 }
 Option& Option::oneEach() { return option_->allow_extra_args(false), *this; }
-Option& Option::separatedBy(char separator) { return option_->delimiter(separator), *this; }
+// As many as the separators say, so that what follows is the command's own.
+Option& Option::separatedBy(char separator) { return option_->delimiter(separator)->allow_extra_args(false), *this; }
 Option& Option::values(int least, int most) {
     return least == most ? option_->expected(least) : option_->expected(least, most), *this;
 }
@@ -52,7 +65,12 @@ Option Command::option(const std::string& names, uint32_t& to, const std::string
     return Option(app_->add_option(names, to, help));
 }
 Option Command::option(const std::string& names, double& to, const std::string& help) {
-    return Option(app_->add_option(names, to, help));
+    const auto refusal = [](std::string& text) {
+        double value = 0;
+        const bool isNumber = CLI::detail::lexical_cast(text, value);  // what is none, CLI says in its own words
+        return !isNumber || std::isfinite(value) ? std::string() : "expected a number, found '" + text + "'";
+    };
+    return Option(app_->add_option(names, to, help)->check(CLI::Validator(refusal, "")));
 }
 Option Command::flag(const std::string& names, bool& to, const std::string& help) {
     return Option(app_->add_flag(names, to, help));

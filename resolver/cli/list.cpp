@@ -187,7 +187,7 @@ nlohmann::ordered_json describe(const MethodDescriptor& m) {
     for (const auto& p : m.params) {
         nlohmann::ordered_json q = {{"name", p.name}, {"type", name(p.type)}};
         if (p.type == ParamSpec::Type::real || p.type == ParamSpec::Type::integer) {
-            q["default"] = std::stod(std::string(p.defaultValue));
+            q["default"] = numberOf(p.defaultValue);
             q["min"] = p.min;
             q["max"] = p.max;
         } else {

@@ -8,6 +8,7 @@
 #include "cli/cli.h"
 #include "cli/completion.h"
 #include "cli/one_line.h"
+#include "image/inputs.h"
 #include "image/output_error.h"
 
 namespace {
@@ -35,6 +36,7 @@ int main(int argc, char** argv) {
         aa::addCompletion, aa::addGate,   aa::addStability,
     };
     for (const auto add : commands) add(line, context);
+    aa::protectInputs();
     try {
         if (aa::answersShell(line, argc, argv)) {
             flushOutput();
@@ -66,6 +68,13 @@ int main(int argc, char** argv) {
         return 3;
     } catch (const std::bad_alloc&) {
         std::cerr << "aaresolve: out of memory; use fewer methods or threads, or a smaller resolution\n";
+        return 3;
+    } catch (const std::system_error& e) {  // no thread could be started
+        std::cerr << "aaresolve: the system refuses (" << aa::onOneLine(e.what())
+                  << "); allow this user more processes, or use -j 1 where the command has it\n";
+        return 3;
+    } catch (const std::exception& e) {
+        std::cerr << "aaresolve: " << aa::onOneLine(e.what()) << "\n";
         return 3;
     }
     return context.exitCode;

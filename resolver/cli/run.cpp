@@ -8,11 +8,13 @@
 #include "cli/run_arguments.h"
 #include "image/error.h"
 #include "image/folder_claim.h"
+#include "image/inputs.h"
 #include "image/io.h"
 #include "report/advice.h"
 #include "report/format.h"
 #include "report/gallery.h"
 #include "study/megabyte.h"
+#include "study/prepare.h"
 
 namespace aa {
 namespace {
@@ -283,6 +285,8 @@ void execute(const RunCommandArguments& o, Context& context) {
     run.provenance =
         provenanceOf(context.arguments, {"-m", "--method", "-o", "--out", "--external"}, {"--resume", "--add"});
     const ShotReader shot = openShot(o.run, run);
+    if (!o.trace.empty()) requireNoInput(o.trace);
+    requireOwnFolder(run, shot.manifest());
     const FolderClaim claim(run.out);
     const bool goesOn = o.add || (o.resume && std::filesystem::exists(run.out / "results.json"));
     if (o.resume && !goesOn)

@@ -8,6 +8,7 @@
 #include "cli/progress.h"
 #include "gpu/method.h"
 #include "image/error.h"
+#include "image/inputs.h"
 #include "image/io.h"
 
 namespace aa {
@@ -54,6 +55,7 @@ std::filesystem::path written(const StabilityResults& results, const std::filesy
         std::fprintf(stderr, "%s: kept, for this study was interrupted and that one is complete\n", file.c_str());
         return {};
     }
+    mayBeReplaced(file);
     writeText(file, toJsonText(results));
     return file;
 }

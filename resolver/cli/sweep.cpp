@@ -10,6 +10,7 @@
 #include "image/folder_claim.h"
 #include "image/io.h"
 #include "report/sweep.h"
+#include "study/prepare.h"
 
 namespace aa {
 namespace {
@@ -35,6 +36,7 @@ void execute(const SweepArguments& o, Context& context) {
     std::replace(asRun.begin(), asRun.end(), std::string("sweep"), std::string("run"));
     run.provenance.rerun = provenanceOf(asRun, unlike).rerun;
     const ShotReader shot = openShot(o.run, run);
+    requireOwnFolder(run, shot.manifest());
     const FolderClaim claim(run.out);
     RunResults all;
     size_t passes = 0;

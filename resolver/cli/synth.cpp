@@ -65,6 +65,22 @@ void planFor(const std::vector<std::string>& methods, SynthOptions& o) {
     o.subsampleColor = o.subsampleColor || colour;
 }
 
+// What a run or another program made is not written over; an earlier shot of synth is.
+void requireNobodyElses(const std::filesystem::path& out) {
+    const auto refuse = [&](const std::string& holds) {
+        throw UsageError("synth: " + out.string() + " holds " + holds + "; choose another folder, or delete this one");
+    };
+    std::error_code ignored;
+    if (std::filesystem::exists(out / "results.json", ignored)) refuse("the results of a run");
+    if (!std::filesystem::exists(out / "shot.json", ignored)) return;
+    try {
+        const Manifest before = readManifest(out);
+        if (before.extra.value("/producer/name"_json_pointer, "") == kSynthProducer) return;
+    } catch (const InputError&) {  // nobody knows whose
+    }
+    refuse("a shot that synth did not make");
+}
+
 int synth(SynthArguments& o) {
     if (o.list) return printScenes(), 0;
     if (o.synth.scene.empty() || o.out.empty())
@@ -73,6 +89,7 @@ int synth(SynthArguments& o) {
     if (!o.nanPixel.empty()) o.synth.nanPixel = glm::ivec2(o.nanPixel[0], o.nanPixel[1]);
     o.synth.premultiplied = o.jitterProjection == "pre";
     if (!o.methods.empty()) planFor(o.methods, o.synth);
+    requireNobodyElses(o.out);
     const FolderClaim claim(o.out);
     Manifest m;
     bool stopped = false;
@@ -102,7 +119,8 @@ void addSynth(CommandLine& line, Context& context) {
     line.renamed("synth", "--resolution", "--size");
     c.option("--for", o->methods,
              "only the passes that these methods read, methods and sets as for run; all passes without it")
-        .typeName("METHOD");
+        .typeName("METHOD")
+        .oneEach();
     c.option("--frames", o->synth.frames, "number of frames");
     c.option("--jitter", o->synth.jitter, "sequence; `none` samples pixel centres");
     c.option("--start", o->synth.jitterStart, "index of the first point of halton23; -1 = its own")
@@ -118,8 +136,10 @@ void addSynth(CommandLine& line, Context& context) {
     c.flag("--subsample-color", o->synth.subsampleColor, "colour at the sub-samples, too");
     c.option("--inject-nan", o->nanPixel, "x and y of a NaN in the colour of every frame").values(2, 2);
     c.option("--seed", o->synth.seed, "of the colours");
-    c.option("--angle", o->synth.angleDegrees, "scene half_plane: direction of the edge's normal, degrees");
-    c.option("--offset", o->synth.offsetPx, "scene half_plane: distance of the edge from the middle, px");
+    c.option("--angle", o->synth.angleDegrees, "scene half_plane: direction of the edge's normal, degrees")
+        .range(-360.0, 360.0);
+    c.option("--offset", o->synth.offsetPx, "scene half_plane: distance of the edge from the middle, px")
+        .range(-1e5, 1e5);
     c.option("-j,--threads", o->threads, "threads; 0 = all processors").range(0, 1024);
     c.flag("-q,--quiet", o->quiet, "no progress");
     c.flag("--list", o->list, "names of the scenes and jitter sequences");

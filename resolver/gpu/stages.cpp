@@ -111,7 +111,7 @@ std::unique_ptr<DeviceStage> makeStage(Session& session, const StageSpec& stage,
     if (name == "sharpen") return std::make_unique<SharpenStage>(session, stage.value, method.outputSpace());
     if (name == "fill")
         return std::make_unique<FillStage>(session, parseMethod(stage.value), method.outputSpace(), shot);
-    if (name == "motionBlur") return std::make_unique<MotionBlurStage>(session, std::stof(stage.value));
+    if (name == "motionBlur") return std::make_unique<MotionBlurStage>(session, float(numberOf(stage.value)));
     throw UsageError("--device: stage '" + std::string(name) + "' has no shader; use --device cpu");
 }
 

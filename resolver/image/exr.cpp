@@ -20,6 +20,7 @@
 #include "image/error.h"
 #include "image/exr_header.h"
 #include "image/exr_lines.h"
+#include "image/inputs.h"
 #include "image/io.h"
 #include "image/readable.h"
 
@@ -192,6 +193,7 @@ ExrFile::ExrFile(ExrFile&&) noexcept = default;
 ExrFile& ExrFile::operator=(ExrFile&&) noexcept = default;
 
 ExrFile::ExrFile(const fs::path& file, std::string advice) : path_(file), advice_("; " + std::move(advice)) {
+    noteInput(file);
     std::error_code ignored;
     requireReadable(file, advice_);
     if (fs::is_directory(file, ignored)) throw InputError(file.string() + ": is a folder; expected an EXR file");

@@ -18,6 +18,7 @@
 #include "image/error.h"
 #include "image/exr.h"
 #include "image/exr_layers.h"
+#include "image/inputs.h"
 #include "image/other_formats.h"
 #include "image/output_error.h"
 #include "image/png.h"
@@ -64,19 +65,39 @@ void clearOnce(const fs::path& folder) {
 }
 }  // namespace
 
+namespace {
+// What a link leads to is written, and not the link.
+fs::path behindLinks(const fs::path& file) {
+    std::error_code failed;
+    if (!fs::is_symlink(fs::symlink_status(file, failed))) return file;
+    const fs::path target = fs::weakly_canonical(file, failed);
+    return failed ? file : target;
+}
+// A device or a pipe stays one: it is written as it is.
+bool isWrittenAsItIs(const fs::path& file) {
+    std::error_code failed;
+    const fs::file_status about = fs::status(file, failed);
+    return fs::exists(about) && !fs::is_regular_file(about) && !fs::is_directory(about);
+}
+}  // namespace
+
 fs::path temporaryName(const fs::path& file) {
-    clearOnce(file.parent_path());
-    std::string name = ".";
-    name += file.stem().string();
+    if (isWrittenAsItIs(file)) return file;
+    requireNoInput(file);
+    const fs::path target = behindLinks(file);
+    clearOnce(target.parent_path());
+    // Of a long name as much as leaves room for the rest: names have at most 255 bytes.
+    std::string name = "." + target.stem().string().substr(0, 180);
     name += writerOf(std::to_string(::getpid()));
     name += kPartial;
-    name += file.extension().string();
-    return file.parent_path() / name;
+    name += target.extension().string();
+    return target.parent_path() / name;
 }
 
 void renameInto(const fs::path& temporary, const fs::path& file) {
+    if (temporary == file) return;
     std::error_code failed;
-    fs::rename(temporary, file, failed);
+    fs::rename(temporary, behindLinks(file), failed);
     if (failed)
         throw OutputError(file.string() + ": cannot be put in place (" + failed.message() +
                           "); check the folder's permissions");
@@ -93,7 +114,7 @@ void makeWritableFolder(const fs::path& folder) {
 
 void giveUpWriting(const fs::path& file, const std::string& why) {
     std::error_code ignored;
-    fs::remove(temporaryName(file), ignored);
+    if (!isWrittenAsItIs(file)) fs::remove(temporaryName(file), ignored);
     throw OutputError(file.string() + ": cannot be written (" + why + "); check permissions and free disk space");
 }
 
@@ -204,6 +225,7 @@ void willRead(const fs::path& file) {
 }
 
 LoadedImage readImage(const fs::path& file, const ReadOptions& o) {
+    noteInput(file);
     std::error_code ignored;
     requireReadable(file);
     if (!fs::is_regular_file(file, ignored) && !fs::is_directory(file, ignored))

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "image/error.h"
+#include "image/inputs.h"
 
 namespace aa {
 namespace fs = std::filesystem;
@@ -94,6 +95,7 @@ std::optional<std::string> textOf(const fs::path& file) {
     std::error_code failed;
     const fs::file_status about = fs::status(file, failed);
     if (!fs::is_regular_file(about) && !fs::is_fifo(about)) return std::nullopt;
+    noteInput(file);
     std::ifstream in(file, std::ios::binary);
     std::string text{std::istreambuf_iterator<char>(in), {}};
     return in.bad() || !in.is_open() ? std::nullopt : std::optional(std::move(text));

@@ -43,10 +43,8 @@ std::string didYouMean(std::string_view word, const std::vector<std::string_view
     return near.empty() ? "" : "; did you mean '" + near + "'?";
 }
 double parseNumber(const std::string& where, const ParamSpec& p, const std::string& text) {
-    double v = 0;
-    const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), v);
-    if (failed != std::errc{} || end != text.data() + text.size() || !std::isfinite(v))
-        throw UsageError(where + ": expected a number, found '" + text + "'");
+    const double v = numberOf(text);
+    if (!std::isfinite(v)) throw UsageError(where + ": expected a number, found '" + text + "'");
     if (p.type == ParamSpec::Type::integer && v != std::floor(v))
         throw UsageError(where + ": expected a whole number, found '" + text + "'");
     if (v < p.min || v > p.max)
@@ -55,6 +53,12 @@ double parseNumber(const std::string& where, const ParamSpec& p, const std::stri
     return v;
 }
 }  // namespace
+
+double numberOf(std::string_view text) {
+    double v = 0;
+    const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), v);
+    return failed == std::errc{} && end == text.data() + text.size() ? v : NAN;
+}
 
 Params::Params(std::string_view method, const std::vector<ParamSpec>& table,
                const std::vector<std::pair<std::string, std::string>>& given, CodePlace writtenAt)
@@ -178,11 +182,11 @@ void Params::noSuchChoice(std::string_view name, const std::string& text, CodePl
 
 double Params::real(std::string_view name, CodePlace at) const {
     spec(name, ParamSpec::Type::real, at);
-    return std::stod(values_.find(name)->second);
+    return numberOf(values_.find(name)->second);
 }
 int Params::integer(std::string_view name, CodePlace at) const {
     spec(name, ParamSpec::Type::integer, at);
-    return int(std::stod(values_.find(name)->second));
+    return int(numberOf(values_.find(name)->second));
 }
 bool Params::flag(std::string_view name, CodePlace at) const {
     spec(name, ParamSpec::Type::flag, at);

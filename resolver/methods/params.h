@@ -23,6 +23,8 @@ struct ParamSpec {
     // usage error. Empty: always.
     std::string_view onlyWhen = {};
 };
+// NaN where the text is no number.
+double numberOf(std::string_view text);
 ParamSpec realParam(std::string_view name, std::string_view def, double min, double max, std::string_view help,
                     std::string_view source, std::string_view onlyWhen = {});
 ParamSpec intParam(std::string_view name, std::string_view def, int min, int max, std::string_view help,

@@ -3,6 +3,7 @@
 #include <cctype>
 
 #include "image/error.h"
+#include "image/file_hash.h"
 #include "methods/stage.h"
 
 namespace aa {
@@ -70,7 +71,11 @@ std::string MethodSpec::folderName() const {
         if (!std::isalnum(static_cast<unsigned char>(c)) &&
             std::string_view("._=,+-").find(c) == std::string_view::npos)
             c = '_';
-    return s;
+    constexpr size_t kLongest = 200;  // of the 255 bytes that a file's name may have
+    if (s.size() <= kLongest) return s;
+    Hash all;
+    all.add(text);
+    return s.substr(0, kLongest - 33) + "-" + all.digits();
 }
 
 std::unique_ptr<Method> MethodSpec::create(const ShotInfo& shot) const {

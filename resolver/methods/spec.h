@@ -22,9 +22,9 @@ struct MethodSpec {
     std::shared_ptr<const void> owner{};  // of `method`, where it is of no registry
     Params params() const { return Params(method->id, method->params, given, method->writtenAt); }
     PassSet passes() const;
-    Space outputSpace() const;  // of the method; stages keep it
-    bool readsEncoded() const;  // the method or a method that one of its stages runs
-    std::string folderName() const;
+    Space outputSpace() const;       // of the method; stages keep it
+    bool readsEncoded() const;       // the method or a method that one of its stages runs
+    std::string folderName() const;  // of the text; of a long one its beginning and what tells it apart
     std::unique_ptr<Method> create(const ShotInfo& shot) const;
 };
 // id[:name=value,...][+stage=value]... Throws UsageError: unknown method or stage, malformed, bad parameter. The spec

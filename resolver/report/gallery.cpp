@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "image/error.h"
+#include "image/inputs.h"
 #include "image/io.h"
 #include "metrics/maps.h"
 
@@ -18,6 +19,7 @@ const FrameResult* find(const MethodResult& m, int frame) {
 }
 
 LoadedImage loadOfItsSize(const fs::path& file, const RunResults& run) {
+    for (const char* ending : {".png", ".exr"}) noteInput(fs::path(file).replace_extension(ending));  // one picture
     LoadedImage image = readImage(file);
     if (image.rgb.width() != run.width || image.rgb.height() != run.height)
         throw InputError(file.string() + ": expected " + std::to_string(run.width) + "x" + std::to_string(run.height) +

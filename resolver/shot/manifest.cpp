@@ -5,6 +5,7 @@
 #include <set>
 
 #include "image/error.h"
+#include "image/inputs.h"
 #include "image/io.h"
 #include "image/json_text.h"
 #include "image/readable.h"
@@ -392,6 +393,10 @@ json toJson(const Manifest& m) {
     return j;
 }
 
-void writeManifest(const Manifest& m) { writeText(m.folder / "shot.json", jsonText(toJson(m)) + "\n"); }
+void writeManifest(const Manifest& m) {
+    const fs::path file = m.folder / "shot.json";
+    mayBeReplaced(file);
+    writeText(file, jsonText(toJson(m)) + "\n");
+}
 
 }  // namespace aa

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "gpu/method.h"
@@ -146,6 +148,29 @@ InputPlan planInput(const ShotReader& shot, const RunOptions& o) {
     if (plan.overTime && !shot.manifest().isStatic)
         plan.jittered |= passesThatAreThere(temporalMetricPasses(), shot.offered());
     return plan;
+}
+
+void requireOwnFolder(const RunOptions& o, const Manifest& m) {
+    namespace fs = std::filesystem;
+    const auto refuse = [&](const std::string& why) {
+        throw UsageError("--out: " + o.out.string() + " " + why + "; give the run a folder of its own");
+    };
+    std::error_code ignored;
+    if (fs::exists(o.out / "shot.json", ignored)) refuse("holds a shot");
+    std::set<fs::path> ofFrames;
+    for (const FrameEntry& f : m.frames)
+        for (const std::string& file : {f.file, f.centre, f.truth})
+            if (!file.empty()) ofFrames.insert((m.folder / file).parent_path());
+    std::set<fs::path> written = {"truth", "maps"};
+    for (const MethodSpec& spec : o.methods) written.insert(spec.folderName());
+    const fs::path out = fs::weakly_canonical(o.out);
+    for (const fs::path& folder : ofFrames) {
+        const fs::path frames = fs::weakly_canonical(folder);
+        const fs::path outBelow = out.lexically_relative(frames), below = frames.lexically_relative(out);
+        if (!outBelow.empty() && *outBelow.begin() != "..") refuse("lies where the shot keeps its frames");
+        if (!below.empty() && written.contains(*below.begin()))
+            refuse("would write over the shot's " + folder.string());
+    }
 }
 
 std::vector<RunningMethod> startMethods(const ShotReader& shot, const RunOptions& o) {

@@ -23,6 +23,10 @@ void requirePasses(const ShotReader& shot, const std::vector<MethodSpec>& method
 // not given. Returns the methods that accumulate and have no ramp. Throws UsageError: a full history of a moving shot.
 std::vector<std::string> applyHistory(RunOptions& options, const Manifest& manifest);
 
+// Throws UsageError where the run's folder is a shot's, or one where that of this run keeps its frames: pictures that
+// the run writes and clears would take their place.
+void requireOwnFolder(const RunOptions& options, const Manifest& manifest);
+
 // Holds the methods against another one instead of the shot's truth; one that is not among them is added. Throws
 // UsageError.
 void judgeAgainst(RunOptions& options, const std::string& method);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "image/error.h"
+#include "image/inputs.h"
 #include "image/io.h"
 #include "image/json_stream.h"
 #include "image/json_text.h"
@@ -500,6 +501,7 @@ std::string toJsonText(const RunResults& run) {
 void writeResults(const RunResults& run, const fs::path& folder) {
     writeStream(folder / "results.csv", [&](std::ostream& out) { writeCsv(run, out); });
     // Last: whole results have a whole table beside them.
+    mayBeReplaced(folder / "results.json");
     writeStream(folder / "results.json", [&](std::ostream& out) { writeJson(run, out); });
 }
 
@@ -519,9 +521,28 @@ void checkPaths(const RunResults& run) {
             if (!f.image.empty()) check(f.image, "image");
     }
 }
+// Those of two methods are compared part by part.
+void checkParts(const RunResults& run) {
+    const std::vector<ErrorParts>* first = nullptr;
+    for (const MethodResult& m : run.methods) {
+        for (const ErrorParts& p : m.parts) {
+            const size_t count = p.columns > 0 && p.rows > 0 ? size_t(p.columns) * size_t(p.rows) : 0;
+            if (count == 0 || p.squares.size() != count || p.halves.size() != count || p.values.size() != count)
+                throw std::runtime_error("errorParts of " + m.text + ": not as many as columns x rows");
+        }
+        if (m.parts.empty()) continue;
+        const auto isAlike = [](const ErrorParts& a, const ErrorParts& b) {
+            return a.columns == b.columns && a.rows == b.rows;
+        };
+        if (first && !std::equal(first->begin(), first->end(), m.parts.begin(), m.parts.end(), isAlike))
+            throw std::runtime_error("errorParts of " + m.text + ": other parts than those of another method");
+        first = &m.parts;
+    }
+}
 }  // namespace
 
 RunResults readResults(const fs::path& path) {
+    if (path.empty()) throw UsageError("expected the folder of a run, found an empty name");
     std::error_code ignored;
     const fs::path file = fs::is_regular_file(path, ignored) ? path : path / "results.json";
     const std::string text = requiredText(file, "; expected the output folder of `aaresolve run SHOT -m ... -o OUT`");
@@ -534,6 +555,7 @@ RunResults readResults(const fs::path& path) {
         if (run.protocol.region && !run.protocol.region->isInside(run.width, run.height))
             throw InputError(file.string() + ": its region is not within the picture; run the shot again");
         checkPaths(run);
+        checkParts(run);
         for (const PairResult& p : run.pairs)
             if (p.first >= run.methods.size() || p.second >= run.methods.size())
                 throw InputError(file.string() + ": a pair names a method that is not there; run the shot again");

@@ -28,9 +28,9 @@ void requireSame(const RunResults& a, const RunResults& b, const RunOptions& o) 
         return r.device ? r.device->name + " " + r.device->precision : "none";
     };
     same("the device", device(a), device(b));
+    same("the number of frames", std::to_string(a.framesAsked), std::to_string(b.framesAsked));
     same("the shot's content", a.shotHash, b.shotHash);
     same("the protocol", "'" + inOneField(a.protocol) + "'", "'" + inOneField(b.protocol) + "'");
-    same("the number of frames", std::to_string(a.framesAsked), std::to_string(b.framesAsked));
     same("what is measured and written", "'" + a.asked + "'", "'" + b.asked + "'");
 }
 const MethodResult* find(const RunResults& run, const std::string& text) {
@@ -39,6 +39,11 @@ const MethodResult* find(const RunResults& run, const std::string& text) {
 }
 MethodSpec specOf(const MethodResult& m, const Protocol& protocol) {
     return m.family == kExternalFamily ? externalMethod(m.id, m.source, protocol.display) : parseMethod(m.text);
+}
+bool hasItsPictures(const MethodResult& m, const fs::path& out) {
+    std::error_code ignored;
+    return std::all_of(m.frames.begin(), m.frames.end(),
+                       [&](const FrameResult& f) { return f.image.empty() || fs::exists(out / f.image, ignored); });
 }
 bool isPictureName(const std::string& name) {
     const size_t digits = std::min(name.find_first_not_of("0123456789", name.starts_with('-') ? 1 : 0), name.size());
@@ -66,8 +71,8 @@ Resumption goOnWith(RunResults earlier, const ShotReader& shot, RunOptions& o) {
     std::set<std::string> running;  // and whose peers have to
     const auto isFinished = [&](const MethodSpec& spec) {
         const MethodResult* m = find(r.before, spec.text);
-        return m && m->frames.size() == o.frames.size() && r.before.warmUpFrames == warmUp &&
-               (m->temporal.has_value() == overTime || r.before.isReference(*m));
+        return m && m->frames.size() == o.frames.size() && hasItsPictures(*m, o.out) &&
+               r.before.warmUpFrames == warmUp && (m->temporal.has_value() == overTime || r.before.isReference(*m));
     };
     for (const MethodSpec& spec : r.all)
         if (!isFinished(spec)) running.insert(withoutStages(spec.text));

@@ -170,7 +170,7 @@ TEST_F(Resume, WhatWasMadeOtherwiseIsRefused) {
     refused(o, "what is measured and written: before 'metrics=flip maps=error write=exr frames=all'");
     o = options({"noaa", "uncharted"}, "out");
     o.frames.pop_back();
-    refused(o, "the shot's content: before ");
+    refused(o, "the number of frames: before 6, now 5");
     // A picture of the shot that changed since.
     std::ofstream(folder / "shot" / readManifest(folder / "shot").frames[1].file, std::ios::app) << "x";
     refused(options({"noaa", "uncharted"}, "out"), "the shot's content: before ");

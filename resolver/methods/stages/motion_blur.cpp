@@ -58,7 +58,7 @@ StageDescriptor motionBlurStage() {
                                "length of the blur in frame intervals; 0.5 = half-open shutter", "[Chapman 2012]"),
             .passes = Pass::motion,
             .create = [](const std::string& value, const MethodSpec&, const ShotInfo&) -> std::unique_ptr<Stage> {
-                return std::make_unique<MotionBlurStage>(std::stof(value));
+                return std::make_unique<MotionBlurStage>(float(numberOf(value)));
             }};
 }
 }  // namespace aa

@@ -132,7 +132,7 @@ SharpenKernel sharpenKernel(const Params& p) { return p.chosen("sharpen", kSharp
 HistoryStorage historyStorage(const Params& p) { return {p.chosen("historyBits", kHistoryBits), p.flag("dither")}; }
 RejectionTest rejectionTest(const Params& p) {
     const std::string& scale = p.choice("magnification");
-    return {p.realf("depthTolerance"), scale == "off" ? 0.0f : std::stof(scale), p.flag("bothSides")};
+    return {p.realf("depthTolerance"), scale == "off" ? 0.0f : float(numberOf(scale)), p.flag("bothSides")};
 }
 bool countAtPixel(const Params& p) { return p.choice("countAt") == "pixel"; }
 PassSet dilationPasses(const Params& p) {

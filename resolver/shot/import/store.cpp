@@ -4,6 +4,7 @@
 
 #include "image/error.h"
 #include "image/folder_claim.h"
+#include "image/inputs.h"
 #include "image/io.h"
 #include "image/json_text.h"
 
@@ -80,6 +81,7 @@ std::optional<json> ImportStore::finished(const std::string& kind, int frame, co
 
 void ImportStore::finish(const std::string& kind, int frame, const json& inputs, const json& facts) const {
     const json record = {{"inputs", inputs}, {"bytes", fs::file_size(out_ / picture(kind, frame))}, {"facts", facts}};
+    mayBeReplaced(recordOf(kind, frame));
     writeText(recordOf(kind, frame), jsonText(record, -1) + "\n");
 }
 

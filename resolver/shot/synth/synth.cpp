@@ -160,7 +160,7 @@ SynthShot::SynthShot(const SynthOptions& o) {
         m.subsamplePositionsPx = patternPositionsPx(o.subsamples);
     }
     m.truthSamplesPerHalf = scene_->contents.zonePlate ? kZonePlateStrata * kZonePlateStrata : 0;
-    m.extra["producer"] = {{"name", "aaresolve synth"}, {"version", AA_VERSION}};
+    m.extra["producer"] = {{"name", kSynthProducer}, {"version", AA_VERSION}};
     m.extra["jitter"]["centred"] = o.centred;
     m.extra["truth"]["exact"] = !scene_->contents.zonePlate;  // areas by formula: no samples, no error bar
     for (int i = 0; i < o.frames; i++) {

@@ -18,6 +18,8 @@
 
 namespace aa {
 
+inline constexpr const char* kSynthProducer = "aaresolve synth";  // as its manifests say
+
 struct SynthOptions {
     std::string scene = "half_planes";
     int width = 480, height = 270;
