@@ -109,7 +109,7 @@ class Corpus:
 
     def _survey(self, folder: Path) -> None:
         """A survey's page, key and answers."""
-        questions = [w for kind in ("rank", "pair", "rating") for w in ("-q", kind)]
+        questions = [w for kind in ("rank", "pair", "rating") for w in ("-Q", kind)]
         self._call("survey", "make", self.folder / "run", "-o", folder, "--quiet", *questions)
         key = json.loads((folder / "survey.key.json").read_text())
         codes = [p["code"] for p in key["questions"][0]["pictures"]]
@@ -390,7 +390,7 @@ class Case:
     def question(self) -> None:
         good = "rank noaa taaSimplest frames=1-2 fps=8 region=2,3,16,8 zoom=2 text=Look here."
         asked = mutate.mutate_text(self.rng, good).replace("\0", "")
-        self.arguments = ["survey", "make", str(self.corpus.folder / "run"), "-q", asked]
+        self.arguments = ["survey", "make", str(self.corpus.folder / "run"), "-Q", asked]
         self.arguments += ["-o", str(self.folder / "survey"), "-j", "1"]
 
     def method(self) -> None:
