@@ -108,10 +108,8 @@ void main() {
     // 2. box
     Moments m = Moments(centre, centre);
     Box box;
-    if (BOX != BOX_MINMAX) {
-        m = moments(window);
-        box = varianceBox(m, GAMMA);
-    }
+    if (BOX != BOX_MINMAX || CONSTRAINT == CONSTRAINT_CLIP_MEAN) m = moments(window);
+    if (BOX != BOX_MINMAX) box = varianceBox(m, GAMMA);
     if (BOX != BOX_VARIANCE) {
         const Box bounds = boxOf(neighbours(window), NEIGHBOURHOOD);
         if (BOX == BOX_MINMAX)

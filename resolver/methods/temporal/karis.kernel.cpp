@@ -114,9 +114,12 @@ AA_INLINE void karisPixel(const KarisArgs& a, YCoCg ycocg, bool pq, const KarisW
     const Reprojection<R> q = reproject(in, motion, x, y);
     const vec3<R> past = fetchHistory(in, x, y, q);
     const vec3<R> history = ycocg ? toYcocg(past) : past;
-    const vec3<R> held = a.constraint == HistoryConstraint::clamp
-                             ? clamp3(history, box.lo, box.hi)
-                             : clipToward(box, a.constraint == HistoryConstraint::clipMean ? m.mean : current, history);
+    const auto target = [&]() __attribute__((always_inline)) {
+        if (a.constraint != HistoryConstraint::clipMean) return current;
+        return spread ? m.mean : neighbourMeans<R>(at).square;
+    };
+    const vec3<R> held =
+        a.constraint == HistoryConstraint::clamp ? clamp3(history, box.lo, box.hi) : clipToward(box, target(), history);
 
     // 4. weight of the current colour
     R alpha(T(a.alpha));

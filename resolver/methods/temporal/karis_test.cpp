@@ -101,6 +101,31 @@ TEST(Karis, FilterWeightsAreTheStatedOnes) {
     EXPECT_NEAR(moved.out.c[0].at(4, 4), 0.5641 / all, 1e-4);
 }
 
+// constraint=clipMean: toward the mean of the nine also where the box is one of bounds.
+TEST(Karis, BoundsAreClippedTowardTheMean) {
+    const int w = 18, h = 9;
+    RunningMethod m = running("salvi:box=minmax,neighbourhood=3x3,filter=none,inverseLuminance=off,alpha=0", w, h);
+    const double past[3] = {1.5, -0.0, 0.4};
+    m.resolve(temporalFrame(0, w, h, [&](int, int, int c) { return float(past[c]); }), {}, {});
+    const Frame f = temporalFrame(1, w, h, noisePicture(5));
+    m.resolve(f, {}, {});
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++) {
+            double mean[3] = {}, share = 1;
+            for (size_t c = 0; c < 3; c++) {
+                double lo = 9, hi = -9;
+                for (int k = 0; k < 9; k++) {
+                    const double v = double(f.colorLinear.c[c].clamped(x + k % 3 - 1, y + k / 3 - 1));
+                    mean[c] += v / 9, lo = std::min(lo, v), hi = std::max(hi, v);
+                }
+                if (past[c] > hi) share = std::min(share, (hi - mean[c]) / (past[c] - mean[c]));
+                if (past[c] < lo) share = std::min(share, (lo - mean[c]) / (past[c] - mean[c]));
+            }
+            for (size_t c = 0; c < 3; c++)
+                ASSERT_NEAR(m.out.c[c].at(x, y), mean[c] + share * (past[c] - mean[c]), 1e-6) << x << " " << y;
+        }
+}
+
 TEST(Raptor, PrintedWeightsIgnoreHistoryWhereColoursAgree) {
     // Slowly brightening flat image: corrected keeps 0.97 of the history, printed takes the current colour.
     const auto level = [](const char* text) {
