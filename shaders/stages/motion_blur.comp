@@ -3,7 +3,7 @@
 //   v = motion SCALE, held to half the picture; n = clamp(int |v|, 1, 32)
 //   shown = (c(p) + sum over i = 1 .. n-1 of B(c, p + v (i / (n-1) - 1/2))) / n, positions held to the picture
 //
-// Source: [Chapman 2012] (docs/sources.md). A motion that is not a number blurs nothing.
+// Source: [Chapman 2012] (docs/sources.md). A motion of more than two pictures, or that is not a number, blurs nothing.
 // Colours: the method's output space, in and out.
 //
 //   binding              format           holds
@@ -45,7 +45,9 @@ void main() {
     const ivec2 p = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(p, frame.size))) return;
     const float longest = 0.5 * float(max(frame.size.x, frame.size.y));
-    vec2 v = texelFetch(motionImage, p, 0).rg * SCALE;
+    const vec2 motion = texelFetch(motionImage, p, 0).rg;
+    const bool known = abs(motion.x) <= float(2 * frame.size.x) && abs(motion.y) <= float(2 * frame.size.y);
+    vec2 v = motion * SCALE;
     const float squared = v.x * v.x + v.y * v.y;
     int n = 1;
     if (squared > longest * longest) {
@@ -53,7 +55,7 @@ void main() {
         n = int(longest);
     } else if (squared >= 4.0)
         n = wholeLength(squared);
-    n = isFinite(v.x) && isFinite(v.y) && n >= 2 ? min(n, MAX_SAMPLES) : 1;
+    n = known && n >= 2 ? min(n, MAX_SAMPLES) : 1;
 
     vec3 sum = texelFetch(methodImage, p, 0).rgb;
     for (int i = 1; i < n; i++) {

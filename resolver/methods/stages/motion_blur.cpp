@@ -25,13 +25,14 @@ class MotionBlurStage : public Stage {
   private:
     void blurPixel(const Frame& frame, const Rgb& image, int x, int y) {
         const float longest = 0.5f * float(std::max(frame.width, frame.height));
-        float vx = frame.motionXPx.at(x, y) * scale_, vy = frame.motionYPx.at(x, y) * scale_;
+        const float motionX = frame.motionXPx.at(x, y), motionY = frame.motionYPx.at(x, y);
+        // Not (> 2 pictures): neither is NaN a motion (conventions 9).
+        const bool known =
+            std::fabs(motionX) <= float(2 * frame.width) && std::fabs(motionY) <= float(2 * frame.height);
+        float vx = motionX * scale_, vy = motionY * scale_;
         const float length = std::sqrt(vx * vx + vy * vy);
         if (length > longest) vx *= longest / length, vy *= longest / length;
-        // Not (length >= 2): NaN, and infinities, whose scaled components are NaN, keep their pixel.
-        const int n = length >= 2 && std::isfinite(vx) && std::isfinite(vy)
-                          ? std::clamp(int(std::min(length, longest)), 1, kMaxSamples)
-                          : 1;
+        const int n = known && length >= 2 ? std::clamp(int(std::min(length, longest)), 1, kMaxSamples) : 1;
         float sum[3];
         for (size_t c = 0; c < 3; c++) sum[c] = image.c[c].at(x, y);
         for (int i = 1; i < n; i++) {

@@ -27,6 +27,22 @@ TEST(MotionBlur, RestAndBrokenMotionKeepThePixel) {
         EXPECT_TRUE(m.out.samePixels(f.colorLinear)) << v;
     }
 }
+// More than two pictures is how a motion that nobody knows is written (conventions 9): before it is scaled.
+TEST(MotionBlur, MotionOfMoreThanTwoPicturesKeepsThePixel) {
+    const auto keeps = [](const char* scale, glm::dvec2 motionPx) {
+        RunningMethod m = running(std::string("taaSimplest+motionBlur=") + scale, 20, 8);
+        const Frame f = temporalFrame(0, 20, 8, noisePicture(3), motionPx);
+        m.resolve(f, {}, {});
+        return m.out.samePixels(f.colorLinear);
+    };
+    for (const char* scale : {"1", "0.1"}) {
+        EXPECT_TRUE(keeps(scale, {1e6, 1e6})) << scale;
+        EXPECT_TRUE(keeps(scale, {-40.5, 0})) << scale;
+        EXPECT_TRUE(keeps(scale, {30, 16.5})) << scale;
+        EXPECT_FALSE(keeps(scale, {-40, 0})) << scale;
+        EXPECT_FALSE(keeps(scale, {30, 16})) << scale;
+    }
+}
 TEST(MotionBlur, APictureOfOnePixelKeepsIt) {  // half of it is shorter than one step
     RunningMethod m = running("taaSimplest+motionBlur=1", 1, 1);
     const Frame f = temporalFrame(0, 1, 1, noisePicture(3), {7, 0});
