@@ -71,8 +71,7 @@ TEST(TemporalMetrics, StaticFlickerIsTheStandardDeviation) {
     const TemporalMetrics m = judge.result();
     EXPECT_EQ(m.frames, 8);
     EXPECT_NEAR(*m.flickerStatic, 255 * 0.05, 1e-3);
-    // 7 steps of 0.1 within, and the one from the last warm-up frame (0.9) to 0.5.
-    EXPECT_NEAR(*m.flickerStep, 255 * (7 * 0.1 + 0.4) / 8, 1e-3);
+    EXPECT_NEAR(*m.flickerStep, 255 * 0.1, 1e-3);  // nor does the step out of it
     EXPECT_FALSE(m.flickerMoving);
     EXPECT_FALSE(m.ghostMse);
     EXPECT_FALSE(m.tPsnr);
@@ -93,6 +92,18 @@ TEST(TemporalMetrics, TheTruthItselfNeitherFlickersNorGhosts) {
     EXPECT_FALSE(m.ghostHalfLife);
     EXPECT_TRUE(std::isinf(*m.tPsnr));
     for (const double g : m.ghostFraction) EXPECT_EQ(g, 0);
+}
+
+TEST(TemporalMetrics, TheStepOutOfTheWarmUpDoesNotCount) {
+    const Bar bar;
+    TemporalScene scene(false);
+    TemporalJudge judge(2);
+    const std::vector<Rgb> truths = bar.truths(6);
+    for (int n = 0; n < 6; n++) {
+        scene.advance(bar.frame(n), &truths[size_t(n)], {});
+        judge.add(scene, n < 2 ? grey(0.9f) : truths[size_t(n)], {});
+    }
+    EXPECT_EQ(*judge.result().flickerMoving, 0);
 }
 
 TEST(TemporalMetrics, TrailIsWhatTheBarUncovers) {

@@ -12,21 +12,22 @@ struct Reprojection {
     vec2 part;    // and the rest, in [0, 1)
     bool inside;  // the picture, its edge included; otherwise the displacement is 0, so that reading is allowed
 };
-// `clampOutside`: a position outside is moved to the picture's edge, and only NaN is outside.
-Reprojection reproject(ivec2 p, vec2 motion, ivec2 size, bool clampOutside) {
-    const vec2 centre = vec2(p) + 0.5, low = -centre, high = vec2(size) - centre;
-    vec2 d = -motion;
-    if (clampOutside) {
-        if (d.x == d.x) d.x = min(max(d.x, low.x), high.x);
-        if (d.y == d.y) d.y = min(max(d.y, low.y), high.y);
-    }
-    Reprojection q;
-    q.inside = d.x >= low.x && d.x <= high.x && d.y >= low.y && d.y <= high.y;
-    if (!q.inside) d = vec2(0.0);
+Reprojection displaced(vec2 d, bool inside) {
+    if (!inside) d = vec2(0.0);
     const vec2 whole = floor(d);
-    q.whole = ivec2(whole);
-    q.part = d - whole;
-    return q;
+    return Reprojection(ivec2(whole), d - whole, inside);
+}
+// At most a texel and a half beyond the picture: there and farther away every texel read is its edge.
+Reprojection displacedWithinReach(ivec2 p, vec2 d, ivec2 size, bool known) {
+    const vec2 low = -(vec2(p) + 2.0), high = low + vec2(size + 3);
+    return displaced(known ? min(max(d, low), high) : d, known);
+}
+// `clampOutside`: a position outside is as good as one inside, unless nobody knows the motion: more than two pictures.
+Reprojection reproject(ivec2 p, vec2 motion, ivec2 size, bool clampOutside) {
+    const vec2 centre = vec2(p) + 0.5, low = -centre, high = vec2(size) - centre, d = -motion;
+    if (clampOutside)
+        return displacedWithinReach(p, d, size, abs(d.x) <= float(2 * size.x) && abs(d.y) <= float(2 * size.y));
+    return displaced(d, d.x >= low.x && d.x <= high.x && d.y >= low.y && d.y <= high.y);
 }
 // The texel that contains the position: for depths, ids and counts, which must not be interpolated.
 ivec2 nearestTexel(ivec2 p, Reprojection q) {

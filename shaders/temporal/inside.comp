@@ -50,6 +50,10 @@ vec3 fetchCurrent(ivec2 p, bool unjitter) {
 vec3 toBoxSpace(vec3 c) { return YCOCG ? toYcocg(c) : c; }
 float lumaOf(vec3 c) { return YCOCG ? c.x : luminance(c, LUMINANCE); }
 
+// The current colours at p + offset px, bilinear, held to the picture.
+vec3 colourAlong(ivec2 p, vec2 offset) {
+    return fetchBilinear(currentImage, p, displacedWithinReach(p, offset, frame.size, isFinite(offset.x) && isFinite(offset.y))).rgb;
+}
 // Four bilinear taps at (+-s, +-s).
 vec3 diagonalTap(vec3 window[9], int i, int j, float s) {
     const vec3 near = lerpExact(window[4], window[4 + i], s);
@@ -63,10 +67,6 @@ Box fourTapBox(vec3 window[9], float s, out vec3 mean) {
     return Box(min(min(a, b), min(d, e)), max(max(a, b), max(d, e)));
 }
 
-// The current colours at p + offset px, bilinear, held to the picture.
-vec3 colourAlong(ivec2 p, vec2 offset) {
-    return fetchBilinear(currentImage, p, reproject(p, -offset, frame.size, true)).rgb;
-}
 // What the screen shows: seven taps along the motion, offset by chance, instead of the result where motion is fast
 // (2 px: none of it, 15 px: all).
 vec3 blurredByMotion(ivec2 p, vec2 motion, vec3 result) {

@@ -25,9 +25,8 @@ AA_INLINE FourTaps<R> fourTaps(const At& at, R s) {
 
 // The current colours at p + (dx, dy), bilinear, held to the picture.
 template <class R>
-AA_INLINE vec3<R> colorAt(TemporalIn in, R dx, R dy, int x, int y) {
-    in.clampOutside = true;
-    const Reprojection<R> q = reproject(in, Motion<R>{-dx, -dy}, x, y);
+AA_INLINE vec3<R> colorAt(const TemporalIn& in, R dx, R dy, int x, int y) {
+    const Reprojection<R> q = displacedWithinReach(in, dx, dy, both(dx == dx, dy == dy), x, y);
     const Offsets<R> k = texelOffsets(q, in.stride);
     const auto channel = [&](const float* p) __attribute__((always_inline)) {
         const R top = mix(gather<R>(p, k), gather<R>(p + 1, k), q.fracX),

@@ -76,7 +76,7 @@ V oneInWindow(int i, int j, int oneI, int oneJ) { return V(i == oneI && j == one
 
 TEST(TemporalBlocks, VarianceBoxVector) {
     for (const auto& [oi, oj] : {std::pair{1, 1}, {0, 0}, {-1, 0}}) {
-        const auto m = moments<double>([&](int i, int j) { return oneInWindow(i, j, oi, oj); });
+        const auto m = moments<double>([&, oi = oi, oj = oj](int i, int j) { return oneInWindow(i, j, oi, oj); });
         EXPECT_NEAR(m.mean.x, 1.0 / 9, 1e-12);
         EXPECT_NEAR(m.sigma.x, 0.31427, 1e-5);
     }
@@ -185,10 +185,12 @@ TEST(TemporalBlocks, ClosedIntervalDecidesInside) {
     EXPECT_FALSE(inside(-std::numeric_limits<double>::infinity(), 0));
     TemporalIn clamped = in;
     clamped.clampOutside = true;
-    const auto q = reproject<double>(clamped, {1e30, 0.0}, 4, 4);
-    EXPECT_TRUE(q.inside);
-    EXPECT_EQ(q.wholeX + q.fracX, -4.5);
-    EXPECT_FALSE(reproject<double>(clamped, {kNan, 0.0}, 4, 4).inside);
+    const auto held = [&](double mx, double my) { return reproject<double>(clamped, {mx, my}, 4, 4); };
+    for (const double bad : {double(kNan), 1e6, 1e30, 16.01, -16.01}) {  // more than two pictures: no motion
+        EXPECT_FALSE(held(bad, 0).inside) << bad;
+        EXPECT_FALSE(held(0, bad).inside) << bad;
+    }
+    EXPECT_TRUE(held(16, -16).inside);
 }
 
 TEST(TemporalBlocks, DilationTakesTheNearestAndTheCentreOnTies) {

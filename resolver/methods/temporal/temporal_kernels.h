@@ -54,7 +54,7 @@ struct TemporalIn {
     // (conventions 7.0), else 0.
     float readXPx = 0, readYPx = 0;
     float feedbackCeiling = 1;  // largest history weight of this frame (warmup=ramp: 1 - 1/(t+1))
-    bool clampOutside = false;  // a history position outside the image is moved to its border, not rejected
+    bool clampOutside = false;  // outside the image the history is its border, not rejected
     Dilation dilation = Dilation::closest3x3;
     HistoryFilter filter = HistoryFilter::bilinear;
     TemporalDebug debug;

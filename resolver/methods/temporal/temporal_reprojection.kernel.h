@@ -21,26 +21,36 @@ template <class R>
 struct Motion {
     R x, y;  // px, current - previous
 };
-// Outside the image the displacement is 0, so that fetching is always allowed; with in.clampOutside the position is
-// moved to the border instead and only NaN is outside.
+// Where it is not inside the displacement is 0, so that fetching is always allowed.
 template <class R>
-AA_INLINE Reprojection<R> reproject(const TemporalIn& in, Motion<R> motion, int x, int y) {
-    using T = Elem<R>;
-    const int width = in.width, height = in.height;
-    const R centreX = R(T(x) + T(0.5)) + iota<R>(), centreY(T(y) + T(0.5));
-    R dx = -motion.x, dy = -motion.y;
-    if (in.clampOutside) {
-        dx = select(dx == dx, min(max(dx, -centreX), R(T(width)) - centreX), dx);
-        dy = select(dy == dy, min(max(dy, -centreY), R(T(height)) - centreY), dy);
-    }
+AA_INLINE Reprojection<R> displaced(R dx, R dy, Mask<R> inside) {
+    const R zero(Elem<R>(0)), sx = select(inside, dx, zero), sy = select(inside, dy, zero);
     Reprojection<R> q;
-    // Exact in both precisions: the bounds are small multiples of 1/2, the displacement is as stored.
-    q.inside =
-        both(both(dx >= -centreX, dx <= R(T(width)) - centreX), both(dy >= -centreY, dy <= R(T(height)) - centreY));
-    const R zero(T(0)), sx = select(q.inside, dx, zero), sy = select(q.inside, dy, zero);
+    q.inside = inside;
     q.wholeX = floor(sx), q.wholeY = floor(sy);
     q.fracX = sx - q.wholeX, q.fracY = sy - q.wholeY;
     return q;
+}
+// At most a texel and a half beyond the image: there and farther away every tap is its edge (conventions 1).
+template <class R>
+AA_INLINE Reprojection<R> displacedWithinReach(const TemporalIn& in, R dx, R dy, Mask<R> known, int x, int y) {
+    using T = Elem<R>;
+    const R fromLeft = R(T(x) + T(2)) + iota<R>(), fromTop(T(y) + T(2));
+    return displaced(min(max(dx, -fromLeft), R(T(in.width + 3)) - fromLeft),
+                     min(max(dy, -fromTop), R(T(in.height + 3)) - fromTop), known);
+}
+// With in.clampOutside a position outside the image is as good as one inside, unless nobody knows the motion
+// (conventions 9).
+template <class R>
+AA_INLINE Reprojection<R> reproject(const TemporalIn& in, Motion<R> motion, int x, int y) {
+    using T = Elem<R>;
+    const R width(T(in.width)), height(T(in.height)), dx = -motion.x, dy = -motion.y;
+    if (in.clampOutside)
+        return displacedWithinReach(in, dx, dy, both(abs(dx) <= width + width, abs(dy) <= height + height), x, y);
+    const R centreX = R(T(x) + T(0.5)) + iota<R>(), centreY(T(y) + T(0.5));
+    // Exact in both precisions: the bounds are small multiples of 1/2, the displacement is as stored.
+    return displaced(dx, dy,
+                     both(both(dx >= -centreX, dx <= width - centreX), both(dy >= -centreY, dy <= height - centreY)));
 }
 // Pixel offsets from (x, y); products stay in integers: float would lose them above 2^24 pixels.
 template <class R>

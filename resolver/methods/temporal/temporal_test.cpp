@@ -95,6 +95,43 @@ TEST(Temporal, WholePixelMotionDoesNotBlur) {
         }
     }
 }
+// Nobody knows where such a surface was: not at the border either.
+TEST(Temporal, UnknownMotionRejectsAClampedHistory) {
+    for (const char* text : {"taaSimplest:outside=clamp", "inside:outside=clamp"})
+        for (const glm::dvec2 unknown : {glm::dvec2(1e6, 1e6), {0, -1e6}, {65, 0}, {0, 41}, {NAN, 0}}) {
+            RunningMethod m = running(text, 32, 20);
+            m.resolve(temporalFrame(0, 32, 20, noisePicture(1)), {}, {});
+            const Frame f = temporalFrame(1, 32, 20, noisePicture(2), unknown);
+            m.resolve(f, {}, {});
+            EXPECT_TRUE(m.out.samePixels(m.spec.method->input == Space::encoded ? f.colorEncoded : f.colorLinear))
+                << text << " " << unknown.x << " " << unknown.y;
+        }
+}
+// Beyond the border every tap is held to the picture (conventions 1), wherever q lies.
+TEST(Temporal, ClampedHistoryIsReadThroughHeldTaps) {
+    const int w = 32, h = 20;
+    const auto weights = [](double t) {
+        return std::array{-t / 2 + t * t - t * t * t / 2, 1 - 2.5 * t * t + 1.5 * t * t * t,
+                          t / 2 + 2 * t * t - 1.5 * t * t * t, -t * t / 2 + t * t * t / 2};
+    };
+    const Frame first = temporalFrame(0, w, h, noisePicture(1));
+    for (const glm::dvec2 v : {glm::dvec2(0.3, -0.4), {1.25, 0.75}, {-1.7, 2.2}, {-5.5, 5.125}, {20.25, -33.5}}) {
+        RunningMethod m = running("taaSimplest:outside=clamp,k=1,history=catmullRom,historyClamp=off", w, h);
+        m.resolve(first, {}, {});
+        m.resolve(temporalFrame(1, w, h, noisePicture(2), v), {}, {});
+        for (int y = 0; y < h; y++)
+            for (int x = 0; x < w; x++) {
+                const int ax = int(std::floor(x - v.x)), ay = int(std::floor(y - v.y));
+                const auto wx = weights(x - v.x - ax), wy = weights(y - v.y - ay);
+                double expected = 0;
+                for (int j = 0; j < 4; j++)
+                    for (int i = 0; i < 4; i++)
+                        expected += wx[size_t(i)] * wy[size_t(j)] *
+                                    double(first.colorLinear.c[0].clamped(ax + i - 1, ay + j - 1));
+                ASSERT_NEAR(m.out.c[0].at(x, y), expected, 2e-6) << v.x << " " << v.y << ": " << x << "," << y;
+            }
+    }
+}
 // The trail of an exponential history is k^age of what was there: the metric must read its half-life, ln 2 / -ln k.
 TEST(Temporal, GhostHalfLifeOfAnExponentialTrail) {
     for (const double k : {0.5, 0.7, 0.9}) {
