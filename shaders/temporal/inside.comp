@@ -92,7 +92,7 @@ void main() {
     if (any(greaterThanEqual(p, frame.size))) return;
     const vec3 raw = fetchCurrent(p, false);
     if (frame.firstFrame != 0u) {
-        const vec3 first = sanitised(raw, raw, vec3(0.0));
+        const vec3 current = fetchCurrent(p, UNJITTER_COLOUR), first = sanitised(current, current, vec3(0.0));
         storeBlend(p, first, 1.0, first);
         storeRejection(p, REJECTED_FIRST_FRAME);
         return;

@@ -53,6 +53,13 @@ AA_INLINE vec3<R> blurredByMotion(const InsideArgs& a, Motion<R> motion, vec3<R>
         sum = sum + (colorAt(a.in, ownX + motion.x * at, ownY + motion.y * at, x, y) - result);
     }
     const vec3<R> blurred = result + sum * (share * R(T(1) / T(7)));
+// The frame's colour at pixel o.
+template <class R>
+AA_INLINE vec3<R> colorOf(const TemporalIn& in, const UniformFetch<R>& unjittered, bool unjitter, long o) {
+    if (!unjitter) return load3<R>(in.color.c, o);
+    return {unjittered(in.color.c[0] + o, in.stride), unjittered(in.color.c[1] + o, in.stride),
+            unjittered(in.color.c[2] + o, in.stride)};
+}
     // A motion of more than two pictures is no motion (conventions 9).
     const auto known = both(abs(motion.x) <= R(T(2 * a.in.width)), abs(motion.y) <= R(T(2 * a.in.height)));
     return select(both(known, both(share > zero, finite(blurred))), blurred, result);
@@ -65,10 +72,7 @@ AA_INLINE void insidePixel(const InsideArgs& a, bool ycocg, bool unjitterWindow,
     const long o = long(y) * in.stride + x;
     const UniformFetch<R> unjittered(-in.jitterXPx, -in.jitterYPx);
     const auto fetch = [&](bool unjitter, int i, int j) __attribute__((always_inline)) {
-        const long n = o + long(j) * in.stride + i;
-        if (!unjitter) return load3<R>(in.color.c, n);
-        return vec3<R>{unjittered(in.color.c[0] + n, in.stride), unjittered(in.color.c[1] + n, in.stride),
-                       unjittered(in.color.c[2] + n, in.stride)};
+        return colorOf<R>(in, unjittered, unjitter, o + long(j) * in.stride + i);
     };
     const auto space = [&](vec3<R> c) __attribute__((always_inline)) { return ycocg ? toYcocg(c) : c; };
     const auto luma = [&](vec3<R> c) __attribute__((always_inline)) { return ycocg ? c.x : luminance(c, a.luminance); };
@@ -118,7 +122,10 @@ __attribute__((flatten)) void insideRows(const InsideArgs& a, int y0, int y1) {
                 if (a.in.history)
                     insidePixel<R>(a, ycocg, unjitterWindow, x, y);
                 else
-                    storeFirst<R>(a.in, x, y);
+                    storeFirst<R>(a.in, x, y,
+                                  colorOf<R>(a.in, UniformFetch<R>(-a.in.jitterXPx, -a.in.jitterYPx), a.unjitterColor,
+                                             long(y) * a.in.stride + x),
+                                  R(Elem<R>(1)));
     };
     withOptions<R>(rows, !a.ycocg && !a.unjitterNeighbourhood);
 }
