@@ -55,14 +55,15 @@ vec3 colourAlong(ivec2 p, vec2 offset) {
     return fetchBilinear(currentImage, p, displacedWithinReach(p, offset, frame.size, isFinite(offset.x) && isFinite(offset.y))).rgb;
 }
 // Four bilinear taps at (+-s, +-s).
-vec3 diagonalTap(vec3 window[9], int i, int j, float s) {
+vec3 diagonalTap(ivec2 p, vec3 window[9], int i, int j, float s) {
+    if (UNJITTER_NEIGHBOURHOOD) return toBoxSpace(colourAlong(p, vec2(i, j) * s - frame.jitter));
     const vec3 near = lerpExact(window[4], window[4 + i], s);
     const vec3 far = lerpExact(window[4 + 3 * j], window[4 + 3 * j + i], s);
     return lerpExact(near, far, s);
 }
-Box fourTapBox(vec3 window[9], float s, out vec3 mean) {
-    const vec3 a = diagonalTap(window, -1, -1, s), b = diagonalTap(window, 1, -1, s),
-               d = diagonalTap(window, -1, 1, s), e = diagonalTap(window, 1, 1, s);
+Box fourTapBox(ivec2 p, vec3 window[9], float s, out vec3 mean) {
+    const vec3 a = diagonalTap(p, window, -1, -1, s), b = diagonalTap(p, window, 1, -1, s),
+               d = diagonalTap(p, window, -1, 1, s), e = diagonalTap(p, window, 1, 1, s);
     mean = a + ((b - a) + (d - a) + (e - a)) * 0.25;
     return Box(min(min(a, b), min(d, e)), max(max(a, b), max(d, e)));
 }
@@ -116,7 +117,7 @@ void main() {
         const float speed = sqrt(motion.x * motion.x + motion.y * motion.y);
         // By the motion of 2 times the depth: 0 * 1e10 is 0, and a far surface at any speed counts as moving.
         const float still = clamp(0.5 / max(speed * dilatedDepth(p), 1e-6), 0.0, 1.0);
-        box = fourTapBox(window, 0.5 + still * 0.1666, mean);
+        box = fourTapBox(p, window, 0.5 + still * 0.1666, mean);
     } else {
         const Neighbours around = neighbours(window);
         box = boxOf(around, NEIGHBOURHOOD);

@@ -5,19 +5,14 @@
 
 namespace AA_ARCH {
 
-// Four bilinear taps at (+-s, +-s); at(i, j) are the window's colours. s = 0.5 px under motion, up to 0.6666 at rest.
+// Four bilinear taps at (+-s, +-s): tap(-1, -1) and so on. s = 0.5 px under motion, up to 0.6666 at rest.
 template <class R>
 struct FourTaps {
     Box<R> box;
     vec3<R> mean;
 };
-template <class R, class At>
-AA_INLINE FourTaps<R> fourTaps(const At& at, R s) {
-    const vec3<R> c = at(0, 0);
-    const auto tap = [&](int i, int j) __attribute__((always_inline)) {
-        const vec3<R> near = mix(c, at(i, 0), s), far = mix(at(0, j), at(i, j), s);
-        return mix(near, far, s);
-    };
+template <class R, class Tap>
+AA_INLINE FourTaps<R> fourTaps(const Tap& tap) {
     const vec3<R> a = tap(-1, -1), b = tap(1, -1), d = tap(-1, 1), e = tap(1, 1);
     return {{min(min(a, b), min(d, e)), max(max(a, b), max(d, e))},
             a + ((b - a) + (d - a) + (e - a)) * R(Elem<R>(0.25))};
@@ -53,6 +48,11 @@ AA_INLINE vec3<R> blurredByMotion(const InsideArgs& a, Motion<R> motion, vec3<R>
         sum = sum + (colorAt(a.in, ownX + motion.x * at, ownY + motion.y * at, x, y) - result);
     }
     const vec3<R> blurred = result + sum * (share * R(T(1) / T(7)));
+    // A motion of more than two pictures is no motion (conventions 9).
+    const auto known = both(abs(motion.x) <= R(T(2 * a.in.width)), abs(motion.y) <= R(T(2 * a.in.height)));
+    return select(both(known, both(share > zero, finite(blurred))), blurred, result);
+}
+
 // The frame's colour at pixel o.
 template <class R>
 AA_INLINE vec3<R> colorOf(const TemporalIn& in, const UniformFetch<R>& unjittered, bool unjitter, long o) {
@@ -60,11 +60,6 @@ AA_INLINE vec3<R> colorOf(const TemporalIn& in, const UniformFetch<R>& unjittere
     return {unjittered(in.color.c[0] + o, in.stride), unjittered(in.color.c[1] + o, in.stride),
             unjittered(in.color.c[2] + o, in.stride)};
 }
-    // A motion of more than two pictures is no motion (conventions 9).
-    const auto known = both(abs(motion.x) <= R(T(2 * a.in.width)), abs(motion.y) <= R(T(2 * a.in.height)));
-    return select(both(known, both(share > zero, finite(blurred))), blurred, result);
-}
-
 template <class R>
 AA_INLINE void insidePixel(const InsideArgs& a, bool ycocg, bool unjitterWindow, int x, int y) {
     using T = Elem<R>;
@@ -91,7 +86,16 @@ AA_INLINE void insidePixel(const InsideArgs& a, bool ycocg, bool unjitterWindow,
         const R speed = sqrt(motion.x * motion.x + motion.y * motion.y);
         // 0 * 1e10 is 0, and a far surface at any speed counts as moving (conventions 11).
         const R still = saturate(R(T(0.5)) / max(speed * dilatedDepth<R>(in, o), R(T(1e-6))));
-        return fourTaps<R>(Window<R>(at), R(T(0.5)) + still * R(T(0.1666)));
+        const R s = R(T(0.5)) + still * R(T(0.1666));
+        if (unjitterWindow)
+            return fourTaps<R>([&](int i, int j) __attribute__((always_inline)) {
+                return space(colorAt(in, R(T(i)) * s - R(T(in.jitterXPx)), R(T(j)) * s - R(T(in.jitterYPx)), x, y));
+            });
+        const Window<R> window(at);
+        return fourTaps<R>([&](int i, int j) __attribute__((always_inline)) {
+            const vec3<R> near = mix(window(0, 0), window(i, 0), s), far = mix(window(0, j), window(i, j), s);
+            return mix(near, far, s);
+        });
     };
     Box<R> box = varying ? taps().box : neighbourBox<R>(at, kind);
     if (ycocg) {

@@ -26,8 +26,9 @@ Frame randomFrame(int n) {
 }
 
 // The game's first form (neighbourhood=4tapVarying) with a clamp, evaluated directly; `reach` 1: motion of the nearest
-// surface in 3x3, 0: the pixel's own; `ownDepth`: the depth of the pixel itself in either case.
-double fourTap(const Frame& f, const Rgb& past, int reach, bool ownDepth, size_t c, int x, int y) {
+// surface in 3x3, 0: the pixel's own; `ownDepth`: the depth of the pixel itself in either case; `read`: where the
+// colours of the frame are read, from the pixel.
+double fourTap(const Frame& f, const Rgb& past, int reach, bool ownDepth, glm::dvec2 read, size_t c, int x, int y) {
     const auto at = [&](const PlaneF& p, int i, int j) {
         return double(p.at(std::clamp(i, 0, kInsideWidth - 1), std::clamp(j, 0, kInsideHeight - 1)));
     };
@@ -45,17 +46,18 @@ double fourTap(const Frame& f, const Rgb& past, int reach, bool ownDepth, size_t
     const double depth = ownDepth ? at(f.depthView, x, y) : at(f.depthView, nearX, nearY);
     const double qx = x + 0.5 - mx, qy = y + 0.5 - my;
     const Rgb& now = f.colorEncoded;
-    if (qx < 0 || qx > kInsideWidth || qy < 0 || qy > kInsideHeight) return at(now.c[c], x, y);
+    if (qx < 0 || qx > kInsideWidth || qy < 0 || qy > kInsideHeight)
+        return bilinear(now.c[c], x + 0.5 + read.x, y + 0.5 + read.y);
     const double s = 0.5 + 0.1666 * std::min(0.5 / (1e-8 + std::hypot(mx, my) * depth), 1.0);
     double current[3], held[3];
     for (size_t k = 0; k < 3; k++) {
         double lo = 1e9, hi = -1e9;
         for (const double i : {-s, s})
             for (const double j : {-s, s}) {
-                const double tap = bilinear(now.c[k], x + 0.5 + i, y + 0.5 + j);
+                const double tap = bilinear(now.c[k], x + 0.5 + read.x + i, y + 0.5 + read.y + j);
                 lo = std::min(lo, tap), hi = std::max(hi, tap);
             }
-        current[k] = at(now.c[k], x, y);
+        current[k] = bilinear(now.c[k], x + 0.5 + read.x, y + 0.5 + read.y);
         held[k] = std::min(std::max(bilinear(past.c[k], qx, qy), lo), hi);
     }
     const auto luma = [](const double* v) { return 0.2126 * v[0] + 0.7152 * v[1] + 0.0722 * v[2]; };
@@ -79,14 +81,31 @@ TEST(Inside, FourTapsVaryWithTheDilatedDepth) {
             for (int y = 0; y < kInsideHeight; y++)
                 for (int x = 0; x < kInsideWidth; x++) {
                     const double found = double(m.out.c[c].at(x, y));
-                    EXPECT_NEAR(found, fourTap(second, first.colorEncoded, reach, false, c, x, y), 2e-6)
+                    EXPECT_NEAR(found, fourTap(second, first.colorEncoded, reach, false, {}, c, x, y), 2e-6)
                         << reach << ": " << x << "," << y;
-                    wrong =
-                        std::max(wrong, std::fabs(found - fourTap(second, first.colorEncoded, reach, true, c, x, y)));
+                    wrong = std::max(wrong,
+                                     std::fabs(found - fourTap(second, first.colorEncoded, reach, true, {}, c, x, y)));
                 }
         if (reach) {
             EXPECT_GT(wrong, 1e-2);  // the pixel's own depth is another picture
         }
+    }
+}
+// Un-jittered, each of the four taps is one bilinear read of the frame, not one between nine of them.
+TEST(Inside, FourTapsAreReadWhereTheyLie) {
+    for (const glm::dvec2 jitter : {glm::dvec2(0.25, -0.375), {-0.5, 0.4375}, {0, 0}}) {
+        RunningMethod m = running("inside:neighbourhood=4tapVarying,unjitterNeighbourhood=on,clipTarget=clamp",
+                                  kInsideWidth, kInsideHeight);
+        Frame first = randomFrame(0), second = randomFrame(1);
+        first.jitterPx = second.jitterPx = jitter;
+        m.resolve(first, {}, {});
+        const Rgb past = m.out;
+        m.resolve(second, {}, {});
+        for (size_t c = 0; c < 3; c++)
+            for (int y = 0; y < kInsideHeight; y++)
+                for (int x = 0; x < kInsideWidth; x++)
+                    ASSERT_NEAR(m.out.c[c].at(x, y), fourTap(second, past, 1, false, -jitter, c, x, y), 3e-6)
+                        << jitter.x << ": " << x << "," << y;
     }
 }
 
