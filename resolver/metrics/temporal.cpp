@@ -143,7 +143,7 @@ std::array<float, 3> TemporalScene::staleAt(const Frame& frame, int x, int y, ui
 void TemporalJudge::add(const TemporalScene& scene, const Rgb& encoded, const Exec& exec, std::optional<double> mse,
                         PlaneF y) {
     area_ = region_.value_or(Window{0, 0, scene.width(), scene.height()});
-    const bool counts = seen_++ >= warmup_;
+    const bool counts = seen_ >= warmup_;
     latest_ = {};
     isStatic_ = scene.isStatic();
     const Rgb* truth = scene.truth();
@@ -156,14 +156,14 @@ void TemporalJudge::add(const TemporalScene& scene, const Rgb& encoded, const Ex
         if (counts) squaredError_ += *mse, framesWithTruth_++;
     }
     if (y.empty()) y = pictureLuma(encoded, exec);
-    const bool hasPrevious = hasPrevious_ && scene.framesSinceReset() > 0;
+    // A step between two frames that count.
+    const bool hasPrevious = seen_++ > warmup_ && scene.framesSinceReset() > 0;
     if (counts && scene.isStatic()) addStatic(y, hasPrevious, exec);
     if (counts && scene.alongMotion()) {
         if (scene.hasTruthStep() && hasPrevious) addFlicker(scene, y, exec);
         if (truth) addTrail(scene, encoded);
     }
     previousLuma_ = std::move(y);
-    hasPrevious_ = true;
 }
 
 void TemporalJudge::addStatic(const PlaneF& y, bool hasPrevious, const Exec& exec) {

@@ -129,7 +129,7 @@ class TemporalJudge {
     int steps_ = 0;
     // moving
     PlaneF previousLuma_;
-    bool hasPrevious_ = false, isStatic_ = false;
+    bool isStatic_ = false;
     double motionSquares_ = 0, motionPixels_ = 0;
     TrailSums trail_;
     double trailFrames_ = 0;    // pixels of all frames
