@@ -23,14 +23,25 @@ bool disoccluded(float expected, float found, float tolerance, bool bothSides) {
     const float difference = expected - found, limit = expected * tolerance;
     return !((bothSides ? abs(difference) : difference) <= limit);
 }
+// Change of the motion to the next pixel along x and along y; in the last column and row, beyond which the motion is
+// repeated, from the pixel before.
+struct MotionSlope {
+    vec2 alongX, alongY;
+};
+MotionSlope motionSlope(ivec2 p) {
+    const ivec2 next = p + 1, ahead = ivec2(next.x < frame.size.x ? 1 : 0, next.y < frame.size.y ? 1 : 0);
+    return MotionSlope(motionAt(p + ivec2(ahead.x, 0)) - motionAt(p + ivec2(ahead.x - 1, 0)),
+                       motionAt(p + ivec2(0, ahead.y)) - motionAt(p + ivec2(0, ahead.y - 1)));
+}
+// Pixels that one pixel covered `age` frames ago, the longer way along each axis.
+vec2 footprint(MotionSlope slope, float age) {
+    const vec2 alongX = slope.alongX * age, alongY = slope.alongY * age;
+    return vec2(max(abs(1.0 - alongX.x), abs(alongY.x)), max(abs(alongX.y), abs(1.0 - alongY.y)));
+}
 // A pixel covers less than a previous pixel and q is far from that pixel's centre: reading would enlarge one sample
 // [Stejmar n.d., 3.6.2]. `scale`: share of the footprint within which the centre must lie.
-bool magnified(ivec2 p, Reprojection q, float scale) {
-    const vec2 m = motionAt(p), right = motionAt(p + ivec2(1, 0)), down = motionAt(p + ivec2(0, 1));
-    const float footprintX = max(abs(1.0 - (right.x - m.x)), abs(down.x - m.x)),
-                footprintY = max(abs(right.y - m.y), abs(1.0 - (down.y - m.y)));
-    const vec2 away = min(q.part, 1.0 - q.part);
-    return !(away.x <= footprintX * scale) || !(away.y <= footprintY * scale);
+bool magnified(Reprojection q, vec2 covered, float scale) {
+    return !all(lessThanEqual(min(q.part, 1.0 - q.part), covered * scale));
 }
 // The id is nowhere in the previous 3x3 around the texel `nearest`.
 bool idLost(usampler2D previousIds, uint id, ivec2 nearest) {

@@ -100,7 +100,8 @@ void main() {
             hidden = hidden && disoccluded(expected, texel(farthestImage, nearest).r, DEPTH_TOLERANCE, false);
         if (hidden) reason = REJECTED_DISOCCLUDED;
     }
-    if (MAGNIFICATION > 0.0 && reason == REJECTED_NOT && magnified(p, q, MAGNIFICATION)) reason = REJECTED_MAGNIFIED;
+    if (MAGNIFICATION > 0.0 && reason == REJECTED_NOT && magnified(q, footprint(motionSlope(p), 1.0), MAGNIFICATION))
+        reason = REJECTED_MAGNIFIED;
     if (OBJECT_IDS && reason == REJECTED_NOT &&
         idLost(previousObjectImage, texel(objectImage, p + frame.texelOffset), nearest))
         reason = REJECTED_OTHER_OBJECT;

@@ -140,7 +140,8 @@ void main() {
         store(p, first, depth, first, 1.0, REJECTED_FIRST_FRAME);
         return;
     }
-    const vec2 motion = motionAt(p), right = motionAt(p + ivec2(1, 0)), down = motionAt(p + ivec2(0, 1));
+    const vec2 motion = motionAt(p);
+    const MotionSlope slope = motionSlope(p);
     const vec2 camera = cameraDisplacement(followed.lastFrame, followed.lastFrameMoves != 0u, depth, p);
     const vec2 own = -motion - camera;  // of the object, px per frame
 
@@ -153,12 +154,10 @@ void main() {
         const float age = quadrant.age;
         const vec2 path = cameraDisplacement(quadrant.path, quadrant.pathMoves != 0u, depth, p);
         const Reprojection q = reproject(p, -(path + own * age));
-        const vec2 foot = vec2(max(abs(1.0 - (right.x - motion.x) * age), abs((down.x - motion.x) * age)),
-                               max(abs((right.y - motion.y) * age), abs(1.0 - (down.y - motion.y) * age)));
+        const vec2 foot = footprint(slope, age);
         bool valid = q.inside && !disoccluded(expectedPreviousDepth(quadrant, depth, p),
                                               fetchDepth(quadrant.layer, p, q), DEPTH_TOLERANCE, BOTH_SIDES);
-        if (MAGNIFICATION > 0.0)
-            valid = valid && all(lessThanEqual(min(q.part, 1.0 - q.part), foot * MAGNIFICATION));
+        if (MAGNIFICATION > 0.0) valid = valid && !magnified(q, foot, MAGNIFICATION);
         if (!valid) continue;
         anyValid = true;
         // The four nearest samples serve radii up to 1 px.

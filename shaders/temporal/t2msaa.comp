@@ -99,7 +99,8 @@ void main() {
     if (reason == REJECTED_NOT && disoccluded(expectedPreviousDepth(depth, p), fetchDepth(previousDepthImage, p, q),
                                               DEPTH_TOLERANCE, BOTH_SIDES))
         reason = REJECTED_DISOCCLUDED;
-    if (MAGNIFICATION > 0.0 && reason == REJECTED_NOT && magnified(p, q, MAGNIFICATION)) reason = REJECTED_MAGNIFIED;
+    if (MAGNIFICATION > 0.0 && reason == REJECTED_NOT && magnified(q, footprint(motionSlope(p), 1.0), MAGNIFICATION))
+        reason = REJECTED_MAGNIFIED;
     const bool hit = reason == REJECTED_NOT;
 
     // 4, 5

@@ -48,7 +48,10 @@ AA_INLINE void accumRejectPixel(const AccumRejectArgs& a, int x, int y) {
                                  disoccluded(expected, gather<R>(a.previousFarthest + o, nearest), tolerance, false)));
         reject(hidden, Rejection::disoccluded);
     }
-    if (a.rejection.magnification > 0) reject(magnified(in, o, q, a.rejection.magnification), Rejection::magnified);
+    if (a.rejection.magnification > 0) {
+        const Footprint<R> covered = footprint(motionSlope<R>(in, x, y), one);
+        reject(magnified(q, covered, a.rejection.magnification), Rejection::magnified);
+    }
     if (a.objectId) reject(idLost<R>(a.objectId + o, a.previousId + o, in.stride, nearest), Rejection::otherObject);
     const auto valid = reason == zero;
 

@@ -61,8 +61,8 @@ AA_INLINE void asaaPixel(const AsaaArgs& a, int x, int y) {
         if (in.debug.rejection) store(R(T(int(Rejection::firstFrame))), in.debug.rejection + o);
         return;
     }
-    const Motion<R> motion = loadMotion<R>(in, o), right = loadMotion<R>(in, o + 1),
-                    down = loadMotion<R>(in, o + in.stride);
+    const Motion<R> motion = loadMotion<R>(in, o);
+    const MotionSlope<R> slope = motionSlope<R>(in, x, y);
     const Motion<R> camera = cameraDisplacement(a.lastFrame, in, depth, x, y);
     const Motion<R> own{-motion.x - camera.x, -motion.y - camera.y};  // of the object, px per frame
 
@@ -76,20 +76,16 @@ AA_INLINE void asaaPixel(const AsaaArgs& a, int x, int y) {
         const Motion<R> back{-(path.x + own.x * age), -(path.y + own.y * age)};  // as a motion: current - then
         const Reprojection<R> q = reproject(in, back, x, y);
         const float* p = buffer.rgba + 4 * o;
-        const R footX = max(abs(one - (right.x - motion.x) * age), abs((down.x - motion.x) * age)),
-                footY = max(abs((right.y - motion.y) * age), abs(one - (down.y - motion.y) * age));
+        const Footprint<R> covered = footprint(slope, age);
         const R expected = expectedPreviousDepth(buffer.expected, depth, x, y);
         Mask<R> valid = both(q.inside, negate(disoccluded(expected, fetchDepth(p, in.stride, q),
                                                           a.rejection.depthTolerance, a.rejection.bothSides)));
-        if (a.rejection.magnification > 0) {
-            const R nearX = min(q.fracX, one - q.fracX), nearY = min(q.fracY, one - q.fracY);
-            const R scale(T(a.rejection.magnification));
-            valid = both(valid, both(nearX <= footX * scale, nearY <= footY * scale));
-        }
+        if (a.rejection.magnification > 0)
+            valid = both(valid, negate(magnified(q, covered, a.rejection.magnification)));
         if (!maskBits<R>(valid)) continue;
         anyValid = either(anyValid, valid);
         const R least(T(0.125)), most(T(1));  // the four nearest samples serve radii up to 1 px
-        const R rx = min(max(footX * half, least), most), ry = min(max(footY * half, least), most);
+        const R rx = min(max(covered.x * half, least), most), ry = min(max(covered.y * half, least), most);
         const R dx = q.wholeX + q.fracX, dy = q.wholeY + q.fracY;
         addTent(p, in.stride, dx + R(T(a.phiX - buffer.phiX)), dy + R(T(a.phiY - buffer.phiY)), rx, ry, valid, b);
         addTent(p, in.stride, dx - R(T(buffer.phiX)), dy - R(T(buffer.phiY)), min(rx + rx, most), min(ry + ry, most),

@@ -194,6 +194,26 @@ TEST(Rejection, ThresholdsAreParameters) {
         EXPECT_EQ(reason(with + "magnification=0.5", 5, 0.4), magnified) << id;
     }
 }
+// In the last column and row, beyond which the motion is repeated, the footprint is that of the pixel before.
+TEST(Rejection, FootprintOfTheLastColumnAndRow) {
+    for (const char* text :
+         {"asaa", "t2msaa", "accumReject:depthTest=point,objectIds=off,magnification=1,dilation=none"})
+        for (const bool column : {true, false})
+            for (const double slope : {0.6, 0.4}) {
+                RunningMethod m = running(text, 30, 20);
+                m.method->keepRejection = true;
+                m.resolve(flatFrame(0, 5), {}, {});
+                Frame f = flatFrame(1, 5);
+                for (int y = 0; y < 20; y++)
+                    for (int x = 0; x < 30; x++)
+                        (column ? f.motionXPx : f.motionYPx).at(x, y) =
+                            float(slope * (column ? x - 29 : y - 19) + 0.45);
+                f.motionXPx.fillBorder(), f.motionYPx.fillBorder();
+                m.resolve(f, {}, {});
+                EXPECT_EQ(m.method->rejection()->at(column ? 29 : 15, column ? 10 : 19) != 0, slope == 0.6)
+                    << text << " " << column << " " << slope;
+            }
+}
 
 // N = 1, c = 1, h = 0 (conventions 15). At rest a = 1/2 -> 1/3. With a motion of (0.01, 0) in UV the limit is
 // 0.25 + 0.0099 / 2 = 0.25495, below a = 1/2. At N = 3 the mean's weight 1/4 is under the limit: it holds instead.

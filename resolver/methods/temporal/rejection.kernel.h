@@ -34,17 +34,48 @@ AA_INLINE Mask<R> disoccluded(R expected, R found, float tolerance, bool bothSid
     const R difference = expected - found, limit = expected * R(Elem<R>(tolerance));
     return negate(bothSides ? abs(difference) <= limit : difference <= limit);
 }
+// Change of the motion to the next pixel along x and along y; in the last column and row, beyond which the motion is
+// repeated, from the pixel before.
+template <class R>
+struct MotionSlope {
+    Motion<R> alongX, alongY;
+};
+template <class R>
+AA_INLINE MotionSlope<R> motionSlope(const TemporalIn& in, int x, int y) {
+    using T = Elem<R>;
+    const long o = long(y) * in.stride + x, below = y + 1 < in.height ? in.stride : 0;
+    const auto change = [&](long from, long to) __attribute__((always_inline)) {
+        const Motion<R> a = loadMotion<R>(in, o + from), b = loadMotion<R>(in, o + to);
+        return Motion<R>{b.x - a.x, b.y - a.y};
+    };
+    MotionSlope<R> slope{change(0, 1), change(below - in.stride, below)};
+    if (x + N<R> >= in.width) {
+        const Motion<R> before = change(-1, 0);
+        const auto last = R(T(x)) + iota<R>() == R(T(in.width - 1));
+        slope.alongX.x = select(last, before.x, slope.alongX.x);
+        slope.alongX.y = select(last, before.y, slope.alongX.y);
+    }
+    return slope;
+}
+// Pixels that one pixel covered `age` frames ago, the longer way along each axis.
+template <class R>
+struct Footprint {
+    R x, y;
+};
+template <class R>
+AA_INLINE Footprint<R> footprint(const MotionSlope<R>& slope, R age) {
+    const R one(Elem<R>(1));
+    return {max(abs(one - slope.alongX.x * age), abs(slope.alongY.x * age)),
+            max(abs(slope.alongX.y * age), abs(one - slope.alongY.y * age))};
+}
 // True where a pixel covers less than a previous pixel and q is far from that pixel's centre: reading would enlarge one
 // sample ([Stejmar n.d., 3.6.2]; distances to centres and absolute derivatives: decisions 18).
 template <class R>
-AA_INLINE Mask<R> magnified(const TemporalIn& in, long o, const Reprojection<R>& q, float scale) {
+AA_INLINE Mask<R> magnified(const Reprojection<R>& q, const Footprint<R>& covered, float scale) {
     using T = Elem<R>;
     const R one(T(1));
-    const Motion<R> m = loadMotion<R>(in, o), right = loadMotion<R>(in, o + 1), down = loadMotion<R>(in, o + in.stride);
-    const R footprintX = max(abs(one - (right.x - m.x)), abs(down.x - m.x)),
-            footprintY = max(abs(right.y - m.y), abs(one - (down.y - m.y)));
     const R distanceX = min(q.fracX, one - q.fracX), distanceY = min(q.fracY, one - q.fracY);
-    return either(negate(distanceX <= footprintX * R(T(scale))), negate(distanceY <= footprintY * R(T(scale))));
+    return either(negate(distanceX <= covered.x * R(T(scale))), negate(distanceY <= covered.y * R(T(scale))));
 }
 // Lane mask of pixels whose id is nowhere in the previous 3x3 around q. The window is searched only where q's own pixel
 // shows another object.

@@ -48,7 +48,8 @@ AA_INLINE void t2msaaPixel(const T2msaaArgs& a, int x, int y) {
     const RejectionTest& test = a.rejection;
     reject(disoccluded(expected, fetchDepth(in.history + 4 * o, in.stride, q), test.depthTolerance, test.bothSides),
            Rejection::disoccluded);
-    if (test.magnification > 0) reject(magnified(in, o, q, test.magnification), Rejection::magnified);
+    if (test.magnification > 0)
+        reject(magnified(q, footprint(motionSlope<R>(in, x, y), one), test.magnification), Rejection::magnified);
     const auto hit = reason == zero;
 
     const R count =
