@@ -51,9 +51,8 @@ const int BOX_MINMAX = 0, BOX_VARIANCE = 1, BOX_INTERSECTION = 2;
 const int CONSTRAINT_CLIP_FILTERED = 0, CONSTRAINT_CLIP_MEAN = 1, CONSTRAINT_CLAMP = 2;
 const int ANTI_FLICKER_KARIS = 1, ANTI_FLICKER_FALCOR = 2;
 
-// Beyond the picture: its edge, as it is read.
 vec3 ownColour(ivec2 p) {
-    const vec3 c = colourAt(clampTexel(p, frame.size));
+    const vec3 c = colourAt(p);
     return PQ ? pqEncode(c) : c;
 }
 vec3 toBoxSpace(vec3 c) { return YCOCG ? toYcocg(c) : c; }

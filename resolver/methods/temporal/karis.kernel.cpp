@@ -44,16 +44,20 @@ AA_INLINE vec3<R> karisColor(const KarisArgs& a, bool pq, long o) {
     const vec3<R> c = load3<R>(a.in.color.c, o);
     return pq ? vec3<R>{pqEncode(*a.pq, c.x), pqEncode(*a.pq, c.y), pqEncode(*a.pq, c.z)} : c;
 }
+// Pixels of an un-jittered frame beyond the picture: bilinear, they are not its edge's (conventions 7.0).
+AA_INLINE int pixelsBeyond(const TemporalIn& in) { return in.readXPx != 0 || in.readYPx != 0 ? 1 : 0; }
 template <class R>
 AA_INLINE void convertRow(const KarisArgs& a, bool ycocg, bool pq, const KarisRings<Elem<R>>& rings, int y) {
-    Elem<R>*const c0 = rings.c[0](y), *const c1 = rings.c[1](y), *const c2 = rings.c[2](y),
-                  *const weight = rings.weight(y);
-    for (int x = 0; x < a.in.width; x += N<R>) {
+    const int beyond = pixelsBeyond(a.in), row = y + beyond;
+    Elem<R>*const c0 = rings.c[0](row), *const c1 = rings.c[1](row), *const c2 = rings.c[2](row),
+                  *const weight = rings.weight(row);
+    for (int x = -beyond; x < a.in.width + beyond; x += N<R>) {
         const vec3<R> rgb = karisColor<R>(a, pq, long(y) * a.in.stride + x), c = ycocg ? toYcocg(rgb) : rgb;
         store(c.x, c0 + x), store(c.y, c1 + x), store(c.z, c2 + x);
         const R one(Elem<R>(1));
         if (a.filtered) store(a.toneWeighted ? toneWeight(ycocg ? c.x : luma709(c), a.hdr4) : one, weight + x);
     }
+    if (beyond) return;
     for (const auto& channel : rings.c) channel.continueBeyond(y);
     if (a.filtered) rings.weight.continueBeyond(y);
 }
@@ -145,7 +149,8 @@ template <class R>
 __attribute__((flatten)) void karisRows(const KarisArgs& a, int y0, int y1) {
     const TemporalIn& in = a.in;
     KarisRings<Elem<R>> rings;
-    RingMaker<Elem<R>> maker(a.scratch, in.stride, in.width, in.height);
+    const int beyond = pixelsBeyond(in);
+    RingMaker<Elem<R>> maker(a.scratch, in.stride, in.width, in.height + 2 * beyond);
     for (auto& channel : rings.c) maker.make(channel);
     maker.make(rings.weight);
     const bool pq = a.pq != nullptr;  // outside of the window's loop, hence no copy of the kernel
@@ -162,12 +167,12 @@ __attribute__((flatten)) void karisRows(const KarisArgs& a, int y0, int y1) {
         }
         for (int y = y0 - 2; y < y1; y++) {
             const int next = y + 1;
-            if (next >= 0 && next < in.height) convertRow<R>(a, ycocg, pq, rings, next);
+            if (next >= -beyond && next < in.height + beyond) convertRow<R>(a, ycocg, pq, rings, next);
             if (y < y0) continue;
             KarisWindow<Elem<R>> window;
             for (int j = -1; j <= 1; j++) {
-                for (int i = 0; i < 3; i++) window.c[j + 1][i] = rings.c[i](y + j);
-                window.weight[j + 1] = rings.weight(y + j);
+                for (int i = 0; i < 3; i++) window.c[j + 1][i] = rings.c[i](y + j + beyond);
+                window.weight[j + 1] = rings.weight(y + j + beyond);
             }
             for (int x = 0; x < in.width; x += N<R>) karisPixel<R>(a, ycocg, pq, window, x, y);
         }

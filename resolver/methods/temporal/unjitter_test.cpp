@@ -82,6 +82,30 @@ TEST(Unjitter, BeyondThePictureTapsRepeatItsEdge) {
                 }
         }
 }
+// A window at the border reads what a picture continued by its edge shows there: each tap at its own p - j + offset.
+TEST(Unjitter, WindowsAtTheBorderReadBeyondIt) {
+    const int w = 19, h = 9, margin = 5;
+    for (const char* text : {"karis", "salvi", "falcor", "donut", "karis:box=variance,constraint=clipMean",
+                             "raptor:sharpen=0", "unchartedNoSharpen"}) {
+        const std::string with = std::string(text) + (std::string(text).find(':') == std::string::npos ? ":" : ",");
+        RunningMethod small = running(with + "unjitter=on", w, h),
+                      large = running(with + "unjitter=on", w + 2 * margin, h + 2 * margin);
+        for (int n = 0; n < 4; n++) {
+            const Picture picture = noisePicture(unsigned(n));
+            Frame f = temporalFrame(n, w, h, picture),
+                  g = temporalFrame(n, w + 2 * margin, h + 2 * margin, [&](int x, int y, int c) {
+                      return picture(std::clamp(x - margin, 0, w - 1), std::clamp(y - margin, 0, h - 1), c);
+                  });
+            f.jitterPx = g.jitterPx = kJitters[n];
+            small.resolve(f, {}, {}), large.resolve(g, {}, {});
+            for (size_t c = 0; c < 3; c++)
+                for (int y = 0; y < h; y++)
+                    for (int x = 0; x < w; x++)
+                        ASSERT_EQ(small.out.c[c].at(x, y), large.out.c[c].at(x + margin, y + margin))
+                            << text << " " << n << ": " << x << "," << y;
+        }
+    }
+}
 // The mean over a period of a resting half-plane is its samples under a tent of radius 1 px around the pixel centre:
 // the published rule, from sample positions alone.
 TEST(Unjitter, RestingHalfPlaneBecomesItsTentFilteredTruth) {
