@@ -4,8 +4,9 @@
 // jitter's quadrant.
 //  1. s = the current sample   2. the surface point is followed into the frame of each buffer: by the two cameras, plus
 //     the object's own motion (motion less camera motion) times the buffer's age   3. tent-weighted sums over the four
-//     nearest samples of every buffer: b~ (radius half the footprint) and f~ (twice that)   4. rejection per buffer:
-//     border, depth, magnification   5. alpha = 1 / (N + 1), N limited to 4 in motion, or alpha bounded by eq 3.31
+//     nearest samples of every buffer: b~ (radius half the footprint) and f~ (twice that), radii from 0.125 to 1 px
+//  4. rejection per buffer: border, depth, magnification   5. alpha = 1 / (N + 1), N limited to 4 in motion, or alpha
+//     bounded by eq 3.31
 //  6. buffer = alpha s + (1 - alpha) b~, frame = alpha/4 s + (1 - alpha/4) f~   7. N + 1, or eq 3.29
 // N counts earlier samples. Where every buffer is rejected N = 0; the first frame after a reset rejects nothing: N = 1.
 //

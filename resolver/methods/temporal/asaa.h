@@ -12,6 +12,7 @@
 // own sample alone; eq 3.29 then gives 1. The first frame after a reset rejects nothing: N = 0 + 1. The thesis's text
 // restricts N to four samples in motion, its listing 4.11 sets N = 4, also where fewer were taken (motionCount=four).
 // It reads N at the pixel itself (countAt=reprojected: where the surface was, as eq 3.29 does).
+// The radii of step 3 are at least 0.125 px, and at most 1 px where the source sets no upper bound (decisions 23).
 // Works with any jitter (the quadrant is taken from its sign, the buffers' ages are tracked); made for the sequence
 // "quadrants" with Gaussian sigma 0.2575. The output filter is a tent of radius 1 px: blurrier than a box truth.
 // Display-encoded, as the thesis's 8-bit buffers (conventions 4). Depth of each buffer rides in its alpha.

@@ -84,7 +84,7 @@ AA_INLINE void asaaPixel(const AsaaArgs& a, int x, int y) {
             valid = both(valid, negate(magnified(q, covered, a.rejection.magnification)));
         if (!maskBits<R>(valid)) continue;
         anyValid = either(anyValid, valid);
-        const R least(T(0.125)), most(T(1));  // the four nearest samples serve radii up to 1 px
+        const R least(T(0.125)), most(T(1));  // the four nearest samples serve radii up to 1 px (decisions 23)
         const R rx = min(max(covered.x * half, least), most), ry = min(max(covered.y * half, least), most);
         const R dx = q.wholeX + q.fracX, dy = q.wholeY + q.fracY;
         addTent(p, in.stride, dx + R(T(a.phiX - buffer.phiX)), dy + R(T(a.phiY - buffer.phiY)), rx, ry, valid, b);
