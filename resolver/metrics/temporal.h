@@ -31,7 +31,7 @@
 namespace aa {
 
 inline constexpr int kGhostAges = 16;
-// Frames left out at the start: 32 (conventions 13.5), or a quarter of a shorter sequence.
+// Frames left out at the start (conventions 13.5).
 inline int temporalWarmup(size_t frames) { return int(std::min<size_t>(32, frames / 4)); }
 // What the scene must offer for the figures along the motion.
 inline PassSet temporalMetricPasses() { return Pass::motion | Pass::depth | Pass::object; }
