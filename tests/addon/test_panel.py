@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import glob
 import json
+import math
 import os
 import sys
 import types
@@ -383,6 +384,13 @@ def test_results_are_found_on_disk() -> None:
     assert words[0][0] == "1. KARIS:ALPHA=0.1 (alpha=0.1): 36.0 dB", words
     assert "+5.0 dB over no anti-aliasing" in words[1][1] and "+4.5 to +6.0" in words[1][1]
     assert "not told apart" in words[1][2] and "0.0 to +2.0" in words[2][1], words
+    for ends, wanted in {
+        (-math.inf, math.inf): "(no interval)",
+        (-math.inf, -7.25): "(95\u00a0%: below -7.2)",
+        (1.5, math.inf): "(95\u00a0%: above +1.5)",
+    }.items():
+        rank = outcome.Rank("fxaa1", "FXAA", 30.0, (2.0, *ends), True)
+        assert outcome.lines_of(1, rank)[1] == f"+2.0 dB over no anti-aliasing {wanted}"
     assert found.files == () and not bpy.ops.aa_resolve.open_sheet.poll()
     open(os.path.join(results, "sheet.png"), "w").close()
     watch.look_now(scene)

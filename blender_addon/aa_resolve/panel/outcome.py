@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from dataclasses import dataclass
 
@@ -136,13 +137,28 @@ def _decibels(value: float) -> str:
     return "0.0" if text in ("+0.0", "-0.0") else text
 
 
+def _interval(low: float, high: float) -> str:
+    """In words, as the report has it: an end without bound is not known."""
+    if math.isinf(low) and math.isinf(high):
+        return "no interval"
+    known = (
+        f"above {_decibels(low)}"
+        if math.isinf(high)
+        else f"below {_decibels(high)}"
+        if math.isinf(low)
+        else ""
+    )
+    return f"95\u00a0%: {known or f'{_decibels(low)} to {_decibels(high)}'}"
+
+
 def lines_of(place: int, rank: Rank) -> list[str]:
     """One place of the ranking in words."""
     _, _, changed = rank.text.partition(":")
     lines = [f"{place}. {rank.title}{f' ({changed})' if changed else ''}: {rank.psnr:.1f} dB"]
     if rank.gain is not None:
-        value, low, high = map(_decibels, rank.gain)
-        lines.append(f"{value} dB over no anti-aliasing (95\u00a0%: {low} to {high})")
+        lines.append(
+            f"{_decibels(rank.gain[0])} dB over no anti-aliasing ({_interval(*rank.gain[1:])})"
+        )
     if not rank.told_apart:
         lines.append("not told apart from the one above")
     return lines
