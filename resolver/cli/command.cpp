@@ -13,22 +13,11 @@ namespace aa {
 
 Option& Option::required() { return option_->required(), *this; }
 Option& Option::range(int least, int most) { return option_->check(CLI::Range(least, most)), *this; }
-Option& Option::range(double least, double most) {
-    const auto within = [=](const std::string& text) {
-        double value = NAN;
-        if (CLI::detail::lexical_cast(text, value) && value >= least && value <= most) return std::string();  // no NaN
-        std::ostringstream refusal;
-        refusal << "expected a number in [" << least << " - " << most << "], found '" << text << "'";
-        return refusal.str();
-    };
-    std::ostringstream limits;
-    limits << "FLOAT in [" << least << " - " << most << "]";
-    return option_->check(CLI::Validator([within](std::string& text) { return within(text); }, limits.str())), *this;
-}
+Option& Option::range(double least, double most) { return option_->check(CLI::Range(least, most)), *this; }
 Option& Option::notNegative() {
     const auto refusal = [](const std::string& text) {
         double value = 0;
-        if (CLI::detail::lexical_cast(text, value) && value >= 0 && std::isfinite(value)) return std::string();
+        if (CLI::detail::lexical_cast(text, value) && value >= 0) return std::string();
         return "expected a number from 0 on, found '" + text + "'";
     };
     return option_->check(CLI::Validator([refusal](std::string& text) { return refusal(text); }, "NUMBER >= 0")), *this;
@@ -64,6 +53,7 @@ Option Command::option(const std::string& names, int& to, const std::string& hel
 Option Command::option(const std::string& names, uint32_t& to, const std::string& help) {
     return Option(app_->add_option(names, to, help));
 }
+// NaN is refused here, before any range, in which it would lie.
 Option Command::option(const std::string& names, double& to, const std::string& help) {
     const auto refusal = [](std::string& text) {
         double value = 0;

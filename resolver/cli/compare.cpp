@@ -12,6 +12,7 @@
 #include "image/colour.h"
 #include "image/error.h"
 #include "image/exr.h"
+#include "image/inputs.h"
 #include "image/io.h"
 #include "image/json_text.h"
 #include "metrics/maps.h"
@@ -250,13 +251,8 @@ void compare(const CompareArguments& o, Context& context) {
         throw UsageError(
             "compare: --flip-ppd: the device looks at FLIP from the usual distance alone; leave out --device");
     const Viewing viewing = viewingOf(o.viewing, Viewing{}.framesPerSecond);
-    if (!o.map.empty() && pairs.size() > 1) {
-        const fs::path maps = fs::weakly_canonical(o.map);
-        for (const std::string& compared : {o.a, o.b})
-            if (fs::is_directory(compared) && fs::weakly_canonical(compared) == maps)
-                throw UsageError("--map: " + o.map + ": this command reads it; choose another name for what it writes");
-        makeWritableFolder(o.map);
-    }
+    if (!o.map.empty()) requireNoInput(o.map);
+    if (!o.map.empty() && pairs.size() > 1) makeWritableFolder(o.map);
     Measuring device{.session = o.work.session()};
     if (device.session && device.session->fast())
         throw UsageError("compare: --gpu-precision fast: pictures are compared in 32 bits alone");

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "image/error.h"
+#include "image/inputs.h"
 #include "image/lower_case.h"
 #include "image/readable.h"
 #include "shot/import/folder.h"
@@ -27,7 +28,7 @@ std::vector<fs::path> picturesIn(const fs::path& folder) {
 }
 // Of pictures that are there as EXR and as PNG: which of them goes with these. EXR holds more.
 PictureKind kindBeside(const std::vector<fs::path>& others) {
-    const auto isPng = [](const fs::path& p) { return lowerCase(p.extension().string()) == ".png"; };
+    const auto isPng = [](const fs::path& p) { return lowerExtension(p) == ".png"; };
     return std::all_of(others.begin(), others.end(), isPng) ? PictureKind::png : PictureKind::exr;
 }
 // By a key; empty where two pictures share one or a name holds none, which `complaint` tells.
@@ -77,7 +78,7 @@ FramePairs joined(const std::map<Key, fs::path>& a, const std::map<Key, fs::path
 }  // namespace
 
 FramePairs pairFrames(const fs::path& a, const fs::path& b, const std::string& by) {
-    for (const auto& p : {a, b}) requireReadable(p);
+    for (const auto& p : {a, b}) requireReadable(p), noteInput(p);
     if (fs::is_directory(a) != fs::is_directory(b))
         throw UsageError("compare: '" + a.string() + "' and '" + b.string() +
                          "' must both be images or both be folders of frames");

@@ -8,7 +8,6 @@
 #include "cli/run_arguments.h"
 #include "image/error.h"
 #include "image/folder_claim.h"
-#include "image/inputs.h"
 #include "image/io.h"
 #include "report/advice.h"
 #include "report/format.h"
@@ -281,11 +280,11 @@ void execute(const RunCommandArguments& o, Context& context) {
     if (!o.methods.empty()) run.methods = chosenFor(o.run.shot, o.methods);
     if (!o.add) addBaseline(run.methods, o);  // what is added to has its own
     run.debugLayers = o.debugLayers;
-    if (!o.trace.empty()) requireWritable(o.trace), run.trace = std::make_shared<Trace>();
+    if (!o.trace.empty()) run.trace = std::make_shared<Trace>();
     run.provenance =
         provenanceOf(context.arguments, {"-m", "--method", "-o", "--out", "--external"}, {"--resume", "--add"});
     const ShotReader shot = openShot(o.run, run);
-    if (!o.trace.empty()) requireNoInput(o.trace);
+    if (!o.trace.empty()) requireWritable(o.trace);
     requireOwnFolder(run, shot.manifest());
     const FolderClaim claim(run.out);
     const bool goesOn = o.add || (o.resume && std::filesystem::exists(run.out / "results.json"));

@@ -105,8 +105,7 @@ ShotReader openShot(const RunArguments& a, RunOptions& run) {
         if (std::count_if(run.methods.begin(), run.methods.end(), same) > 1)
             throw UsageError("--external: '" + run.methods.back().text + "' is given twice");
         const std::filesystem::path from = std::filesystem::weakly_canonical(run.methods.back().method->source);
-        const std::filesystem::path below = from.lexically_relative(std::filesystem::weakly_canonical(a.out));
-        if (!below.empty() && *below.begin() != "..")
+        if (firstBelow(std::filesystem::weakly_canonical(a.out), from))
             throw UsageError("--external: " + from.string() + " lies in " + a.out +
                              ", where this run writes and clears; give the run another folder");
     }

@@ -63,9 +63,6 @@ void clearOnce(const fs::path& folder) {
     const std::lock_guard lock(one);
     if (cleared.insert(folder).second) removePartials(folder.empty() ? "." : folder);
 }
-}  // namespace
-
-namespace {
 // What a link leads to is written, and not the link.
 fs::path behindLinks(const fs::path& file) {
     std::error_code failed;
@@ -119,6 +116,7 @@ void giveUpWriting(const fs::path& file, const std::string& why) {
 }
 
 void requireWritable(const fs::path& file) {
+    requireNoInput(file);
     const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
     std::error_code ignored;
     if (::access(folder.c_str(), W_OK | X_OK) != 0) giveUpWriting(file, std::generic_category().message(errno));

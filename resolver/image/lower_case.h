@@ -1,5 +1,6 @@
 // Letters of ASCII as small ones: names and endings of files, channels, families.
 #pragma once
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -11,5 +12,6 @@ inline std::string lowerCase(std::string_view text) {
         if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
     return s;
 }
+inline std::string lowerExtension(const std::filesystem::path& file) { return lowerCase(file.extension().string()); }
 
 }  // namespace aa

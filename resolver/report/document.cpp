@@ -34,7 +34,7 @@ constexpr Ending kEndings[] = {{".png", DocumentKind::png, ""},
                                {".apng", DocumentKind::apng, ""}};
 
 const Ending* endingOf(const fs::path& file) {
-    const std::string ending = lowerCase(file.extension().string());
+    const std::string ending = lowerExtension(file);
     const auto found =
         std::find_if(std::begin(kEndings), std::end(kEndings), [&](const Ending& e) { return ending == e.text; });
     return found == std::end(kEndings) ? nullptr : found;

@@ -13,6 +13,17 @@ namespace {
 
 constexpr const char* kWholeFrames = "export whole frames, without a region, a crop or overscan";
 
+std::string size(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
+
+// The part holds the shot's whole picture; `advice` ends the line where it has another size.
+void requirePicture(const ExrPart& part, const std::string& name, const Manifest& m, const std::string& where,
+                    const std::string& advice) {
+    requireWhole(part, where + ", part '" + name + "'", kWholeFrames);
+    if (part.width != m.width || part.height != m.height)
+        throw InputError(where + ", part '" + name + "': expected " + size(m.width, m.height) +
+                         " pixels (shot.json), found " + size(part.width, part.height) + "; " + advice);
+}
+
 // Decodes one frame's file into a Frame, pass by pass.
 class FrameDecoder {
   public:
@@ -43,14 +54,9 @@ class FrameDecoder {
         if (!p)
             throw InputError(where() + " has no part '" + std::string(name) +
                              "'; export the shot again with this pass");
-        requireWhole(*p, where() + ", part '" + std::string(name) + "'", kWholeFrames);
-        if (p->width != manifest_.width || p->height != manifest_.height)
-            throw InputError(where() + ", part '" + std::string(name) + "': expected " +
-                             size(manifest_.width, manifest_.height) + " pixels (shot.json), found " +
-                             size(p->width, p->height) + "; export the frame again");
+        requirePicture(*p, std::string(name), manifest_, where(), "export the frame again");
         return *p;
     }
-    static std::string size(int w, int h) { return std::to_string(w) + "x" + std::to_string(h); }
     std::string where() const { return file_.path().string() + ": frame " + std::to_string(entry_.frame); }
     PlaneName planeName(std::string_view part, std::vector<std::string> channels) const {
         return {where() + ", part '" + std::string(part) + "'", std::move(channels)};
@@ -222,12 +228,7 @@ std::optional<Truth> ShotReader::readTruth(size_t index, SanitiseCounts* counts)
         const std::string where = file.path().string() + ": truth of frame " + std::to_string(entry.frame);
         if (!part)
             throw InputError(where + " has no part '" + name + "'; export the truth again (two independent halves)");
-        requireWhole(*part, where + ", part '" + name + "'", kWholeFrames);
-        if (part->width != manifest_.width || part->height != manifest_.height)
-            throw InputError(where + ", part '" + name + "': expected " + std::to_string(manifest_.width) + "x" +
-                             std::to_string(manifest_.height) + " pixels (shot.json), found " +
-                             std::to_string(part->width) + "x" + std::to_string(part->height) +
-                             "; export the truth again");
+        requirePicture(*part, name, manifest_, where, "export the truth again");
         std::vector<ChannelTarget> t = {{"R", &half->c[0]}, {"G", &half->c[1]}, {"B", &half->c[2]}};
         file.read(*part, t);
         const ColourCounts found =

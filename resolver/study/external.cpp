@@ -15,8 +15,6 @@ namespace aa {
 namespace fs = std::filesystem;
 namespace {
 
-std::string lowerExtension(const fs::path& file) { return lowerCase(file.extension().string()); }
-
 // One picture for each frame.
 std::map<int, fs::path> picturesIn(const fs::path& folder) {
     std::error_code failed;

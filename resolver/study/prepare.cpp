@@ -150,6 +150,12 @@ InputPlan planInput(const ShotReader& shot, const RunOptions& o) {
     return plan;
 }
 
+std::optional<std::filesystem::path> firstBelow(const std::filesystem::path& folder, const std::filesystem::path& p) {
+    const std::filesystem::path below = p.lexically_relative(folder);
+    if (below.empty() || *below.begin() == "..") return {};
+    return *below.begin();
+}
+
 void requireOwnFolder(const RunOptions& o, const Manifest& m) {
     namespace fs = std::filesystem;
     const auto refuse = [&](const std::string& why) {
@@ -166,9 +172,8 @@ void requireOwnFolder(const RunOptions& o, const Manifest& m) {
     const fs::path out = fs::weakly_canonical(o.out);
     for (const fs::path& folder : ofFrames) {
         const fs::path frames = fs::weakly_canonical(folder);
-        const fs::path outBelow = out.lexically_relative(frames), below = frames.lexically_relative(out);
-        if (!outBelow.empty() && *outBelow.begin() != "..") refuse("lies where the shot keeps its frames");
-        if (!below.empty() && written.contains(*below.begin()))
+        if (firstBelow(frames, out)) refuse("lies where the shot keeps its frames");
+        if (const auto first = firstBelow(out, frames); first && written.contains(*first))
             refuse("would write over the shot's " + folder.string());
     }
 }

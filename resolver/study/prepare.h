@@ -1,6 +1,8 @@
 // What a run needs to know before its first frame: that the shot serves the methods, which frames and passes are read,
 // and what the results will say of shot, truth and program.
 #pragma once
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +25,9 @@ void requirePasses(const ShotReader& shot, const std::vector<MethodSpec>& method
 // not given. Returns the methods that accumulate and have no ramp. Throws UsageError: a full history of a moving shot.
 std::vector<std::string> applyHistory(RunOptions& options, const Manifest& manifest);
 
+// The first step from a folder to what lies in it, "." where it is the folder itself; both paths canonical. Nothing: it
+// lies elsewhere.
+std::optional<std::filesystem::path> firstBelow(const std::filesystem::path& folder, const std::filesystem::path& path);
 // Throws UsageError where the run's folder is a shot's, or one where that of this run keeps its frames: pictures that
 // the run writes and clears would take their place.
 void requireOwnFolder(const RunOptions& options, const Manifest& manifest);

@@ -14,7 +14,6 @@
 namespace aa {
 namespace fs = std::filesystem;
 namespace {
-std::string lowerExtension(const fs::path& file) { return lowerCase(file.extension().string()); }
 int toFrame(std::string_view digits) {
     int n = -1;
     const auto [end, failed] = std::from_chars(digits.data(), digits.data() + digits.size(), n);
