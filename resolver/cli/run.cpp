@@ -113,8 +113,7 @@ void sayWithoutFigures(const RunResults& r) {
         "no figures%s: none of these frames has a ground truth; export the shot with its truth, or hold the methods "
         "against one of them by --reference METHOD",
         r.maps.empty() ? "" : " and no maps");
-    if (r.asked.find("frames=all") == std::string::npos || r.asked.find("write=none") != std::string::npos)
-        std::printf("; for their pictures %s", howToWriteAll(r).c_str());
+    if (!r.wroteAllFrames()) std::printf("; for their pictures %s", howToWriteAll(r).c_str());
     std::puts("");
 }
 }  // namespace

@@ -168,8 +168,7 @@ std::vector<int> framesWithPictures(const RunResults& run) {
 }
 
 std::string howToWriteAll(const RunResults& run) {
-    const bool wroteNone = run.asked.find("write=none") != std::string::npos;
-    return std::string("run again with ") + (wroteNone ? "--write exr " : "") + "--write-frames all";
+    return std::string("run again with ") + (run.wrotePictures() ? "" : "--write exr ") + "--write-frames all";
 }
 
 Pictures loadPictures(const RunResults& run, const fs::path& folder, int frame, const Exec& exec) {

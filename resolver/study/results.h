@@ -165,6 +165,8 @@ struct RunResults {
     std::vector<PairResult> pairs;  // every pair of methods with truth
 
     size_t framesDone() const { return methods.empty() ? 0 : methods[0].frames.size(); }
+    bool wrotePictures() const { return asked.find("write=none") == std::string::npos; }
+    bool wroteAllFrames() const { return wrotePictures() && asked.find("frames=all") != std::string::npos; }
     bool hasFigures() const;     // of a method at least: its frames had a truth, or another method was the reference
     bool jitterCentred() const;  // |mean| below 1e-4 px
     // The method that the others are held against: it has time and pictures, and no figures.
