@@ -99,6 +99,30 @@ def test_jittered_and_centre_frames() -> None:
         assert np.array_equal(samples["s05.R"], color["R"]), file
 
 
+def test_names_of_cameras_do_not_matter() -> None:
+    """Each camera's views lie at their places, however long its name and however like the name of another one."""
+
+    def ids_by_name(*names: str) -> list[np.ndarray]:
+        scene = scene_with_edges()
+        for frame, name in enumerate(names, 1):
+            camera = t.add_camera(scene, (2 * frame - 3, -8, 2), (0, 0, 0.5))
+            camera.name = name
+            assert camera.name == name
+            scene.timeline_markers.new(name, frame=frame).camera = camera
+        frames = ("--frames", f"1-{len(names)}", "--truth-frames", "none")
+        out = os.path.join(t.temporary_folder(), "shot")
+        options = ("--passes", "object,subsamples", "--subsamples", "d3d2")
+        shot = t.export(out, *frames, *options)
+        parts = [t.read_part(os.path.join(out, e["file"]), "subsamples") for e in shot["frames"]]
+        return [part[f"s{view:02d}.id"] for part in parts for view in (0, 1)]
+
+    # 63 bytes, the most that Blender takes; they begin with the same 20 characters.
+    alike = [("\u30ab" * 21)[:-1] + last for last in "\u30e1\u30e9"]
+    found, wanted = ids_by_name(*alike), ids_by_name("Y", "Z")  # ids follow the names' order
+    assert all(np.array_equal(*pair) for pair in zip(found, wanted))
+    assert len({ids.tobytes() for ids in wanted}) == 4, "can fail"
+
+
 def test_methods_choose_the_pattern() -> None:
     from aa_resolve import registry
     from aa_resolve.errors import UsageError
@@ -470,6 +494,7 @@ if __name__ == "__main__":
         test_passes_with_and_without_a_copy,
         test_views_equal_separate_renders,
         test_jittered_and_centre_frames,
+        test_names_of_cameras_do_not_matter,
         test_methods_choose_the_pattern,
         test_override_keeps_the_geometry,
         test_mask,

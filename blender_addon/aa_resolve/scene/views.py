@@ -6,6 +6,8 @@ transferred once."""
 
 from __future__ import annotations
 
+import itertools
+
 import bpy
 
 from . import camera as cam
@@ -24,12 +26,8 @@ class ViewSet:
         self.scene = scene
         self.positions = positions
         self.names = tuple(f"s{index:02d}" for index in range(len(positions)))
-        self.cameras = []
-        for name in self.names:
-            camera = cam.JitterCamera(scene, source, f"{_PREFIX} {source.name}.{name}")
-            # The name must end with the suffix of its view, also where Blender had to make it unique.
-            camera.object.name = f"{_PREFIX} {source.name[:20]}.{name}"
-            self.cameras.append(camera)
+        start = _free_start()
+        self.cameras = [cam.JitterCamera(scene, source, f"{start}.{name}") for name in self.names]
 
     def aim(
         self,
@@ -64,3 +62,11 @@ class ViewSet:
                 view.use = True
             own(render, use_multiview=False)
             render.image_settings.views_format = "INDIVIDUAL"
+
+
+def _free_start() -> str:
+    """With what the names of a set's cameras begin. By their ends Blender finds the camera of a view: it must not have
+    to make them unique or shorter, as it would with the name of the source in them."""
+    taken = {item.name for item in bpy.data.objects}
+    starts = (f"{_PREFIX} {number}" for number in itertools.count(1))
+    return next(one for one in starts if not any(name.startswith(f"{one}.") for name in taken))
