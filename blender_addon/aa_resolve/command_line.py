@@ -97,6 +97,7 @@ def settings_from(arguments: argparse.Namespace, scene: bpy.types.Scene) -> Sett
         "pattern": _pattern(choices, arguments.pattern, passes | centre_passes, stored),
         "ambient": tuple(arguments.ambient) if arguments.ambient else None,
         "source": _source(arguments, stored),
+        "scene": _name_of(scene, arguments, stored),
     }
     return settled(Settings(**{**said, **made}), stored)
 
@@ -106,6 +107,16 @@ def _source(arguments: argparse.Namespace, stored: Stored | None) -> str:
     if arguments.same_scene and stored:
         return stored.content["source"]
     return arguments.source or file_identity(bpy.data.filepath)
+
+
+def _name_of(scene: bpy.types.Scene, arguments: argparse.Namespace, stored: Stored | None) -> str:
+    """The scene's name. A shot that names none, of an earlier version, is of the only scene of its file that has a
+    camera, or of the one for which the user vouches."""
+    if stored and "scene" not in stored.content:
+        alone = not any(other.camera for other in bpy.data.scenes if other != scene)
+        if alone or arguments.same_scene:
+            return ""
+    return scene.name
 
 
 def frames_of_scene(scene: bpy.types.Scene) -> list[int]:

@@ -9,7 +9,9 @@ import json
 from .options import options_of
 from .settings import Settings
 
+UNNAMED_SCENE = "which scene of the file it shows is not noted in it"  # of an earlier version
 _CHANGED = {
+    "scene": "the scene",
     "linked": "a file that the scene uses (a library, a picture, a cache)",
     "first_frame": "the first of --frames",
     "version": "the version of the add-on",
@@ -35,6 +37,8 @@ def difference(old: dict, new: dict) -> str | None:
     for key in sorted(set(old) | set(new)):
         before, now = (known.get(key, usual.get(key)) for known in (old, new))
         if before != now:
+            if key == "scene" and not before:
+                return UNNAMED_SCENE
             if key in ("source", "linked"):
                 return f"{_called(key)} has changed"
             return f"{_called(key)} was {_shown(before)} and now is {_shown(now)}"
@@ -44,6 +48,7 @@ def difference(old: dict, new: dict) -> str | None:
 def _defaults() -> dict:
     """Every option's default by its field's name, as a fingerprint holds it."""
     known = {item.name: item.default for item, _ in options_of(Settings)}
+    known["scene"] = Settings.scene
     return json.loads(json.dumps({k: v for k, v in known.items() if v is not dataclasses.MISSING}))
 
 

@@ -96,6 +96,7 @@ class Settings:
     centre_passes: list[str] = field(default_factory=list)
     # Where the jitter begins; None: with the first of the frames.
     origin: int | None = None
+    scene: str = ""  # name of the scene in its file; of a shot that does not name its own, empty
     resolution: tuple[int, int] | None = option(
         "--resolution",
         "pixels, e.g. 480x270 (default: the scene's)",
@@ -402,7 +403,8 @@ class Settings:
             for item, known in options_of(Settings)
             if known.decides_content
         }
-        return json.loads(json.dumps({**decides, "first_frame": self.first_frame}))
+        further = {"first_frame": self.first_frame, "scene": self.scene}
+        return json.loads(json.dumps({**decides, **further}))
 
 
 @dataclass

@@ -24,7 +24,7 @@ from dataclasses import dataclass, field
 from typing import Callable, Iterator
 
 from .errors import SceneError, UsageError
-from .fingerprint import difference
+from .fingerprint import UNNAMED_SCENE, difference
 from .manifest import content_of
 
 KINDS = ("frames", "centre", "truth")  # of pictures; each has a folder
@@ -149,6 +149,8 @@ class Store:
         way = "choose a new folder, or replace it with --overwrite"
         if changed == difference({"source": ""}, {"source": "another"}):
             way += ", or add --same-scene where no picture shows what changed"
+        elif changed == UNNAMED_SCENE:
+            way += ", or add --same-scene where it shows this one"
         return f"--out: '{self.folder}' holds an export with other settings: {changed}; {way}"
 
     def open(

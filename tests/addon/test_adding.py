@@ -440,7 +440,7 @@ def test_an_option_younger_than_the_shot_is_at_its_default() -> None:
     path = os.path.join(out, ".aa", "settings.json")
     with open(path, encoding="utf-8") as file:
         stored = json.load(file)
-    for young in ("texture_filter", "mip_bias", "unjitter_textures"):
+    for young in ("texture_filter", "mip_bias", "unjitter_textures", "scene"):
         del stored["content"][young]
     storing.write_json(path, stored)
     before = files(out)
@@ -449,6 +449,45 @@ def test_an_option_younger_than_the_shot_is_at_its_default() -> None:
     assert files(out).keys() > before.keys() and before.items() <= files(out).items()
     changed = lacking(out, *wish, "--texture-filter", "mip").changed or ""
     assert changed == "--texture-filter was none and now is mip", changed
+
+
+def test_another_scene_of_the_file_is_refused() -> None:
+    """A shot is of one scene. One that does not name its scene goes on where the file holds no other that could be meant,
+    and else where the user vouches."""
+    blend, out = (os.path.join(FOLDER, name) for name in ("two.blend", "one_of_two"))
+    first = t.new_scene(8, 8)
+    first.name = "First"
+    t.add_camera(first)
+    second = bpy.data.scenes.new("Second")
+    second.camera = first.camera
+    t.save(first, blend)
+    wish = ("--out", out, "--frames", "1", "--truth-frames", "none")
+
+    def refused(scene: str, *options: str) -> str:
+        bpy.ops.wm.open_mainfile(filepath=blend)
+        bpy.context.window.scene = bpy.data.scenes[scene]
+        bpy.context.scene.render.engine = "CYCLES"
+        try:
+            t.export(*wish[1:], *options)
+        except UsageError as error:
+            return str(error)
+        return ""
+
+    assert refused("First") == "" and refused("First") == ""
+    before = files(out)
+    for options in ((), ("--same-scene",)):
+        told = refused("Second", *options)
+        assert "the scene was First and now is Second; choose" in told, told
+        assert "--same-scene" not in told, told
+    path = os.path.join(out, ".aa", "settings.json")
+    with open(path, encoding="utf-8") as file:
+        stored = json.load(file)
+    assert stored["content"].pop("scene") == "First"
+    storing.write_json(path, stored)
+    for scene in ("First", "Second"):
+        told = refused(scene)
+        assert "which scene" in told and "--same-scene where it shows this one" in told, told
+    assert refused("First", "--same-scene") == "" and files(out) == before
 
 
 if __name__ == "__main__":
@@ -465,4 +504,5 @@ if __name__ == "__main__":
         test_what_makes_other_pictures_is_refused,
         test_methods_at_the_centres_have_theirs_beside_a_jitter,
         test_an_option_younger_than_the_shot_is_at_its_default,
+        test_another_scene_of_the_file_is_refused,
     )

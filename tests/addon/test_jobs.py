@@ -329,6 +329,38 @@ def test_a_saved_file_is_added_to() -> None:
     assert told.refused and "'Period' was 16" in told.text, "it vouches for the scene alone"
 
 
+def test_two_scenes_have_two_shots() -> None:
+    """The panel exports the scene that is shown, and says that the folder of one holds none of the other."""
+    from aa_resolve.panel import watch
+
+    moving_scene("two_scenes.blend")
+    preferences()
+    first = bpy.context.scene
+    second = bpy.data.scenes.new("Second")
+    second.camera, second.render.engine = first.camera, "CYCLES"
+    second.render.resolution_x = second.render.resolution_y = 8
+    t.add_object(second, "Only here")
+    bpy.ops.wm.save_mainfile()
+    for scene in (first, second):
+        bpy.context.window.scene = scene
+        shown = scene.aa_resolve
+        shown.out, shown.first, shown.last, shown.truth = "//two_scenes", 1, 1, "NONE"
+        told = watch.look_now(scene).shot
+        assert told.refused == (scene == second), told
+        if scene == first:
+            assert bpy.ops.aa_resolve.export() == {"FINISHED"}
+    assert "the scene was Scene and now is Second" in told.text and not told.other_scene, told
+    try:
+        bpy.ops.aa_resolve.export()
+        raise SystemExit("another scene must be refused")
+    except RuntimeError as error:
+        assert "now is Second" in str(error), error
+    shown.out = "//second"
+    assert bpy.ops.aa_resolve.export() == {"FINISHED"}
+    shot = t.read_manifest(os.path.join(FOLDER, "second"))
+    assert shot["resolution"] == [8, 8], shot["resolution"]
+
+
 def test_disk_caches_are_seen() -> None:
     """The copy that is exported finds the disk caches beside the original file, and removes nothing of them."""
     from aa_resolve.panel import job
@@ -355,5 +387,6 @@ if __name__ == "__main__":
         test_cancel_stops_and_says_so,
         test_the_panel_says_what_a_shot_lacks,
         test_a_saved_file_is_added_to,
+        test_two_scenes_have_two_shots,
         test_disk_caches_are_seen,
     )

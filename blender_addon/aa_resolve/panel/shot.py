@@ -71,8 +71,9 @@ def look(scene: bpy.types.Scene, folder: str) -> Told:
             return Told("The old shot will be replaced")
         found = missing(wanted, store)
         if found.changed:
-            text = as_labels(store.other_settings(found.changed), Settings)
-            return Told(text, True, identity != stored.content["source"])
+            text = store.other_settings(found.changed)
+            vouch = "--same-scene" in text or identity != stored.content["source"]
+            return Told(as_labels(text, Settings), True, vouch)
     except (UsageError, SceneError) as error:
         return Told(as_labels(str(error), Settings), True)
     text = f"The shot has {found.sentence().removeprefix('kept: ')}"
