@@ -260,6 +260,13 @@ def test_sets_of_methods() -> None:
     try:
         assert bpy.ops.aa_resolve.choose_set(kind="RUNNABLE") == {"FINISHED"}
         assert sorted(shown.chosen()) == ["mlaa", "noaa"], shown.chosen()
+        for nowhere in ("", "//shot"):  # of a file that is not saved
+            shown.out = nowhere
+            try:
+                bpy.ops.aa_resolve.choose_set(kind="RUNNABLE")
+                raise AssertionError("without a folder there is no shot to ask of")
+            except RuntimeError as error:
+                assert "folder for the shot" in str(error) and "Trace" not in str(error), error
         shown.out = os.path.join(folder, "other")
         with open(program, "a", encoding="utf-8") as file:
             file.write("exit 3\n")
@@ -271,6 +278,38 @@ def test_sets_of_methods() -> None:
     finally:
         preferences.preferred = before
     assert sorted(shown.chosen()) == ["mlaa", "noaa"], "a refusal must change nothing"
+
+
+def test_a_shot_has_a_folder_of_its_own() -> None:
+    """Blender's working folder is nobody's shot: an empty path and a relative one are refused, ~ is the user's own."""
+    from aa_resolve.panel import running, watch
+
+    shown = registered()
+    scene = bpy.context.scene
+    folder = t.temporary_folder()
+    before, home = os.getcwd(), os.environ["HOME"]
+    os.chdir(folder)
+    os.environ["HOME"] = folder
+    try:
+        for out in ("", "shot", "./shot", "~nobody_at_all/shot", "//shot"):
+            shown.out = out
+            told = watch.look_now(scene).shot
+            assert told.refused and "folder for the shot" in told.text, (out, told)
+            try:
+                bpy.ops.aa_resolve.export()
+                raise AssertionError(f"'{out}' must be refused")
+            except RuntimeError as error:
+                assert told.text in str(error), error
+        assert os.listdir(folder) == []
+        shown.out = "~/shots/a"
+        assert running.shot_folder(scene) == os.path.join(folder, "shots", "a")
+        assert not watch.look_now(scene).shot.refused
+        bpy.ops.wm.save_as_mainfile(filepath=os.path.join(folder, "saved.blend"))
+        shown.out = "//shot/"
+        assert running.shot_folder(scene) == os.path.join(folder, "shot")
+    finally:
+        os.chdir(before)
+        os.environ["HOME"] = home
 
 
 def test_for_takes_sets() -> None:
@@ -453,6 +492,7 @@ if __name__ == "__main__":
         test_parameters_are_edited_and_said,
         test_starts_and_families,
         test_sets_of_methods,
+        test_a_shot_has_a_folder_of_its_own,
         test_for_takes_sets,
         test_the_look_is_foretold,
         test_results_are_found_on_disk,

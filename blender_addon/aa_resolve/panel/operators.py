@@ -60,7 +60,7 @@ class JobOperator:
         """Folder of the shot; empty after an error was reported."""
         folder = running.shot_folder(context.scene)
         if not folder:
-            self.report({"ERROR"}, "Save the file first, or choose a folder for the shot")
+            self.report({"ERROR"}, running.why_no_folder(context.scene))
         return folder
 
     def export_step(

@@ -174,8 +174,12 @@ class AA_RESOLVE_OT_choose_set(bpy.types.Operator):
             if found is None:
                 self.report({"ERROR"}, program.problem(wanted))
                 return {"CANCELLED"}
+            shot = running.shot_folder(context.scene)
+            if not shot:
+                self.report({"ERROR"}, running.why_no_folder(context.scene))
+                return {"CANCELLED"}
             try:
-                chosen = program.runnable(found.path, running.shot_folder(context.scene))
+                chosen = program.runnable(found.path, shot)
             except RuntimeError as error:
                 self.report({"ERROR"}, str(error))
                 return {"CANCELLED"}

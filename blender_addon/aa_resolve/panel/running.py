@@ -109,11 +109,24 @@ def redraw(kinds: tuple[str, ...] = ("PROPERTIES", "PREFERENCES")) -> None:
 
 
 def shot_folder(scene: bpy.types.Scene) -> str:
-    """Folder of the shot; empty where it lies beside a file that has not been saved."""
+    """Folder of the shot; empty where none can be meant: ``why_no_folder``."""
+    return "" if why_no_folder(scene) else _meant_folder(scene)
+
+
+def why_no_folder(scene: bpy.types.Scene) -> str:
+    """What to do so that the shot has a folder; empty where it has one. Blender's own working folder is never meant."""
     out = scene.aa_resolve.out
-    if out.startswith("//") and not bpy.data.filepath:
-        return ""
-    return os.path.normpath(bpy.path.abspath(out))
+    if out.startswith("//"):
+        return "" if bpy.data.filepath else "Save the file first, or choose a folder for the shot"
+    if not out:
+        return "Choose a folder for the shot"
+    if not os.path.isabs(_meant_folder(scene)):
+        return f"Choose a folder for the shot: '{out}' is no whole path; beside the file it is called '//{out}'"
+    return ""
+
+
+def _meant_folder(scene: bpy.types.Scene) -> str:
+    return os.path.normpath(os.path.expanduser(bpy.path.abspath(scene.aa_resolve.out)))
 
 
 def results_folder(shot: str) -> str:

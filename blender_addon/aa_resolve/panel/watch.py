@@ -73,7 +73,7 @@ def look_now(scene: bpy.types.Scene) -> Facts:
         tuple(look.changes_without_noise(scene)) if without_noise else (),
         () if without_noise else tuple(noise_causes(scene, settings.samples)),
         look.other_engine(scene),
-        _shot_in(scene, folder) if folder else shot.Told(),
+        _shot_in(scene, folder) if folder else shot.Told(running.why_no_folder(scene), True),
         _outcome_of(folder) if folder else None,
     )
     return _known[scene.name]
