@@ -10,7 +10,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import support as t  # noqa: E402
 from support import bpy, np  # noqa: E402
 
-from aa_resolve.scene import rendering  # noqa: E402
+from aa_resolve.scene import rendering, world_light  # noqa: E402
 
 
 def add_light(scene, kind: str, location, energy: float, **values):
@@ -308,7 +308,56 @@ def test_ambient_of_a_varying_world() -> None:
     assert np.allclose(shot["color"]["ambient"], 0.5, atol=0.01), shot["color"]["ambient"]
 
 
-def under_a_sky(lighting, elevation, rotation, shown=True) -> tuple[np.ndarray, dict]:
+def behind_what_a_camera_sees(world, way: str) -> None:
+    """Shows a camera black in place of the world, in one of the ways in which scenes do."""
+    if way == "hidden":
+        world.cycles_visibility.camera = False
+        return
+    tree = world.node_tree
+    output = tree.nodes["World Output"]
+    black, mix = tree.nodes.new("ShaderNodeBackground"), tree.nodes.new("ShaderNodeMixShader")
+    black.inputs["Color"].default_value = (0, 0, 0, 1)
+    if way == "node":
+        path = tree.nodes.new("ShaderNodeLightPath")
+    else:
+        inner = bpy.data.node_groups.new("Path", "ShaderNodeTree")
+        t.add_group_socket(inner, "NodeSocketFloat", "Is Camera Ray", True)
+        inner.links.new(
+            inner.nodes.new("ShaderNodeLightPath").outputs["Is Camera Ray"],
+            inner.nodes.new("NodeGroupOutput").inputs[0],
+        )
+        path = tree.nodes.new("ShaderNodeGroup")
+        path.node_tree = inner
+    tree.links.new(path.outputs["Is Camera Ray"], mix.inputs[0])
+    tree.links.new(tree.nodes["Background"].outputs[0], mix.inputs[1])
+    tree.links.new(black.outputs[0], mix.inputs[2])
+    tree.links.new(mix.outputs[0], output.inputs["Surface"])
+
+
+def test_ambient_of_a_world_that_the_camera_does_not_see() -> None:
+    """It is what surfaces receive; the background stays black, and the world as it was."""
+    for way in ("hidden", "node", "group"):
+        scene = room((0.5, 0.6, 0.7))
+        behind_what_a_camera_sees(scene.world, way)
+        worlds, groups = len(bpy.data.worlds), len(bpy.data.node_groups)
+        out = os.path.join(t.temporary_folder(), "s")
+        shot = t.export(out, "--frames", "1", "--truth-frames", "none")
+        ambient = shot["color"]["ambient"]
+        assert np.allclose(ambient, (0.5, 0.6, 0.7), atol=1e-5), (way, ambient)
+        color = t.read_part(os.path.join(out, "frames/000001.exr"), "color")
+        assert color["R"][0].max() == 0.0 < color["R"][-1].min(), way
+        assert len(bpy.data.worlds) == worlds and len(bpy.data.node_groups) == groups, way
+    # What only other rays than a diffuse one find is not received.
+    scene = room((0.5, 0.6, 0.7))
+    tree = scene.world.node_tree
+    path, background = tree.nodes.new("ShaderNodeLightPath"), tree.nodes["Background"]
+    for name, received in (("Is Glossy Ray", 0.0), ("Is Diffuse Ray", 1.0), ("Ray Depth", 1.0)):
+        tree.links.new(path.outputs[name], background.inputs["Strength"])
+        ambient = world_light.mean_radiance(scene, scene.world, t.temporary_folder())
+        assert np.allclose(ambient, np.array((0.5, 0.6, 0.7)) * received, atol=1e-5), name
+
+
+def under_a_sky(lighting, elevation, rotation, shown=True, way="shown") -> tuple[np.ndarray, dict]:
     """A pole on a floor, seen from above, under a sky texture of the kind that this version has first."""
     scene = t.new_scene(32, 32)
     t.add_camera(scene, (0, -0.01, 9), (0, 0, 0), 100)
@@ -327,6 +376,8 @@ def under_a_sky(lighting, elevation, rotation, shown=True) -> tuple[np.ndarray, 
     background.inputs["Strength"].default_value = 0.1
     if shown:
         tree.links.new(sky.outputs["Color"], background.inputs["Color"])
+    if way != "shown":
+        behind_what_a_camera_sees(scene.world, way)
     scene.cycles.max_bounces = 0
     out = os.path.join(t.temporary_folder(), "s")
     options = ("--samples", "64") if lighting == "as-is" else ()
@@ -351,6 +402,9 @@ def test_sun_of_a_sky_texture() -> None:
             np.median(picture[lit, 0]) - np.median(picture[shadow, 0]) for picture in (real, delta)
         ]
         assert abs(sun[1] / sun[0] - 1) < 0.04, sun
+        for way in ("hidden", "group"):  # the floor fills the picture
+            behind, _ = under_a_sky("noise-free", elevation, rotation, way=way)
+            assert np.abs(behind - delta).max() < 1e-5, way
     _, shot = under_a_sky("noise-free", 0.9, 0.7, shown=False)
     assert "the sky's sun" not in " ".join(shot["notes"]), shot["notes"]
 
@@ -471,6 +525,7 @@ if __name__ == "__main__":
         test_light_linking,
         test_a_portal_does_not_shine,
         test_ambient_of_a_varying_world,
+        test_ambient_of_a_world_that_the_camera_does_not_see,
         test_sun_of_a_sky_texture,
         test_exposure_of_the_film_scales_everything,
         test_world_of_the_view_layer,

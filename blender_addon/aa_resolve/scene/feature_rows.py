@@ -175,8 +175,9 @@ ROWS: tuple[Feature, ...] = (
         "file",
         "light from the world",
         HANDLED,
-        "noise-free light takes its mean as ambient light, and the sun of a sky texture, as it "
-        "stands at the first frame, as a light without size",
+        "noise-free light takes the mean of what surfaces receive, also where the camera sees another "
+        "world, as ambient light, and the sun of a sky texture, as it stands at the first frame, as a "
+        "light without size",
         "lighting:set_up",
     ),
     Feature(

@@ -84,6 +84,18 @@ def new_group(name: str, inputs: dict[str, str], outputs: dict[str, str]) -> bpy
     return tree
 
 
+def feed_instead(
+    tree: bpy.types.NodeTree, node: bpy.types.Node, name: str, other: bpy.types.Node, index: int = 0
+) -> None:
+    """Links all that an output of ``node`` feeds to an output of another node."""
+    fed = [
+        (link.to_node, list(link.to_node.inputs).index(link.to_socket))
+        for link in node.outputs[name].links
+    ]
+    for fed_node, position in fed:  # sockets are looked up each time: a change may make them anew
+        tree.links.new(other.outputs[index], fed_node.inputs[position])
+
+
 def upstream(socket: Socket) -> Iterator[bpy.types.Node]:
     """Every node of the tree on which an input depends, each once."""
     waiting = [link.from_node for link in socket.links]

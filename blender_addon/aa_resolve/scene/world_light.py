@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the world shines: the mean of its radiance, and the suns of its sky textures, which a mean cannot stand for."""
+"""What the world shines: the mean of its radiance, and the suns of its sky textures, which a mean cannot stand for.
+
+Measured is what surfaces receive. A camera may see another world, by Light Path nodes or because the world is hidden
+from it."""
 
 from __future__ import annotations
 
@@ -13,11 +16,16 @@ from mathutils import Vector
 
 from .. import compat
 from . import rendering
-from .ownership import is_animated
+from .ownership import is_animated, release
+from .shader_nodes import feed_instead
 
 _PANORAMA = 64, 32  # pixels
 _SUN_PIXELS = 32  # of a square view of a sun
 _SUN_MARGIN = 1.5  # width of that view, in diameters
+
+# What a Light Path node says of the ray that leaves a diffuse surface for the world; of all else it says 0.
+_DIFFUSE_RAY = {"Is Diffuse Ray", "Is Reflection Ray", "Ray Depth", "Diffuse Depth"}
+_SAME_FOR_ALL_RAYS = "Ray Length"  # that ends in the world
 
 
 @dataclass
@@ -35,7 +43,7 @@ def mean_radiance(
     """Mean over the sphere without the discs of suns, scaled as the scene's film: a small panorama of the empty world,
     weighted by solid angle."""
     width, height = _PANORAMA
-    with _Sky(scene, world, folder) as sky, _without_discs(world):
+    with _Received(world) as seen, _Sky(scene, seen, folder) as sky, _without_discs(seen):
         sky.camera.data.type = "PANO"
         compat.panorama_settings(sky.camera.data).panorama_type = "EQUIRECTANGULAR"
         picture = sky.look(Vector((0.0, 1.0, 0.0)), width, height) * scene.cycles.film_exposure
@@ -46,12 +54,11 @@ def mean_radiance(
 
 def suns_of(scene: bpy.types.Scene, world: bpy.types.World, folder: str) -> list[SkySun]:
     """The suns that sky textures draw on the world; of a texture that nothing shows, none."""
-    nodes = list(_discs(compat.shader_tree(world), set()))
     suns: list[SkySun] = []
-    if not nodes:
+    if not any(_discs(compat.shader_tree(world), set())):
         return suns
-    with _Sky(scene, world, folder) as sky, _without_discs(world):
-        for node in nodes:
+    with _Received(world) as seen, _Sky(scene, seen, folder) as sky, _without_discs(seen) as discs:
+        for node in discs:
             # Cycles: azimuth from +y, clockwise seen from above.
             flat = math.cos(node.sun_elevation)
             towards = Vector(
@@ -97,13 +104,69 @@ class _without_discs:
     def __init__(self, world: bpy.types.World) -> None:
         self.nodes = list(_discs(compat.shader_tree(world), set()))
 
-    def __enter__(self) -> None:
+    def __enter__(self) -> list[bpy.types.Node]:
         for node in self.nodes:
             node.sun_disc = False
+        return self.nodes
 
     def __exit__(self, *_exception) -> None:
         for node in self.nodes:
             node.sun_disc = True
+
+
+class _Received:
+    """Within this context a world that looks to a camera as the given one does to diffuse surfaces: that one itself, or
+    a copy where the two differ."""
+
+    def __init__(self, world: bpy.types.World) -> None:
+        self.world = world
+        self.copies: list[bpy.types.ID] = []
+
+    def __enter__(self) -> bpy.types.World:
+        visibility = self.world.cycles_visibility
+        if visibility.camera and not _asks_for_the_ray(compat.shader_tree(self.world), set()):
+            return self.world
+        copy = self.world.copy()
+        self.copies.append(copy)
+        release(copy.cycles_visibility, "camera")
+        copy.cycles_visibility.camera = True
+        self._answer(compat.shader_tree(copy), {})
+        return copy
+
+    def __exit__(self, *_exception) -> None:
+        bpy.data.batch_remove(self.copies)
+
+    def _answer(
+        self, tree: bpy.types.NodeTree | None, known: dict[str, bpy.types.NodeTree]
+    ) -> None:
+        """Lets Light Path nodes speak of a diffuse ray; groups that hold some are copied. ``known``: by their names."""
+        for node in list(tree.nodes) if tree else ():
+            if node.bl_idname == "ShaderNodeGroup" and _asks_for_the_ray(node.node_tree, set()):
+                name = node.node_tree.name_full
+                if name not in known:
+                    known[name] = node.node_tree.copy()
+                    self.copies.append(known[name])
+                    self._answer(known[name], known)
+                node.node_tree = known[name]
+            elif node.bl_idname == "ShaderNodeLightPath":
+                for name in node.outputs.keys():
+                    if node.outputs[name].is_linked and name != _SAME_FOR_ALL_RAYS:
+                        answer = tree.nodes.new("ShaderNodeValue")
+                        answer.outputs[0].default_value = float(name in _DIFFUSE_RAY)
+                        feed_instead(tree, node, name, answer)
+
+
+def _asks_for_the_ray(tree: bpy.types.NodeTree | None, seen: set[int]) -> bool:
+    """True where a tree, or a group in it, has a Light Path node."""
+    if tree is None or tree.as_pointer() in seen:
+        return False
+    seen.add(tree.as_pointer())
+    return any(
+        node.bl_idname == "ShaderNodeLightPath"
+        or node.bl_idname == "ShaderNodeGroup"
+        and _asks_for_the_ray(node.node_tree, seen)
+        for node in tree.nodes
+    )
 
 
 class _Sky:
