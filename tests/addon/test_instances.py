@@ -188,6 +188,67 @@ def test_surfaces_that_are_nothing() -> None:
         assert np.array_equal(seen, ids_of(shot, out, 0)), make.__name__
 
 
+def shows_index(way: str):
+    """A material that shines as bright as a tenth of the object index."""
+    material = bpy.data.materials.new(way)
+    material.use_nodes = True
+    tree = material.node_tree
+    tree.nodes.clear()
+    shader, output = tree.nodes.new("ShaderNodeEmission"), tree.nodes.new(
+        "ShaderNodeOutputMaterial"
+    )
+    tree.links.new(shader.outputs[0], output.inputs["Surface"])
+    tenth = tree.nodes.new("ShaderNodeMath")
+    tenth.operation, tenth.inputs[1].default_value = "DIVIDE", 10.0
+    tree.links.new(tenth.outputs[0], shader.inputs["Strength"])
+    if way == "node":
+        source = tree.nodes.new("ShaderNodeObjectInfo").outputs["Object Index"]
+    elif way == "attribute":
+        node = tree.nodes.new("ShaderNodeAttribute")
+        node.attribute_type, node.attribute_name = "OBJECT", "pass_index"
+        source = node.outputs["Fac"]
+    else:
+        group = bpy.data.node_groups.new("Index", "ShaderNodeTree")
+        t.add_group_socket(group, "NodeSocketFloat", "Index", True)
+        inner = group.nodes.new("ShaderNodeObjectInfo").outputs["Object Index"]
+        group.links.new(inner, group.nodes.new("NodeGroupOutput").inputs[0])
+        node = tree.nodes.new("ShaderNodeGroup")
+        node.node_tree = group
+        source = node.outputs[0]
+    tree.links.new(source, tenth.inputs[0])
+    return material
+
+
+def test_materials_and_drivers_read_the_scenes_own_object_index() -> None:
+    """The export tells objects apart by other indices; nothing in the picture shows them."""
+    scene = t.new_scene(64, 36)
+    t.add_camera(scene)
+    expected = {}
+    for index, way in enumerate(("node", "attribute", "group")):
+        item = t.add_object(scene, way, None, (index * 1.2 - 1.8, 0, 0.5))
+        item.data.materials.append(shows_index(way))
+        item.pass_index, expected[way] = 7 - index, 0.7 - 0.1 * index
+    collection = source_collection("Tree", bpy.data.materials["node"])
+    collection.objects[0].pass_index, expected["Tree Part"] = 3, 0.3
+    place(scene, collection, "Instance", (1.8, 0, 0.5))
+    driven = t.add_object(scene, "Driven", None, (0, 0, -9))
+    material = t.diffuse("Black", (0, 0, 0))
+    driven.data.materials.append(material)
+    driver = driven.driver_add("location", 2).driver
+    driver.type = "AVERAGE"
+    target = driver.variables.new().targets[0]
+    target.id, target.data_path = bpy.data.objects["attribute"], "pass_index"
+    shot, out = exported("--frames", "1", "--passes", "object", "--lighting", "as-is")
+    color = t.read_part(os.path.join(out, shot["frames"][0]["file"]), "color")["R"]
+    ids = ids_of(shot, out, 0)
+    names = {name.split(" #")[0]: int(key) for key, name in shot["objects"].items()}
+    assert names.keys() == expected.keys(), names
+    for name, value in expected.items():
+        seen = color[ids == names[name]]
+        assert len(seen) > 20 and np.abs(seen - np.float32(value)).max() < 1e-6, (name, seen)
+    assert driven.matrix_world.translation.z == 6.0, driven.matrix_world
+
+
 if __name__ == "__main__":
     t.main(
         test_distinct_and_stable,
@@ -195,4 +256,5 @@ if __name__ == "__main__":
         test_through_cutouts,
         test_meshes_without_material,
         test_surfaces_that_are_nothing,
+        test_materials_and_drivers_read_the_scenes_own_object_index,
     )

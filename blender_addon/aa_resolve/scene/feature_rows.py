@@ -300,6 +300,14 @@ ROWS: tuple[Feature, ...] = (
         "environments and light",
         "textures:TextureReading",
     ),
+    Feature(
+        "file",
+        "Object Index in nodes and drivers",
+        HANDLED,
+        "the scene's own, though the export tells objects apart by another; where it is animated, which is noted, that of "
+        "the first frame",
+        "object_index:keep_own",
+    ),
     Feature("file", "more than 32767 objects", REFUSED, "Cycles tells no more apart", _REFUSE),
     Feature("file", "Eevee or another engine", NOTED, "Cycles renders", _REFUSE),
 )

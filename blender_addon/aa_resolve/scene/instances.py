@@ -17,6 +17,7 @@ import bpy
 import numpy as np
 
 from ..errors import SceneError
+from . import object_index
 from .instance_output import CHANNEL, add_output, give_every_mesh_a_material, override_material
 from .ownership import own
 from .rendering import Layers
@@ -34,6 +35,7 @@ class ObjectIds:
         self, scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer, tell_instances: bool
     ) -> None:
         self.notes: list[str] = []
+        object_index.keep_own()
         self.table: dict[int, str] = {0: ""}
         for index, item in enumerate(sorted(bpy.data.objects, key=lambda item: item.name_full), 1):
             own(item, pass_index=index)

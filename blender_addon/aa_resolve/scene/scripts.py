@@ -34,6 +34,13 @@ def notes_on_blocked() -> list[str]:
 
 def _python_drivers() -> Iterator[tuple[bpy.types.ID, bpy.types.FCurve]]:
     """Drivers whose expression needs Python, with the block that they are on."""
+    for block, curve in drivers():
+        if curve.driver.type == "SCRIPTED" and not curve.driver.is_simple_expression:
+            yield block, curve
+
+
+def drivers() -> Iterator[tuple[bpy.types.ID, bpy.types.FCurve]]:
+    """All drivers of the file, with the block that they are on."""
     for name in dir(bpy.data):
         blocks = getattr(bpy.data, name)
         if not isinstance(blocks, bpy.types.bpy_prop_collection):
@@ -42,8 +49,7 @@ def _python_drivers() -> Iterator[tuple[bpy.types.ID, bpy.types.FCurve]]:
             for owner in (block, getattr(block, "node_tree", None)):
                 animation = getattr(owner, "animation_data", None)
                 for curve in animation.drivers if animation else ():
-                    if curve.driver.type == "SCRIPTED" and not curve.driver.is_simple_expression:
-                        yield block, curve
+                    yield block, curve
 
 
 def foreign_handlers() -> list[Callable]:
