@@ -246,6 +246,15 @@ def id_kind(block: bpy.types.ID) -> str:
     return {"MetaBall": "META", "ParticleSettings": "PARTICLE"}.get(kind, kind.upper())
 
 
+def inputs_of_nodes(modifier: bpy.types.NodesModifier) -> list[object]:
+    """What geometry nodes are given by their modifier."""
+    if not hasattr(modifier, "properties"):
+        return [modifier[name] for name in modifier.keys()]
+    inputs = modifier.properties.inputs  # in 5.2
+    held = (getattr(inputs, known.identifier) for known in inputs.bl_rna.properties)
+    return [item.value for item in held if hasattr(item, "value")]
+
+
 def corner_normals(mesh: bpy.types.Mesh) -> np.ndarray:
     """L x 3: the normals that shade the corners of all polygons, with flat faces, sharp marks and custom normals."""
     normals = np.empty(3 * len(mesh.loops), np.float32)

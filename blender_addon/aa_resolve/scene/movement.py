@@ -12,18 +12,14 @@ from typing import Union
 
 import bpy
 from idprop.types import IDPropertyArray
+from mathutils import Matrix
 import numpy as np
 
+from .. import compat
 from . import camera as cam
+from .changing import may_move, pointed_at, unseen_change
 from .cuts import CameraCuts
-from .ownership import has_animation, is_animated_within
-from .scripts import foreign_handlers
 
-# Modifiers that can change a mesh although nothing in the file is keyed.
-_TIME_MODIFIERS = {
-    "CLOTH", "SOFT_BODY", "FLUID", "DYNAMIC_PAINT", "OCEAN", "WAVE", "BUILD", "EXPLODE", "PARTICLE_SYSTEM",
-    "PARTICLE_INSTANCE", "MESH_CACHE", "MESH_SEQUENCE_CACHE", "COLLISION",
-}  # fmt: skip
 _GEOMETRY_TYPES = {
     "MESH",
     "CURVE",
@@ -36,6 +32,13 @@ _GEOMETRY_TYPES = {
     "GPENCIL",
     "GREASEPENCIL",
 }
+_WITH_NORMALS = (
+    "DATA_TRANSFER",
+    "NODES",
+    "NORMAL_EDIT",
+    "WEIGHTED_NORMAL",
+)  # set shading apart from shape
+_STRANDS = 5000  # of a system of hair are looked at, at least, where it has as many
 _MESHES = ("MESH", "CURVE", "SURFACE", "META", "FONT")
 _POINTS = ("CURVES", "POINTCLOUD")  # their places are an attribute
 
@@ -63,113 +66,43 @@ class FrameState:
     instances: frozenset[tuple[str, int]] = frozenset()  # source and random id
 
 
-def _is_keyed(owner: bpy.types.ID | None) -> bool:
-    animation = owner.animation_data if owner is not None else None
-    return animation is not None and (
-        animation.action is not None or len(animation.drivers) > 0 or len(animation.nla_tracks) > 0
-    )
-
-
-def _uses_moving_images(tree: bpy.types.NodeTree) -> bool:
-    for node in tree.nodes:
-        image = getattr(node, "image", None)
-        if image is not None and image.source in ("MOVIE", "SEQUENCE"):
-            return True
-    return False
-
-
-def _shading_that_changes(scene: bpy.types.Scene) -> str | None:
-    """Name of the first thing that changes what neither places nor meshes tell: colours, volumes, nodes."""
-    for collection in (bpy.data.materials, bpy.data.lights, bpy.data.worlds):
-        for block in collection:
-            tree = getattr(block, "node_tree", None) if getattr(block, "use_nodes", False) else None
-            if _is_keyed(block) or (tree and (_is_keyed(tree) or _uses_moving_images(tree))):
-                return f"'{block.name}' is animated"
-    if has_animation(scene):  # exposure, film; not what the exporter has set itself
-        return f"a setting of scene '{scene.name}' is animated"
-    for volume in bpy.data.volumes:
-        if volume.is_sequence:
-            return f"volume '{volume.name}' is a sequence of files"
-    for group in bpy.data.node_groups:
-        if _is_keyed(group) or _uses_moving_images(group):
-            return f"node group '{group.name}' is animated"
-    for (
-        item
-    ) in bpy.data.objects:  # what the nodes write of instances, nobody but the renderer can read
-        for modifier in item.modifiers:
-            if modifier.type == "NODES" and modifier.node_group:
-                if _reads_time(modifier.node_group, set()) or is_animated_within(modifier):
-                    return f"the nodes of '{item.name}' are animated"
-    if any(settings.type == "EMITTER" for settings in bpy.data.particles):
-        for block in (*bpy.data.materials, *bpy.data.node_groups):
-            tree = block if isinstance(block, bpy.types.NodeTree) else block.node_tree
-            if tree and any(node.bl_idname == "ShaderNodeParticleInfo" for node in tree.nodes):
-                return f"'{block.name}' looks as old as its particles"
-    return None
-
-
-def _may_move(scene: bpy.types.Scene) -> bool:
-    """False when nothing in the file can depend on the frame: then no frame needs to be evaluated to know it."""
-    if scene.rigidbody_world is not None:
-        return True
-    if foreign_handlers():
-        return True
-    for name in (
-        "objects", "meshes", "curves", "armatures", "cameras", "lattices", "shape_keys", "metaballs", "scenes",
-        "hair_curves", "pointclouds", "volumes", "grease_pencils", "grease_pencils_v3",
-    ):  # fmt: skip
-        if any(_is_keyed(block) for block in getattr(bpy.data, name, ())):
-            return True
-    if len(bpy.data.cache_files):
-        return True
-    for item in bpy.data.objects:
-        if item.particle_systems or any(
-            modifier.type in _TIME_MODIFIERS for modifier in item.modifiers
-        ):
-            return True
-        for modifier in item.modifiers:
-            if (
-                modifier.type == "NODES"
-                and modifier.node_group
-                and _reads_time(modifier.node_group, set())
-            ):
-                return True
-    return False
-
-
-def _reads_time(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
-    if tree.name in seen:
-        return False
-    seen.add(tree.name)
-    return any(
-        node.bl_idname
-        in ("GeometryNodeInputSceneTime", "GeometryNodeSimulationInput", "GeometryNodeBake")
-        or (
-            node.bl_idname == "GeometryNodeGroup"
-            and node.node_tree
-            and _reads_time(node.node_tree, seen)
-        )
-        for node in tree.nodes
-    )
-
-
-def _picture_digest(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> bytes:
-    """Digest of every place and every vertex of the evaluated scene."""
+def _picture_digest(depsgraph: bpy.types.Depsgraph) -> bytes:
+    """Digest of every place and every vertex of the evaluated scene, and of what its nodes look at."""
     digest = hashlib.sha256()
     shapes: dict[tuple[str, int], bytes] = {}
-    for instance in depsgraph.object_instances:
-        item = instance.object
-        if item.type not in _GEOMETRY_TYPES and item.type not in ("LIGHT", "CAMERA", "EMPTY"):
-            continue
+    instancers: dict[str, bytes] = {}
+
+    def add(item: bpy.types.Object, place: Matrix) -> None:
         digest.update(item.name_full.encode())
-        digest.update(np.array(instance.matrix_world, np.float32).tobytes())
+        digest.update(np.array(place, np.float32).tobytes())
         digest.update(_appearance(item))
         if item.type in _GEOMETRY_TYPES:
             key = (item.name_full, item.data.as_pointer() if item.data else 0)
             if key not in shapes:
                 shapes[key] = _shape_digest(item)
             digest.update(shapes[key])
+
+    for instance in depsgraph.object_instances:
+        item, instancer = instance.object, instance.parent
+        if item.type in _GEOMETRY_TYPES or item.type in ("LIGHT", "CAMERA", "EMPTY"):
+            add(item, instance.matrix_world)
+        if instancer is not None and instancer.name_full not in instancers:
+            instancers[instancer.name_full] = _appearance(instancer)
+    for item in pointed_at():
+        seen = item.evaluated_get(depsgraph)
+        add(seen, seen.matrix_world)
+    for looks in instancers.values():
+        digest.update(looks)
     return digest.digest()
+
+
+def _made_volume(depsgraph: bpy.types.Depsgraph) -> str | None:
+    """Name of an object whose modifiers make a volume: of that nothing can be read."""
+    for instance in depsgraph.object_instances:
+        item = instance.object.original
+        if instance.object.type == "VOLUME" and (item.type != "VOLUME" or len(item.modifiers)):
+            return item.name
+    return None
 
 
 # What an object alone decides of how it looks.
@@ -233,6 +166,8 @@ def _shape_digest(item: bpy.types.Object) -> bytes:
         for layer in mesh.uv_layers:
             digest.update(_values(layer.data, "uv", np.float32, 2).tobytes())
         _add_attributes(digest, mesh)
+        if any(modifier.type in _WITH_NORMALS for modifier in item.modifiers):
+            digest.update(compat.corner_normals(mesh).tobytes())
         item.to_mesh_clear()
     if item.type in _POINTS:
         _add_attributes(digest, item.data)
@@ -240,7 +175,18 @@ def _shape_digest(item: bpy.types.Object) -> bytes:
         places = np.empty(len(system.particles) * 3, np.float32)
         system.particles.foreach_get("location", places)
         digest.update(places.tobytes())
+        if system.settings.type == "HAIR":
+            digest.update(_strands(item, system).tobytes())
     return digest.digest()
+
+
+def _strands(item: bpy.types.Object, system: bpy.types.ParticleSystem) -> np.ndarray:
+    """Points along the strands of hair; of very many along some, evenly chosen."""
+    strands = len(system.particles) + len(system.child_particles)
+    chosen = range(0, strands, max(1, strands // _STRANDS))
+    steps = range(2**system.settings.display_step + 1)
+    points = [system.co_hair(item, particle_no=which, step=k) for which in chosen for k in steps]
+    return np.array(points, np.float32)
 
 
 def frame_state(
@@ -297,19 +243,20 @@ def find_motion(
     scene: bpy.types.Scene, frames: list[int], frame: cam.Frame, cuts: CameraCuts
 ) -> Motion:
     """Whether the picture (camera, places, shapes, colours) is the same in all ``frames``."""
-    if len(frames) == 1:
-        return (
-            Motion(False, "one frame") if _may_move(scene) else Motion(True, "nothing is animated")
-        )
-    changing = _shading_that_changes(scene)
-    if changing:
-        return Motion(False, changing)
-    if not cuts.is_cut and not _may_move(scene):
+    moves, changing = may_move(scene), unseen_change(scene)
+    alone = len(frames) == 1
+    if not moves and not changing and (alone or not cuts.is_cut):
         return Motion(True, "nothing is animated")
+    if alone or changing:
+        return Motion(False, changing or "one frame")
     first: tuple[bytes, cam.CameraState] | None = None
     for number in frames:
         state = frame_state(scene, number, frame, cuts, details=False)
-        digest = _picture_digest(scene, bpy.context.evaluated_depsgraph_get())
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        made = _made_volume(depsgraph)
+        if made:
+            return Motion(False, f"the volume of '{made}' may change")
+        digest = _picture_digest(depsgraph)
         if first is None:
             first = digest, state.camera
         elif not cam.same_camera(first[1], state.camera):
