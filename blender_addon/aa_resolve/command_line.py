@@ -4,14 +4,13 @@
 from __future__ import annotations
 
 import argparse
-import hashlib
-import os
 
 import bpy
 
 from . import jitter, registry
 from .adding import settled
 from .errors import UsageError
+from .identity import scene_identity
 from .options import FlagParser, add_flags, check_spans, options_of
 from .passes.table import passes_named
 from .settings import Invocation, Settings
@@ -106,7 +105,7 @@ def _source(arguments: argparse.Namespace, stored: Stored | None) -> str:
     """The scene's identity; that of the shot where the user vouches for it."""
     if arguments.same_scene and stored:
         return stored.content["source"]
-    return arguments.source or file_identity(bpy.data.filepath)
+    return arguments.source or scene_identity()
 
 
 def _name_of(scene: bpy.types.Scene, arguments: argparse.Namespace, stored: Stored | None) -> str:
@@ -228,14 +227,3 @@ def _truth_frames(text: str, frames: list[int]) -> list[int]:
     if outside:
         raise UsageError(f"--truth-frames: frame {outside[0]} is not among --frames")
     return truth
-
-
-def file_identity(path: str) -> str:
-    """SHA-256 of the .blend, or ``unsaved`` for a scene without a file."""
-    if not path:
-        return "unsaved"
-    digest = hashlib.sha256()
-    with open(path, "rb") as file:
-        for block in iter(lambda: file.read(1 << 20), b""):
-            digest.update(block)
-    return digest.hexdigest()

@@ -28,6 +28,7 @@ from .command_line import build_parser, settings_from  # noqa: E402
 from .errors import Cancelled, UsageError, trace_of, way_out  # noqa: E402
 from .estimate import Estimate, estimate  # noqa: E402
 from .export import Exporter, Summary  # noqa: E402
+from .identity import scripts_before  # noqa: E402
 from .progress import Progress  # noqa: E402
 from .settings import Settings  # noqa: E402
 from .store import Store  # noqa: E402
@@ -57,6 +58,8 @@ def _export(arguments: argparse.Namespace, scene: bpy.types.Scene, progress: Pro
     interrupt.before_leaving(store.abandon)
     if not arguments.frames:
         _say_range(scene, progress)
+    if not (arguments.source or arguments.same_scene):
+        _say_scripts(progress)
     if arguments.plan:
         _say_plan(settings, store, progress)
         return
@@ -83,6 +86,16 @@ def _say_range(scene: bpy.types.Scene, progress: Progress) -> None:
             f"accumulate; --frames {first}-{last} takes them all"
         )
     progress.say("note", text, note=text)
+
+
+def _say_scripts(progress: Progress) -> None:
+    names = [script.name for script in scripts_before(sys.argv)]
+    if names:
+        text = (
+            f"note: the shot is of the file and of what {', '.join(names)} made of it: it is added to while all stay as "
+            "they are; of a script that does another thing each time, --source names the scene"
+        )
+        progress.say("note", text, note=text)
 
 
 def _say_plan(settings: Settings, store: Store, progress: Progress) -> None:

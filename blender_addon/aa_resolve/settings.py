@@ -350,10 +350,11 @@ class Settings:
     )
     source: str = option(
         "--source",
-        "identity of the scene, to notice changes (default: SHA-256 of the .blend)",
+        "identity of the scene, to notice changes (default: SHA-256 of the .blend and of the scripts that Blender's command "
+        "line names before the exporter); for a script that does another thing each time",
         default="",
         metavar="HASH",
-        changed="the .blend file",
+        changed="the .blend file, or a script that ran on it,",
         group="What to export",
     )
     same_scene: bool = option(

@@ -14,7 +14,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import support as t  # noqa: E402
 from support import bpy, np  # noqa: E402
 
-from aa_resolve import adding, store as storing  # noqa: E402
+from aa_resolve import adding, identity, store as storing  # noqa: E402
 from aa_resolve.command_line import build_parser, settings_from  # noqa: E402
 from aa_resolve.errors import UsageError  # noqa: E402
 
@@ -65,13 +65,19 @@ def opened() -> bpy.types.Scene:
     return bpy.context.scene
 
 
+def of_the_file(options: tuple[str, ...]) -> list[str]:
+    """Options for this process, in which a test ran on the scene, as for one in which nothing did."""
+    return ["--source", identity.file_identity(BLEND), *options]
+
+
 def exported(out: str, *options: str) -> dict:
     opened()
-    return t.export(out, *options)
+    return t.export(out, *of_the_file(options))
 
 
 def lacking(out: str, *options: str) -> adding.Missing:
-    settings = settings_from(build_parser().parse_args(["--out", out, *options]), opened())
+    words = ["--out", out, *of_the_file(options)]
+    settings = settings_from(build_parser().parse_args(words), opened())
     return adding.missing(settings, storing.Store(out, 1.0))
 
 
@@ -397,7 +403,7 @@ def test_what_makes_other_pictures_is_refused() -> None:
         (("--lighting", "as-is"), "--lighting was noise-free"),
         (("--jitter", "none"), "--jitter was halton23 and now is none"),
         (("--period", "8"), "--period was 16 and now is 8"),
-        (("--source", "another"), "the .blend file has changed"),
+        (("--source", "another"), "the .blend file, or a script that ran on it, has changed"),
     ):
         wish = ("--frames", "2-3", "--passes", "object", "--truth-frames", "none", *options)
         assert expected in (lacking(out, *wish).changed or ""), (options, lacking(out, *wish))

@@ -50,7 +50,7 @@ try:
     bpy.ops.aa_resolve.export()
     raise SystemExit("a changed file must not continue an old export")
 except RuntimeError as error:
-    assert "the .blend file has changed" in str(error), error
+    assert "the .blend file, or a script" in str(error), error
 settings.overwrite = True
 assert bpy.ops.aa_resolve.export() == {{"FINISHED"}}
 settings.overwrite = False

@@ -310,7 +310,7 @@ def test_a_saved_file_is_added_to() -> None:
         bpy.ops.aa_resolve.export()
         raise SystemExit("unasked, another file adds nothing")
     except RuntimeError as error:
-        assert "the .blend file has changed" in str(error) and "Error: '" in str(error), error
+        assert "the .blend file, or a script" in str(error) and "Error: '" in str(error), error
     shown.same_scene = True
     told = watch.look_now(scene).shot
     assert not told.refused and "to render: depth for 2 frames" in told.text, told

@@ -152,6 +152,55 @@ def test_exit_codes_of_the_process() -> None:
     assert digest(BLEND) == BEFORE
 
 
+def test_scripts_before_the_exporter_are_part_of_the_scene() -> None:
+    """Blender does not notice what a script changes: a shot goes on with the same one, and with no other."""
+    script, out = (os.path.join(FOLDER, name) for name in ("tweak.py", "tweaked"))
+    wish = ("--out", out, "--frames", "1", "--truth-frames", "none")
+
+    def run(energy: float | None, *options: str) -> subprocess.CompletedProcess:
+        command = t.blender_command(BLEND, *wish, *options)
+        if energy is not None:
+            with open(script, "w", encoding="utf-8") as file:
+                file.write(f"import bpy\nbpy.data.objects['Sun'].data.energy = {energy}\n")
+            place = command.index("--python-exit-code")
+            command[place:place] = ["-P", script]
+        return subprocess.run(command, capture_output=True, text=True, timeout=120)
+
+    first = run(2.0)
+    assert first.returncode == 0 and "tweak.py" in first.stdout, (first.stdout, first.stderr)
+    before = contents(out)
+    again = run(2.0)
+    assert again.returncode == 0 and "nothing to render" in again.stdout, (
+        again.stdout,
+        again.stderr,
+    )
+    for energy in (20.0, None):
+        other = run(energy, "--plan")
+        assert other.returncode == 2 and "a script that ran on it" in other.stderr, other.stderr
+    assert run(20.0, "--same-scene", "--plan").returncode == 0
+    assert contents(out) == before
+
+
+def test_what_counts_as_a_script_before() -> None:
+    from aa_resolve.identity import scripts_before
+
+    words = [
+        "blender",
+        "-b",
+        "a.blend",
+        "--python-expr",
+        "x = 1",
+        "--python-text",
+        "Text",
+        "-P",
+        BLEND,
+    ]
+    found = scripts_before([*words, "-P", t.HEADLESS, "-P", "/after.py", "--", "-P", "/no.py"])
+    assert [item.name for item in found] == ["--python-expr", "Text", "scene.blend"], found
+    assert found[0].content == b"x = 1" and len(found[2].content) == os.path.getsize(BLEND)
+    assert scripts_before(t.blender_command(BLEND, "-P", "x")) == []
+
+
 def ranged_blend(step: int) -> str:
     """The scene with a range of its own."""
     bpy.ops.wm.open_mainfile(filepath=BLEND)
@@ -426,6 +475,8 @@ if __name__ == "__main__":
     t.main(
         test_wrong_usage_is_2_and_one_line,
         test_exit_codes_of_the_process,
+        test_scripts_before_the_exporter_are_part_of_the_scene,
+        test_what_counts_as_a_script_before,
         test_without_frames_the_scene_decides,
         test_a_fault_is_one_line,
         test_kill_and_resume,

@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 
 import bpy
 
-from ..command_line import file_identity
+from ..identity import file_identity
 from ..options import as_labels
 from ..scene.simulations import link_caches
 from ..settings import Settings

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 import bpy
 
 from ..adding import missing
-from ..command_line import build_parser, file_identity, settings_from
+from ..command_line import build_parser, settings_from
 from ..errors import SceneError, UsageError
+from ..identity import file_identity
 from ..options import as_labels
 from ..settings import Settings
 from ..store import Store
