@@ -7,6 +7,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import wave
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import support as t  # noqa: E402
@@ -121,10 +122,54 @@ def test_linked_files_that_change_or_are_missing() -> None:
     assert "'picture.png' is missing" in lacking.stdout, lacking.stdout
 
 
+def test_files_that_no_render_reads() -> None:
+    """A picture that only an editor shows, a sound and what the sequencer plays may change, go, and come to be; a picture
+    is missed where a surface shows it."""
+    from aa_resolve.scene.linked import identity_of_linked, notes_on_missing
+
+    folder = t.temporary_folder()
+    looked, heard, worn = (os.path.join(folder, name) for name in ("a.png", "b.wav", "c.png"))
+
+    def write(path: str, value: int) -> None:
+        with open(path, "wb") as file, wave.open(file, "wb") as sound:
+            sound.setparams((1, 1, 8000, 0, "NONE", ""))
+            sound.writeframes(bytes([value]) * 800)
+
+    scene = t.new_scene(16, 9)
+    camera = t.add_camera(scene)
+    for path in (looked, heard, worn):
+        write(path, 10)
+    material = t.diffuse("Painted", (1, 1, 1))
+    node = material.node_tree.nodes.new("ShaderNodeTexImage")
+    node.image = bpy.data.images.load(worn)
+    plain = identity_of_linked()
+    bpy.data.images.load(looked).use_fake_user = True
+    assert identity_of_linked() == plain, "a picture that was opened for a look"
+    editor = scene.sequence_editor_create()
+    strips = (
+        editor.strips if hasattr(editor, "strips") else editor.sequences
+    )  # the latter before 5.0
+    strips.new_image("Shot", looked, 1, 1)
+    strips.new_sound("Sound", heard, 2, 1)
+    assert identity_of_linked() == plain, "strips of the sequencer"
+    for path in (looked, heard):
+        write(path, 20)
+    assert identity_of_linked() == plain
+    camera.data.background_images.new().image = bpy.data.images.load(looked)
+    for path in (looked, heard):
+        os.unlink(path)
+    assert notes_on_missing() == [], "no surface shows it"
+    write(worn, 20)
+    assert identity_of_linked() != plain, "what a render reads counts"
+    os.unlink(worn)
+    assert ["c.png" in note for note in notes_on_missing()] == [True]
+
+
 if __name__ == "__main__":
     t.main(
         test_a_fault_of_ours_is_one_line,
         test_a_traceback_on_demand,
         test_the_systems_faults,
         test_linked_files_that_change_or_are_missing,
+        test_files_that_no_render_reads,
     )

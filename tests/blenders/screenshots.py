@@ -15,11 +15,9 @@ card since 4.0.
 from __future__ import annotations
 
 import os
-import struct
 import sys
 import time
 import traceback
-import zlib
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import display  # noqa: E402
@@ -31,9 +29,9 @@ except ImportError:  # not in Blender yet
         raise SystemExit(__doc__) from None
     raise SystemExit(display.run(__file__, *[*sys.argv[1:], ""][:2])) from None
 
-import numpy as np  # noqa: E402
 from aa_resolve import panel  # noqa: E402
-from aa_resolve.panel import running  # noqa: E402
+from aa_resolve.panel import running, windows  # noqa: E402
+from pixels import screen, write_png  # noqa: E402
 
 FOLDER, PROGRAM = sys.argv[sys.argv.index("--") + 1 :]
 
@@ -65,34 +63,9 @@ def only_our_panels() -> None:
             kind.bl_options = {"DEFAULT_CLOSED"} if closed else set()
 
 
-def screen() -> np.ndarray:
-    """The display's pixels, H x W x 3 bytes, from the file that Xvfb keeps them in (an X window dump)."""
-    with open(os.path.join(FOLDER, "Xvfb_screen0"), "rb") as file:
-        content = file.read()
-    header = struct.unpack(">25I", content[:100])
-    size, width, height, stride, colors = (header[place] for place in (0, 4, 5, 12, 19))
-    pixels = np.frombuffer(content, np.uint8, stride * height, size + 12 * colors)
-    return pixels.reshape(height, stride // 4, 4)[:, :width, 2::-1]
-
-
-def write_png(path: str, pixels: np.ndarray) -> None:
-    """8-bit RGB."""
-    height, width = pixels.shape[:2]
-    rows = np.concatenate([np.zeros((height, 1), np.uint8), pixels.reshape(height, -1)], 1)
-    with open(path, "wb") as file:
-        file.write(b"\x89PNG\r\n\x1a\n")
-        for kind, body in (
-            (b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)),
-            (b"IDAT", zlib.compress(rows.tobytes(), 9)),
-            (b"IEND", b""),
-        ):
-            file.write(struct.pack(">I", len(body)) + kind + body)
-            file.write(struct.pack(">I", zlib.crc32(kind + body)))
-
-
 def picture(name: str, area: bpy.types.Area | None = None) -> None:
     """One PNG: of an area of the first window, or of all there is."""
-    pixels = screen()
+    pixels = screen(FOLDER)
     if area is not None:
         top = display.HEIGHT - window().y - area.y - area.height
         left = window().x + area.x
@@ -110,10 +83,13 @@ def settled():
         yield
 
 
-def close_other_windows() -> None:
-    for other in bpy.context.window_manager.windows[1:]:
-        with bpy.context.temp_override(window=other):
-            bpy.ops.wm.window_close()
+def shown():
+    """Until the window of a picture, which is another process's, is drawn."""
+    before = screen(FOLDER)
+    end = time.monotonic() + 60.0
+    while (screen(FOLDER) != before).mean() < 0.2 and time.monotonic() < end:
+        yield
+    yield from settled()
 
 
 def finished():
@@ -167,16 +143,17 @@ def steps():
         with bpy.context.temp_override(window=window(), area=area):
             bpy.ops.aa_resolve.compare("INVOKE_DEFAULT")
         yield from finished()
+        yield from shown()
         picture("4_sheet")
-        close_other_windows()
+        windows.stop()
         yield from settled()
         picture("5_results", area)
     with bpy.context.temp_override(window=window(), area=area):
         bpy.ops.aa_resolve.preview_light("INVOKE_DEFAULT")
     yield from finished()
-    yield from settled()
+    yield from shown()
     picture("6_light")
-    close_other_windows()
+    windows.stop()
     try:
         scene.render.engine = "BLENDER_EEVEE"
     except TypeError:  # its name in 4.2 to 4.5

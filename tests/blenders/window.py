@@ -26,8 +26,11 @@ except ImportError:  # not in Blender yet
         display.run(__file__, sys.argv[1], flags=("--enable-event-simulate",))
     ) from None
 
+import numpy as np  # noqa: E402
+import pixels  # noqa: E402
+
 FOLDER = sys.argv[sys.argv.index("--") + 1]
-PICTURE = os.path.join(display.ROOT, "docs", "hard_edges_sheet.jpg")
+PICTURE = os.path.join(FOLDER, "picture.png")
 _PATIENCE_SECONDS = 60
 
 
@@ -63,7 +66,7 @@ def begin_export() -> None:
 
 def steps():
     """The checks; each ``yield`` gives Blender time."""
-    from aa_resolve.panel import running, watch, windows
+    from aa_resolve.panel import running, watch
     from aa_resolve.panel.running import State
 
     settings = bpy.context.scene.aa_resolve
@@ -133,14 +136,40 @@ def steps():
     builtins.open, os.stat, os.path.exists = kept
     assert not read, read
 
+    yield from shows_pictures()
+
+
+def shows_pictures():
+    """In windows of which nothing is in the file."""
+    from aa_resolve.panel import windows
+
+    yield from shows((255, 0, 0))
+    first = windows._shown[PICTURE]
+    yield from shows((0, 255, 0))
+    assert windows._shown[PICTURE] is first and first.poll() is None, "the same window again"
+    assert len(bpy.context.window_manager.windows) == 1 and not bpy.data.is_dirty
+    assert not any(image.filepath == PICTURE for image in bpy.data.images)
+    windows.stop()
+    assert first.poll() is not None
+    yield from pause(0.5)
+    assert share_of((0, 255, 0)) < 0.01, "the window is closed"
+
+
+def shows(color: tuple[int, int, int]):
+    """A picture of one colour is written, shown and waited for."""
+    from aa_resolve.panel import windows
+
+    pixels.write_png(PICTURE, np.full((90, 160, 3), color, np.uint8))
     windows.show(PICTURE)
-    yield from pause(4.0)
-    shown = bpy.context.window_manager.windows[-1].screen.areas[0]
-    assert len(bpy.context.window_manager.windows) == 2 and shown.type == "IMAGE_EDITOR"
-    assert shown.spaces.active.image.name == "hard_edges_sheet.jpg"
-    windows.show(PICTURE)
-    yield from pause()
-    assert len(bpy.context.window_manager.windows) == 2, "the same window again"
+    end = time.monotonic() + _PATIENCE_SECONDS
+    while share_of(color) < 0.2 and time.monotonic() < end:
+        yield
+    assert share_of(color) > 0.2, color
+
+
+def share_of(color: tuple[int, int, int]) -> float:
+    """Of the display's pixels."""
+    return float((pixels.screen(FOLDER) == color).all(-1).mean())
 
 
 def main() -> None:

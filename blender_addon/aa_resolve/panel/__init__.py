@@ -6,7 +6,7 @@ from __future__ import annotations
 import bpy
 from bpy.props import PointerProperty, StringProperty
 
-from . import operators, panels, parameters, preferences, presets, running, watch
+from . import operators, panels, parameters, preferences, presets, running, watch, windows
 from .properties import AAResolveSettings
 
 _CLASSES = (
@@ -54,6 +54,7 @@ def unregister() -> None:
     """Ends a running job and takes everything away again."""
     running.stop()
     watch.stop()
+    windows.stop()
     preferences.stop()
     operators.remove_keys()
     del bpy.types.WindowManager.aa_resolve_search

@@ -1,67 +1,67 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A window of its own for a picture, which is fitted into it."""
+"""A window of its own for a picture.
+
+It belongs to a Blender of its own: a picture that an editor of this one shows, and that editor's window, are part of the
+user's file and would be saved with it."""
 
 from __future__ import annotations
 
+import os
+import subprocess
+
 import bpy
 
-# A new window gets its final size, and what is drawn in it the right place, only after it was drawn a first time.
-_FIT_SECONDS = (0.1, 0.4, 0.5, 1.0)
+_ROOM = os.path.dirname(os.path.abspath(__file__))
+_SCRIPT = os.path.join(_ROOM, "picture_window.py")
+_SHARE = 0.8  # of the main window's sides
+_shown: dict[str, subprocess.Popen] = {}
 
 
 def show(path: str) -> None:
-    """Loads a picture and shows it, in the window that shows it already or in a new one.
-
-    Without a window (``blender -b``) it is loaded only."""
-    image = bpy.data.images.load(path, check_existing=True)
-    image.reload()
+    """Shows a picture, in the window that shows it already or in a new one; nothing without a window (``blender -b``)."""
     if bpy.app.background:
         return
-    area = _area_with(image) or _new_area()
-    area.spaces.active.image = image
-    pauses = iter(_FIT_SECONDS[1:])
-    sizes: set[tuple[int, int]] = set()
-
-    def fit() -> float | None:
-        _fit(image, sizes)
-        return next(pauses, None)
-
-    bpy.app.timers.register(fit, first_interval=_FIT_SECONDS[0])
+    if not _renew(path):
+        _shown[path] = _open(path)
 
 
-def _windows() -> list[bpy.types.Window]:
-    return list(bpy.context.window_manager.windows)
+def _renew(path: str) -> bool:
+    """Lets the window of a picture read it again; False where there is none."""
+    known = _shown.get(path)
+    if known is None or known.poll() is not None:
+        return False
+    try:
+        known.stdin.write(b"\n")
+    except OSError:  # it is ending
+        return False
+    return True
 
 
-def _area_with(image: bpy.types.Image) -> bpy.types.Area | None:
-    for window in _windows():
-        for area in window.screen.areas:
-            if area.type == "IMAGE_EDITOR" and area.spaces.active.image == image:
-                return area
-    return None
+def _open(path: str) -> subprocess.Popen:
+    # What a Blender leaves of its last session lies in the folder for temporary files: not among the user's.
+    rooms = dict.fromkeys(("TMPDIR", "TEMP", "TMP"), bpy.app.tempdir)
+    command = [bpy.app.binary_path, "--factory-startup", "--window-geometry", *_geometry()]
+    return subprocess.Popen(
+        [*command, "-P", _SCRIPT, "--", path],
+        bufsize=0,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        env={**os.environ, **rooms},
+    )
 
 
-def _new_area() -> bpy.types.Area:
-    """An image editor alone in a new window."""
-    before = set(_windows())
-    with bpy.context.temp_override(window=next(iter(_windows()))):
-        bpy.ops.wm.window_new()
-    window = next(item for item in _windows() if item not in before)
-    area = max(window.screen.areas, key=lambda item: item.width * item.height)
-    area.type = "IMAGE_EDITOR"
-    return area
+def _geometry() -> list[str]:
+    """In the middle of the main window: x, y, width and height."""
+    window = next(iter(bpy.context.window_manager.windows))
+    border = (1.0 - _SHARE) / 2.0
+    x, y = window.x + border * window.width, window.y + border * window.height
+    return [str(round(value)) for value in (x, y, _SHARE * window.width, _SHARE * window.height)]
 
 
-def _fit(image: bpy.types.Image, sizes: set[tuple[int, int]]) -> None:
-    """Fits the picture where it is shown, again when that place has got another size (``sizes``: those it had)."""
-    for window in _windows():
-        for area in window.screen.areas:
-            if area.type != "IMAGE_EDITOR" or area.spaces.active.image != image:
-                continue
-            region = next(item for item in area.regions if item.type == "WINDOW")
-            size = region.width, region.height
-            if size not in sizes and min(size) > 1:
-                sizes.add(size)
-                with bpy.context.temp_override(window=window, area=area, region=region):
-                    bpy.ops.image.view_all(fit_view=True)
-            area.tag_redraw()
+def stop() -> None:
+    """Closes every window that was opened here."""
+    for known in _shown.values():
+        known.kill()  # it has nothing to lose
+        known.wait()
+    _shown.clear()

@@ -200,7 +200,8 @@ ROWS: tuple[Feature, ...] = (
         "file",
         "linked library, picture, cache",
         NOTED,
-        "a missing one is named; one that changes is noticed when an export goes on",
+        "a missing one is named; one that changes is noticed when an export goes on, but for sounds, strips of the "
+        "sequencer and pictures that only an editor shows",
         "linked:notes_on_missing",
     ),
     Feature(
