@@ -664,6 +664,34 @@ def test_cuts() -> None:
     ], "a gap drops the history"
 
 
+def test_cameras_of_an_excluded_collection() -> None:
+    """They look from where they are, first frame and all, as they do out of a collection that is shown."""
+
+    def found(kind: str, frames: str, excludes: bool) -> list:
+        scene, camera = stage()
+        other = t.add_camera(scene, (6, -5, 2))
+        other.data.type = kind
+        rig = t.add_object(scene, "Rig", bpy.data.armatures.new("Rig"))
+        other.parent = rig
+        t.key(rig, "location", {1: (0, 0, 0), 11: (0, 0, 4)})
+        helpers = bpy.data.collections.new("Helpers")
+        scene.collection.children.link(helpers)
+        for item in (other, rig):
+            scene.collection.objects.unlink(item)
+            helpers.objects.link(item)
+        scene.view_layers[0].layer_collection.children["Helpers"].exclude = excludes
+        for frame, bound in ((1, camera), (4, other)):
+            scene.timeline_markers.new(bound.name, frame=frame).camera = bound
+        shot = exported(os.path.join(t.temporary_folder(), "shot"), frames)
+        return [shot["static"], *(entry["camera"] for entry in shot["frames"])]
+
+    for kind in ("PERSP", "ORTHO"):
+        for frames in ("3-5", "4-5"):
+            shown = found(kind, frames, False)
+            assert found(kind, frames, True) == shown, (kind, frames)
+            assert not shown[0] and shown[-1] != shown[-2], "can fail"
+
+
 def resets(make, frames: str = "3-6") -> list[bool]:
     scene, camera = stage()
     make(scene, camera)
@@ -757,6 +785,7 @@ if __name__ == "__main__":
         test_hidden_before_is_invalid,
         test_changing_topology_is_invalid,
         test_cuts,
+        test_cameras_of_an_excluded_collection,
         test_jumps_of_the_camera,
         test_new_instances_are_invalid,
     )

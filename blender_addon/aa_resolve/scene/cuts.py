@@ -31,6 +31,14 @@ class CameraCuts:
         for marker in scene.timeline_markers:
             marker.camera = None
 
+    def bring_in(self, scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> None:
+        """Links the cameras that the view layer does not show, such as those of an excluded collection, to the scene's own
+        collection: what Blender does not evaluate has no place in a frame."""
+        for camera in {self._default, *(camera for _, camera in self._bound)} - {None}:
+            if not camera.visible_get(view_layer=view_layer):
+                if camera.name not in scene.collection.objects:
+                    scene.collection.objects.link(camera)
+
     @property
     def is_cut(self) -> bool:
         """True when more than one camera may appear."""
