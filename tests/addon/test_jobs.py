@@ -365,6 +365,34 @@ def test_two_scenes_have_two_shots() -> None:
     assert shot["resolution"] == [8, 8], shot["resolution"]
 
 
+def test_paint_that_is_not_saved_is_refused() -> None:
+    """The copy of the file holds an image as it was saved: what was painted since would be missing without a word."""
+    scene = moving_scene("painted.blend")
+    preferences()
+    paint, unused = (bpy.data.images.new(name, 4, 4) for name in ("Paint", "Elsewhere"))
+    for image in (paint, unused):
+        image.pixels = [1.0, 0.0, 0.0, 1.0] * 16
+        image.pack()
+    material = t.diffuse("Painted", (0.5, 0.5, 0.5))
+    node = material.node_tree.nodes.new("ShaderNodeTexImage")
+    node.image = paint
+    bpy.data.objects["Cube"].data.materials.append(material)
+    shown = scene.aa_resolve
+    shown.out, shown.first, shown.last, shown.truth = "//painted", 1, 1, "NONE"
+    bpy.ops.wm.save_mainfile()
+    for image in (paint, unused):
+        image.pixels = [0.0, 1.0, 0.0, 1.0] * 16
+    for start in (bpy.ops.aa_resolve.export, bpy.ops.aa_resolve.preview_light):
+        try:
+            start()
+            raise SystemExit("what is not saved must be named")
+        except RuntimeError as error:
+            assert "'Paint'" in str(error) and "Elsewhere" not in str(error), error
+    assert not os.path.exists(os.path.join(FOLDER, "painted"))
+    paint.pack()
+    assert bpy.ops.aa_resolve.export() == {"FINISHED"}
+
+
 def test_disk_caches_are_seen() -> None:
     """The copy that is exported finds the disk caches beside the original file, and removes nothing of them."""
     from aa_resolve.panel import job
@@ -392,5 +420,6 @@ if __name__ == "__main__":
         test_the_panel_says_what_a_shot_lacks,
         test_a_saved_file_is_added_to,
         test_two_scenes_have_two_shots,
+        test_paint_that_is_not_saved_is_refused,
         test_disk_caches_are_seen,
     )

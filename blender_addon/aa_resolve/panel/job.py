@@ -27,6 +27,7 @@ from ..settings import Settings
 _ROOM = os.path.dirname(os.path.abspath(__file__))
 HEADLESS = os.path.join(os.path.dirname(_ROOM), "headless.py")
 _NAME_OF_COPY = "scene"
+_SHOW_IMAGES = {"MATERIAL", "NODETREE", "WORLD", "LIGHT", "TEXTURE"}  # of Blender's kinds of data
 _PATIENCE_SECONDS = 1.0  # for a child that is asked to end
 
 
@@ -167,6 +168,15 @@ def _drain(stream, target) -> None:
     for line in stream:
         target(line)
     stream.close()
+
+
+def unsaved_images() -> list[str]:
+    """Names of images of the scene whose pixels a copy of the file lacks: they were painted and neither saved nor packed."""
+    painted = {image for image in bpy.data.images if image.is_dirty}
+    if not painted:
+        return []
+    users = bpy.data.user_map(subset=painted, value_types=_SHOW_IMAGES)
+    return sorted(image.name for image in painted if users[image])
 
 
 def copy_of_open_file() -> tuple[str, str]:

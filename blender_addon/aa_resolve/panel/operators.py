@@ -63,6 +63,15 @@ class JobOperator:
             self.report({"ERROR"}, running.why_no_folder(context.scene))
         return folder
 
+    def copy(self) -> tuple[str, str] | None:
+        """Folder and path of a copy of the open file; None after an error was reported."""
+        painted = job.unsaved_images()
+        if painted:
+            names = ", ".join(f"'{name}'" for name in painted)
+            self.report({"ERROR"}, f"Save what was painted first: {names} (Image > Save, or Pack)")
+            return None
+        return job.copy_of_open_file()
+
     def export_step(
         self, context, title: str, extra: list[str], out: str
     ) -> tuple[str, job.Step] | None:
@@ -72,7 +81,10 @@ class JobOperator:
             self.report({"ERROR"}, "Choose at least one method")
             return None
         identity = job.identity_of_open_file()
-        folder, blend = job.copy_of_open_file()
+        copy = self.copy()
+        if copy is None:
+            return None
+        folder, blend = copy
         options = [*settings.options(out), *extra]
         if identity:
             options += ["--source", identity]
@@ -159,7 +171,10 @@ class AA_RESOLVE_OT_preview_light(JobOperator, bpy.types.Operator):
 
     def make_job(self, context):
         scene = context.scene
-        folder, blend = job.copy_of_open_file()
+        copy = self.copy()
+        if copy is None:
+            return None
+        folder, blend = copy
         frame = str(scene.frame_current)
         looks = {"as-is": "The scene's own light", "noise-free": "No Noise"}
         steps, pictures = [], []
