@@ -12,6 +12,7 @@ import re
 import shutil
 import stat
 import subprocess
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from . import ADDON_VERSION
@@ -71,11 +72,12 @@ def problem(preferred: str = "") -> str:
     return ""
 
 
-def runnable(path: str, shot: str) -> list[str]:
-    """Methods that the program can run on a shot. Raises RuntimeError with the program's own words."""
+def why_not(path: str, shot: str, methods: Sequence[str] = ()) -> dict[str, str]:
+    """Of every method, or of those named with their parameters, why the program cannot run it on a shot; empty where it
+    can. Raises RuntimeError with the program's own words."""
     try:
         ended = subprocess.run(
-            [path, "list", "--shot", shot, "--json"],
+            [path, "list", *methods, "--shot", shot, "--json"],
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
@@ -87,7 +89,7 @@ def runnable(path: str, shot: str) -> list[str]:
         raise RuntimeError(f"{path}: {error}") from error
     if ended.returncode != 0:
         raise RuntimeError(ended.stderr.strip() or f"{path}: ended with code {ended.returncode}")
-    return [m["id"] for m in json.loads(ended.stdout)["methods"] if not m["whyNot"]]
+    return {method["id"]: method["whyNot"] for method in json.loads(ended.stdout)["methods"]}
 
 
 def look_again() -> None:

@@ -68,7 +68,11 @@ if words == ["--version"]:
     raise SystemExit
 with open({log!r}, "a") as file:
     file.write(json.dumps(words) + "\\n")
-if words[0] == "run":
+if words[0] == "list":
+    names = [word.partition(":")[0] for word in words[1 : words.index("--shot")]]
+    methods = [dict(id=name, whyNot="this shot moves" if name == "accum" else "") for name in names]
+    print(json.dumps(dict(methods=methods)))
+elif words[0] == "run":
     out = words[words.index("-o") + 1]
     os.makedirs(out, exist_ok=True)
     method = dict(text="noaa", title="No anti-aliasing", family="reference", pooled=dict(psnr=30.0))
@@ -136,6 +140,7 @@ def test_preferences_tell_missing_from_wrong() -> None:
 def test_compare_runs_the_chosen() -> None:
     """Export, run with the parameters of the panel, sheet and report; the ranking is there afterwards."""
     from aa_resolve.panel import watch
+    from aa_resolve.panel.running import State
 
     scene = moving_scene("compare.blend")
     wanted = preferences()
@@ -143,7 +148,7 @@ def test_compare_runs_the_chosen() -> None:
     log = os.path.join(t.temporary_folder(), "log")
     shown.out = os.path.join(FOLDER, "compared")
     shown.first, shown.last, shown.truth_samples = 1, 2, 2
-    shown.widgets_taaSimplest.set_k = 0.8
+    shown.widgets_taaSimplest.set_k, shown.method_accum = 0.8, True
     wanted.resolver = "/nowhere/aaresolve"
     try:
         bpy.ops.aa_resolve.compare()
@@ -155,12 +160,23 @@ def test_compare_runs_the_chosen() -> None:
     assert bpy.ops.aa_resolve.compare() == {"FINISHED"}
     with open(log, encoding="utf-8") as file:
         asked = [json.loads(line) for line in file]
-    assert [words[0] for words in asked] == ["run", "sheet", "report"], asked
-    assert asked[0][1] == shown.out and asked[0][2:6] == ["-m", "noaa", "-m", "taaSimplest:k=0.8"]
+    assert [words[0] for words in asked] == ["list", "run", "sheet", "report"], asked
+    assert set(asked[0][1:4]) == {"accum", "noaa", "taaSimplest:k=0.8"}, asked[0]
+    assert asked[0][4:] == ["--shot", shown.out, "--json"], asked[0]
+    assert asked[1][1] == shown.out and asked[1][2:6] == ["-m", "noaa", "-m", "taaSimplest:k=0.8"]
+    assert asked[1][6] == "-o" and State.result.endswith(
+        "; without accum (this shot moves)"
+    ), asked[1]
     facts = watch.look_now(scene)
     assert facts.outcome.best[0].text == "noaa" and len(facts.outcome.files) == 2, facts
     assert not bpy.data.images, "the sheet is shown beside the file, not in it"
     assert bpy.data.is_dirty == was_dirty, "the file is as it was, so that the export resumes"
+    shown.method_noaa = shown.method_taaSimplest = False
+    try:
+        bpy.ops.aa_resolve.compare()
+        raise AssertionError("without a method there is nothing to run")
+    except RuntimeError as error:
+        assert "No chosen method can run" in str(error) and "this shot moves" in str(error), error
 
 
 def test_a_stale_estimate_goes() -> None:

@@ -33,10 +33,11 @@ _PATIENCE_SECONDS = 1.0  # for a child that is asked to end
 
 @dataclass
 class Step:
-    """One command of a job, with the sentence that is shown while it runs."""
+    """One command of a job, with the sentence that is shown while it runs. What depends on the steps before is asked when
+    its turn comes, and raises RuntimeError where there is nothing to run."""
 
     title: str
-    command: list[str]
+    command: list[str] | Callable[[], list[str]]
 
 
 @dataclass
@@ -70,8 +71,13 @@ class Job:
         self.done = self.total = 0
         self._errors = []
         try:
+            command = step.command() if callable(step.command) else step.command
+        except RuntimeError as error:
+            self.error = str(error)
+            return
+        try:
             process = subprocess.Popen(
-                step.command,
+                command,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
@@ -80,7 +86,7 @@ class Job:
                 errors="replace",
             )
         except OSError as error:
-            self.error = f"{step.command[0]}: cannot be started: {error.strerror}"
+            self.error = f"{command[0]}: cannot be started: {error.strerror}"
             return
         self._process = process
         self._readers = [

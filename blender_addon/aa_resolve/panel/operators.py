@@ -10,6 +10,7 @@ import os
 import shutil
 import time
 import types
+from dataclasses import dataclass, field
 
 import bpy
 from bpy.props import BoolProperty
@@ -125,6 +126,30 @@ class AA_RESOLVE_OT_estimate(JobOperator, bpy.types.Operator):
         return job.Job([step[1]], step[0], finish)
 
 
+@dataclass
+class _Served:
+    """Those of the chosen methods that the exported shot can serve: whether it moves, say, is known only then."""
+
+    program: str
+    shot: str
+    texts: list[str]
+    left_out: dict[str, str] = field(default_factory=dict)  # method -> why
+
+    def words(self) -> list[str]:
+        """The methods as `run` takes them. Raises RuntimeError where there are none."""
+        answers = program.why_not(self.program, self.shot, self.texts)
+        self.left_out = {name: reason for name, reason in answers.items() if reason}
+        served = [text for text in self.texts if text.partition(":")[0] not in self.left_out]
+        if not served:
+            raise RuntimeError(f"No chosen method can run on this shot{self.without()}")
+        return [word for text in served for word in ("-m", text)]
+
+    def without(self) -> str:
+        """What was left out, as the end of a sentence."""
+        told = [f"{name} ({reason})" for name, reason in self.left_out.items()]
+        return f"; without {', '.join(told)}" if told else ""
+
+
 class AA_RESOLVE_OT_compare(JobOperator, bpy.types.Operator):
     """Export the shot, run the chosen methods on it and show the contact sheet"""
 
@@ -146,19 +171,20 @@ class AA_RESOLVE_OT_compare(JobOperator, bpy.types.Operator):
         results = running.results_folder(shot)
         sheet = os.path.join(results, "sheet.png")
         report = os.path.join(results, "report.html")
-        methods = [
-            word for text in context.scene.aa_resolve.method_texts() for word in ("-m", text)
-        ]
+        methods = _Served(found.path, shot, context.scene.aa_resolve.method_texts())
         steps = [
             step[1],
-            job.Step("Running the methods", [found.path, "run", shot, *methods, "-o", results]),
+            job.Step(
+                "Running the methods",
+                lambda: [found.path, "run", shot, *methods.words(), "-o", results],
+            ),
             job.Step("Making the contact sheet", [found.path, "sheet", results, "-o", sheet]),
             job.Step("Writing the report", [found.path, "report", results, "-o", report]),
         ]
 
         def finish(_finished: job.Job) -> str:
             windows.show(sheet)
-            return f"Results: {os.path.basename(results)}, beside the shot"
+            return f"Results: {os.path.basename(results)}, beside the shot{methods.without()}"
 
         return job.Job(steps, step[0], finish)
 

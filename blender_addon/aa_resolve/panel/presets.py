@@ -179,10 +179,11 @@ class AA_RESOLVE_OT_choose_set(bpy.types.Operator):
                 self.report({"ERROR"}, running.why_no_folder(context.scene))
                 return {"CANCELLED"}
             try:
-                chosen = program.runnable(found.path, shot)
+                answers = program.why_not(found.path, shot)
             except RuntimeError as error:
                 self.report({"ERROR"}, str(error))
                 return {"CANCELLED"}
+            chosen = [name for name, reason in answers.items() if not reason]
         for name in registry.load_methods():
             setattr(context.scene.aa_resolve, method_property(name), name in chosen)
         return {"FINISHED"}
