@@ -27,7 +27,7 @@ class Plan:
     cuts: CameraCuts
     passes_of: dict[str, set[str]]
     static: bool
-    cutout: str | None  # material through which rays pass or that displaces its surface
+    own_geometry: str | None  # material whose nodes decide what depth, normals or ids are
     positions: list[tuple[float, float]]  # of the sub-samples, pixels from centre + jitter, y down
     light: LightPlan
     ids: ObjectIds

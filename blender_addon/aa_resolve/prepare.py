@@ -59,15 +59,15 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) ->
     left_out = _drop_what_rests(passes_of, motion) if motion.static else []
     wanted = passes_of["frames"] | passes_of["centre"]
     passes = passes_named(wanted)
-    cutout = surfaces.has_cutouts()
+    own_geometry = surfaces.lost_under_override()
     if registry.reads_subsamples(wanted) and not are_shaded(passes):
-        if cutout is None:
+        if own_geometry is None:
             left_out.append(
-                "shading of sub-samples (override material: no cut-outs, no displacement)"
+                "shading of sub-samples (override material: no cut-outs, displacement or bump)"
             )
         else:
             notes.append(
-                f"sub-samples use the real materials: '{cutout}' has cut-outs or displacement"
+                f"sub-samples use the real materials: '{own_geometry}' has cut-outs, displacement or bump"
             )
     if any(item.from_meshes for item in passes):
         notes += surfaces.notes_on_edges()
@@ -97,7 +97,7 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) ->
         cuts,
         passes_of,
         motion.static,
-        cutout,
+        own_geometry,
         positions,
         light,
         ids,

@@ -175,10 +175,10 @@ def test_one_of_two_view_layers() -> None:
         assert "no layer 'Third'" in str(error), error
 
 
-def test_displacement_and_cutouts_reach_the_subsamples() -> None:
+def test_displacement_cutouts_and_bump_reach_the_subsamples() -> None:
     """grid1 has its one sub-sample where the frame has its own: the same geometry, to the bit, or the materials of
     the sub-samples are not those of the frame."""
-    for way in ("plain", "displaced", "cut out"):
+    for way in ("plain", "displaced", "cut out", "bumped"):
         scene = t.new_scene(48, 32)
         t.add_camera(scene, (0, -8, 3), (0, 0, 0))
         t.add_sun(scene)
@@ -215,6 +215,11 @@ def test_displacement_and_cutouts_reach_the_subsamples() -> None:
             tree.links.new(clear.outputs[0], mix.inputs[1])
             tree.links.new(output.inputs["Surface"].links[0].from_socket, mix.inputs[2])
             tree.links.new(mix.outputs[0], output.inputs["Surface"])
+        if way == "bumped":
+            bump = tree.nodes.new("ShaderNodeBump")
+            tree.links.new(checker.outputs["Fac"], bump.inputs["Height"])
+            shader = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeBsdfDiffuse")
+            tree.links.new(bump.outputs[0], shader.inputs["Normal"])
         shot, out = exported(
             "--frames", "1", "--truth-frames", "none", "--passes", "depth,normal,object,subsamples,edges",
             "--subsamples", "grid1",
@@ -225,6 +230,11 @@ def test_displacement_and_cutouts_reach_the_subsamples() -> None:
         assert np.array_equal(samples["s00.Z"], depth), way
         assert np.array_equal(samples["s00.id"], t.read_part(path, "object")["id"]), way
         assert (samples["mask"] == 1).all(), way
+        normal = t.stacked(t.read_part(path, "normal"), "N.X N.Y N.Z")
+        apart = np.abs(t.stacked(samples, "s00.N.X s00.N.Y s00.N.Z") - normal).max()
+        assert apart < 1e-6, (way, apart)
+        if way == "bumped":
+            assert (normal[..., 2] < 0.99).any(), "the bump bends normals of the flat ground"
         note = " ".join(shot["notes"])
         assert ("shading of sub-samples" in note) == (way == "plain"), note
         assert ("real materials" in note) == (way != "plain"), note
@@ -312,7 +322,7 @@ if __name__ == "__main__":
         test_halves_of_a_truth_share_no_sample,
         test_working_space_of_the_file,
         test_one_of_two_view_layers,
-        test_displacement_and_cutouts_reach_the_subsamples,
+        test_displacement_cutouts_and_bump_reach_the_subsamples,
         test_what_was_left_out_is_one_line,
         test_costs_of_every_pass,
         test_light_as_it_is,

@@ -4,7 +4,7 @@
 Sub-sample k lies at the pixel centre + the frame's jitter + position k, as a GPU jitters all samples of a pixel
 together; in frames at the pixel centres the jitter is 0. Both passes come from the same views and share one part.
 Where colour is not asked for, lights are off, and an override material without emission replaces all shading unless
-the scene has cut-outs or displacement, which an override would lose.
+the scene has cut-outs, displacement or bump, which an override would lose.
 """
 
 from __future__ import annotations
@@ -101,7 +101,7 @@ def render_geometry(
     rendering.request_passes(plan.view_layer, geometry)
     own_override = plan.view_layer.material_override
     with lighting.no_light(plan.light, plan.scene):
-        if plan.cutout is None:
+        if plan.own_geometry is None:
             plan.view_layer.material_override = plan.ids.override()
         try:
             return [views.render(plan.view_layer, plan.folder)]

@@ -303,6 +303,14 @@ ROWS: tuple[Feature, ...] = (
     ),
     Feature(
         "file",
+        "bump, normal map",
+        SHOWN,
+        "in the normals of frames and sub-samples alike; sub-samples then use the real materials, which is noted and takes "
+        "up to twice their time",
+        "surfaces:lost_under_override",
+    ),
+    Feature(
+        "file",
         "Object Index in nodes and drivers",
         HANDLED,
         "the scene's own, though the export tells objects apart by another; where it is animated, which is noted, that of "

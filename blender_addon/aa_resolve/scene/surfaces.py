@@ -9,14 +9,14 @@ from .. import compat
 from .ownership import is_animated
 
 
-def has_cutouts() -> str | None:
-    """Name of a material through which a camera ray can pass, or that moves the surface it is on; else None.
+def lost_under_override() -> str | None:
+    """Name of a material through which a camera ray can pass, or that moves or bends the surface it is on; else None.
 
-    Both are lost under an override material. Of whatever is used: nodes, view layers and instances give materials to
-    what has no slot for them, and what is hidden now may be seen later."""
+    All that is lost under an override material. Of whatever is used: nodes, view layers and instances give materials
+    to what has no slot for them, and what is hidden now may be seen later."""
     for material in bpy.data.materials:
         if material.users > int(material.use_fake_user) and compat.shader_tree(material):
-            if _is_see_through(material.node_tree, set()):
+            if _makes_geometry(material.node_tree, set()):
                 return material.name
     return None
 
@@ -29,12 +29,13 @@ _SEE_THROUGH = (
 )
 
 
-def _is_see_through(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
+def _makes_geometry(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
+    """True where the nodes may decide depth, normal or id of what is seen."""
     if tree.name in seen:
         return False
     seen.add(tree.name)
     for node in tree.nodes:
-        if node.bl_idname in _SEE_THROUGH:
+        if node.bl_idname in _SEE_THROUGH or _bends_normals(node):
             return True
         if node.bl_idname == "ShaderNodeBsdfPrincipled":
             alpha = node.inputs["Alpha"]
@@ -48,10 +49,17 @@ def _is_see_through(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
         if (
             node.bl_idname == "ShaderNodeGroup"
             and node.node_tree
-            and _is_see_through(node.node_tree, seen)
+            and _makes_geometry(node.node_tree, seen)
         ):
             return True
     return False
+
+
+def _bends_normals(node: bpy.types.Node) -> bool:
+    """True for a shader that gets a normal from nodes, such as Bump: the frame's normals show it."""
+    return any(socket.type == "SHADER" for socket in node.outputs) and any(
+        socket.is_linked and socket.name.endswith("Normal") for socket in node.inputs
+    )
 
 
 def notes_on_edges() -> list[str]:
