@@ -79,23 +79,23 @@ def _export(arguments: argparse.Namespace, scene: bpy.types.Scene, progress: Pro
 
 def _say_range(scene: bpy.types.Scene, progress: Progress) -> None:
     first, last, step = scene.frame_start, scene.frame_end, scene.frame_step
-    text = f"note: the scene's frames {first}-{last}"
+    text = f"the scene's frames {first}-{last}"
     if step > 1:
         text += (
             f" in its steps of {step}: no frame has the one before it, so every frame starts anew for methods that "
             f"accumulate; --frames {first}-{last} takes them all"
         )
-    progress.say("note", text, note=text)
+    progress.say("note", f"note: {text}", note=text)
 
 
 def _say_scripts(progress: Progress) -> None:
     names = [script.name for script in scripts_before(sys.argv)]
     if names:
         text = (
-            f"note: the shot is of the file and of what {', '.join(names)} made of it: it is added to while all stay as "
+            f"the shot is of the file and of what {', '.join(names)} made of it: it is added to while all stay as "
             "they are; of a script that does another thing each time, --source names the scene"
         )
-        progress.say("note", text, note=text)
+        progress.say("note", f"note: {text}", note=text)
 
 
 def _say_plan(settings: Settings, store: Store, progress: Progress) -> None:

@@ -253,6 +253,51 @@ def test_preview_shows_both_lights() -> None:
     assert right[row, column, 0] > right[row, column, 2] + 0.1, "the ambient of the panel"
 
 
+def test_python_runs_as_in_the_session() -> None:
+    """The child runs the file's Python where this Blender does, and what it notes is kept for the panel."""
+    from aa_resolve.panel import job
+    from aa_resolve.panel.running import State
+
+    preferences()
+    path = os.path.join(FOLDER, "driven.blend")
+
+    def allowed(expression: str, script: bool, trusted: bool) -> bool:
+        """Opens a file with a driver, and maybe a script; whether a child may run them."""
+        scene = t.new_scene(16, 9)
+        t.add_camera(scene)
+        t.add_sun(scene)
+        curve = t.add_object(scene, "Cube").driver_add("location", 0)
+        curve.driver.use_self, curve.driver.expression = True, expression
+        if script:
+            text = bpy.data.texts.new("helper.py")
+            text.write("import bpy")
+            text.use_module = True
+        t.save(scene, path)
+        bpy.ops.wm.open_mainfile(filepath=path, use_scripts=trusted)
+        bpy.context.scene.frame_set(1)
+        shown = bpy.context.scene.aa_resolve
+        shown.out, shown.overwrite = os.path.join(FOLDER, "driven"), True
+        shown.first, shown.last, shown.truth = 1, 2, "NONE"
+        return "--enable-autoexec" in job.script_command(path, "x.py", [])
+
+    def notes() -> str:
+        assert bpy.ops.aa_resolve.export() == {"FINISHED"}
+        return "; ".join(State.notes)
+
+    needs_permission = "0 * self.scale.x + frame / 5"
+    assert not allowed(needs_permission, False, False) and "not allowed to run" in notes()
+    assert allowed(needs_permission, False, True) and "not allowed" not in notes(), State.notes
+    out = bpy.context.scene.aa_resolve.out
+    assert not t.read_manifest(out)["static"], "it moves as in the session"
+    assert allowed("frame / 5", True, True) and not allowed("frame / 5", True, False)
+    for harmless in ("frame / 5", "[frame, 2][0]", "sum([frame])"):
+        for trusted in (False, True):
+            assert not allowed(harmless, False, trusted), "nothing shows that the user trusts it"
+    bpy.context.preferences.filepaths.use_scripts_auto_execute = True
+    assert "--enable-autoexec" in job.script_command(path, "x.py", [])
+    bpy.context.preferences.filepaths.use_scripts_auto_execute = False
+
+
 def test_cancel_stops_and_says_so() -> None:
     """What the Cancel button does; Esc while an animation plays, or beside the Render tab, is let through."""
     from aa_resolve.panel import job, running
@@ -432,6 +477,7 @@ if __name__ == "__main__":
         test_compare_runs_the_chosen,
         test_a_stale_estimate_goes,
         test_preview_shows_both_lights,
+        test_python_runs_as_in_the_session,
         test_cancel_stops_and_says_so,
         test_the_panel_says_what_a_shot_lacks,
         test_a_saved_file_is_added_to,

@@ -167,8 +167,8 @@ settings.truth_samples, settings.method_fxaa311 = 4, True
 assert bpy.ops.aa_resolve.compare() == {{"FINISHED"}}, running.State.result
 best = watch.look_now(bpy.context.scene).outcome.best
 assert best and best[0].gain is not None, best
-sheet = [image for image in bpy.data.images if image.name.startswith("sheet")]
-assert sheet and sheet[0].size[0] > 96, list(bpy.data.images)
+sheet = bpy.data.images.load({str(shot)!r} + "_results/sheet.png")
+assert sheet.size[0] > 96, sheet.size[:]
 assert bpy.ops.aa_resolve.open_report.poll()
 for kind in ("TAA", "EVERYTHING"):  # no chosen method refuses a shot that moves
     bpy.ops.aa_resolve.use_preset(kind=kind)

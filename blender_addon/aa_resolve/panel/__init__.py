@@ -29,6 +29,7 @@ _CLASSES = (
     presets.AA_RESOLVE_MT_presets,
     presets.AA_RESOLVE_OT_add_preset,
     panels.AA_RESOLVE_PT_main,
+    panels.AA_RESOLVE_PT_notes,
     panels.AA_RESOLVE_PT_results,
     panels.AA_RESOLVE_PT_methods,
     *panels.FAMILY_PANELS,

@@ -23,6 +23,7 @@ from ..identity import file_identity
 from ..options import as_labels
 from ..scene.simulations import link_caches
 from ..settings import Settings
+from . import trust
 
 _ROOM = os.path.dirname(os.path.abspath(__file__))
 HEADLESS = os.path.join(os.path.dirname(_ROOM), "headless.py")
@@ -144,7 +145,7 @@ class Job:
             self.done += 1
             self.total = self.done + event["remaining"]
         if kind == "note":
-            self.notes.append(event["note"])
+            self.notes.append(as_labels(event["note"], Settings))
         if "text" in event:
             self.message = event["text"]
 
@@ -217,7 +218,7 @@ def identity_of_open_file() -> str | None:
 def script_command(blend: str, script: str, words: list[str]) -> list[str]:
     """Command line of a child that opens ``blend`` and runs a script of the add-on."""
     command = [bpy.app.binary_path, "-b"]
-    if bpy.context.preferences.filepaths.use_scripts_auto_execute:
+    if trust.runs_scripts():
         command.append("--enable-autoexec")
     return [*command, blend, "--python-exit-code", "9", "-P", script, "--", *words]
 

@@ -112,6 +112,19 @@ def _draw_program(layout, context) -> None:
         box.operator(AA_RESOLVE_OT_preferences.bl_idname, icon="PREFERENCES")
 
 
+class AA_RESOLVE_PT_notes(_Panel, bpy.types.Panel):
+    bl_label = "Notes of the Export"
+    bl_parent_id = "AA_RESOLVE_PT_main"
+
+    @classmethod
+    def poll(cls, _context) -> bool:
+        return bool(State.notes)
+
+    def draw(self, context) -> None:
+        for note in State.notes:
+            draw_text(self.layout, context, note, icon="DOT")
+
+
 class AA_RESOLVE_PT_results(_Panel, bpy.types.Panel):
     bl_label = "Results"
     bl_parent_id = "AA_RESOLVE_PT_main"

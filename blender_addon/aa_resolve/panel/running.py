@@ -21,6 +21,7 @@ class State:
     running: Job | None = None
     result: str = ""
     failed: bool = False  # the result is an error
+    notes: tuple[str, ...] = ()  # of the last export
     playing: bool = False  # an animation was being played when the timer looked last
     estimate: str = ""
     estimate_for: tuple = ()  # what the estimate holds for: watch.wish_of
@@ -29,7 +30,7 @@ class State:
 def begin(job: Job) -> None:
     """Starts a job; the window stays free."""
     State.running = job
-    State.result, State.failed = "", False
+    State.result, State.failed, State.notes = "", False, ()
     job.start()
     if not bpy.app.timers.is_registered(_tick):
         bpy.app.timers.register(_tick, first_interval=_TIMER_SECONDS, persistent=True)
@@ -37,7 +38,7 @@ def begin(job: Job) -> None:
 
 def wait(job: Job, pause) -> None:
     """Runs a job to its end; ``pause`` is called between two looks at it."""
-    State.result, State.failed = "", False
+    State.result, State.failed, State.notes = "", False, ()
     job.start()
     while job.poll():
         pause()
@@ -76,6 +77,7 @@ def _tick() -> float | None:
 
 def _take_result(job: Job) -> None:
     State.result, State.failed = job.error or job.message, bool(job.error)
+    State.notes = tuple(dict.fromkeys(job.notes))
 
 
 def stop() -> None:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import bpy
 
 from ..scene.light_sources import noise_causes
-from . import look, outcome, running, shot
+from . import look, outcome, running, shot, trust
 from .running import State
 
 _PERIOD_SECONDS = 0.5
@@ -125,8 +125,9 @@ def forget(*_file) -> None:
     _known.clear()
     _wishes.clear()
     State.estimate = ""
+    trust.look_at_file()
     if State.running is None:
-        State.result, State.failed = "", False
+        State.result, State.failed, State.notes = "", False, ()
 
 
 def start() -> None:

@@ -16,7 +16,7 @@ def notes_on_blocked() -> list[str]:
     """Sentences about drivers and texts that this Blender was not allowed to run: what they move rests."""
     if not bpy.app.autoexec_fail:
         return []
-    blocked = sorted({f"{block.name}.{driver.data_path}" for block, driver in _python_drivers()})
+    blocked = sorted({f"{block.name}.{driver.data_path}" for block, driver in python_drivers()})
     texts = sorted(text.name for text in bpy.data.texts if text.use_module)
     told = []
     if blocked:
@@ -32,7 +32,7 @@ def notes_on_blocked() -> list[str]:
     return told
 
 
-def _python_drivers() -> Iterator[tuple[bpy.types.ID, bpy.types.FCurve]]:
+def python_drivers() -> Iterator[tuple[bpy.types.ID, bpy.types.FCurve]]:
     """Drivers whose expression needs Python, with the block that they are on."""
     for block, curve in drivers():
         if curve.driver.type == "SCRIPTED" and not curve.driver.is_simple_expression:
