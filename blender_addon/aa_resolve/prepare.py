@@ -53,6 +53,7 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) ->
         _refuse_other_than_perspective(cuts, settings.frames)
     notes += render_levels.show_what_renders(scene, view_layer)
     cuts.bring_in(scene, view_layer)
+    notes += cuts.readers.notes()
     notes += simulations.run(scene, settings.frames)
     motion = movement.find_motion(scene, settings.frames, frame, cuts)
     passes_of = {"frames": set(settings.passes), "centre": set(settings.centre_passes)}

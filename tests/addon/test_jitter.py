@@ -317,6 +317,118 @@ def test_sequences() -> None:
         assert name == "d3d16" or np.allclose(np.mean(positions, axis=0), 0.0), name
 
 
+def following_cube():
+    """A cube under a sun that rises and falls with what is made to move it, and a camera that does."""
+    scene = t.new_scene(48, 32)
+    camera = t.add_camera(scene)
+    t.add_sun(scene)
+    t.key(camera, "location", {1: (-1.0, -8.0, 1.0), 5: (1.0, -8.0, 1.6)})
+    item = t.add_object(scene, "Cube")
+    item.data.materials.append(t.diffuse("Colour", (0.5, 0.5, 0.5)))
+    return scene, camera, item
+
+
+def variable_on(item, axis: int) -> bpy.types.DriverVariable:
+    driver = item.driver_add("location", axis).driver
+    driver.expression = "place"
+    variable = driver.variables.new()
+    variable.name = "place"
+    return variable
+
+
+def by_driver(active: bool) -> None:
+    scene, camera, item = following_cube()
+    target = variable_on(item, 0).targets[0]
+    target.id_type = "SCENE" if active else "OBJECT"
+    target.id = scene if active else camera
+    target.data_path = "camera.location[0]" if active else "location[0]"
+    camera["height"] = 1.0
+    target = variable_on(item, 2).targets[0]
+    target.id_type = "SCENE" if active else "OBJECT"
+    target.id = scene if active else camera
+    target.data_path = 'camera["height"]' if active else '["height"]'
+
+
+def by_driver_of_the_context(active: bool) -> None:
+    by_driver(False)
+    if active and bpy.app.version >= (4, 0, 0):
+        item = bpy.data.objects["Cube"]
+        item.driver_remove("location", 0)
+        variable = variable_on(item, 0)
+        variable.type = "CONTEXT_PROP"
+        variable.targets[0].context_property = "ACTIVE_SCENE"
+        variable.targets[0].data_path = "camera.location[0]"
+
+
+def by_tracking(active: bool) -> None:
+    _, camera, item = following_cube()
+    path = os.path.join(t.temporary_folder(), "clip.png")
+    image = bpy.data.images.new("Clip", 48, 32)
+    image.filepath_raw, image.file_format = path, "PNG"
+    image.save()
+    clip = bpy.data.movieclips.load(path)
+    clip.tracking.tracks.new(name="Track", frame=1).markers.insert_frame(1, co=(0.6, 0.5))
+    constraint = item.constraints.new("FOLLOW_TRACK")
+    constraint.use_active_clip = constraint.use_3d_position = False
+    constraint.clip, constraint.track = clip, "Track"
+    constraint.camera = None if active else camera
+
+
+def by_nodes(active: bool) -> None:
+    _, camera, item = following_cube()
+    tree = t.geometry_group("Follow")
+    move, info = tree.nodes.new("GeometryNodeTransform"), tree.nodes.new("GeometryNodeObjectInfo")
+    known = hasattr(bpy.types, "GeometryNodeInputActiveCamera")  # since 4.1
+    if active and known:
+        node = tree.nodes.new("GeometryNodeInputActiveCamera")
+        tree.links.new(node.outputs[0], info.inputs["Object"])
+    else:
+        info.inputs["Object"].default_value = camera
+    lift = tree.nodes.new("ShaderNodeVectorMath")
+    lift.inputs[1].default_value = (0.0, 8.0, 0.0)
+    tree.links.new(info.outputs["Location"], lift.inputs[0])
+    tree.links.new(lift.outputs[0], move.inputs["Translation"])
+    tree.links.new(tree.nodes["Start"].outputs[0], move.inputs["Geometry"])
+    tree.links.new(move.outputs[0], tree.nodes["End"].inputs[0])
+    item.modifiers.new("Follow", "NODES").node_group = tree
+
+
+def test_what_reads_the_active_camera() -> None:
+    """It finds the scene's own, as what names that one does: neither its place nor its shift is the jittered one's."""
+
+    def found(build, active: bool) -> list[np.ndarray]:
+        build(active)
+        out = os.path.join(t.temporary_folder(), "shot")
+        options = ("--passes", "depth,motion", "--truth-frames", "none")
+        shot = t.export(out, "--frames", "2-4", *options)
+        assert not shot["static"], build.__name__
+        return [
+            plane
+            for entry in shot["frames"]
+            for part in ("depth", "motion")
+            for plane in t.read_part(os.path.join(out, entry["file"]), part).values()
+        ]
+
+    for build in (by_driver, by_driver_of_the_context, by_tracking, by_nodes):
+        for one, other in zip(found(build, True), found(build, False)):
+            assert np.allclose(one, other, atol=1e-5), build.__name__
+
+
+def test_the_active_camera_of_a_cut() -> None:
+    """What reads it follows the markers; what reads it by Python is named."""
+    scene, first, item = following_cube()
+    second = t.add_camera(scene, (2.0, -7.0, 1.0))
+    for frame, camera in ((1, first), (3, second)):
+        scene.timeline_markers.new(camera.name, frame=frame).camera = camera
+    target = variable_on(item, 0).targets[0]
+    target.id_type, target.id, target.data_path = "SCENE", scene, "camera.location[0]"
+    item.driver_add("location", 2).driver.expression = "0.5 if bpy.context.scene.camera else 0.0"
+    out = os.path.join(t.temporary_folder(), "shot")
+    shot = t.export(out, "--frames", "2-3", "--passes", "depth", "--truth-frames", "none")
+    assert any("Cube.location" in n and "active camera" in n for n in shot["notes"]), shot["notes"]
+    assert abs(item.matrix_world.translation.x - 2.0) < 1e-5, item.matrix_world
+
+
 if __name__ == "__main__":
     t.main(
         test_sequences,
@@ -327,4 +439,6 @@ if __name__ == "__main__":
         test_existing_shift_and_percentage,
         test_keyed_shift_and_lens,
         test_all_fits_sizes_and_kinds,
+        test_what_reads_the_active_camera,
+        test_the_active_camera_of_a_cut,
     )

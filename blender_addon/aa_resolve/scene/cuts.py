@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 from ..errors import SceneError
+from .active_camera import CameraReaders
 from .camera import CameraState, Frame, same_camera, sample_positions, unproject
 
 
@@ -30,6 +31,7 @@ class CameraCuts:
         )
         for marker in scene.timeline_markers:
             marker.camera = None
+        self.readers = CameraReaders(scene)
 
     def bring_in(self, scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> None:
         """Links the cameras that the view layer does not show, such as those of an excluded collection, to the scene's own
@@ -52,6 +54,12 @@ class CameraCuts:
             raise SceneError(
                 "the scene has no camera: set one as active, or bind cameras to markers"
             )
+        return chosen
+
+    def turn_to(self, frame: int) -> bpy.types.Object:
+        """The camera of a frame, which from now on is the active one for all that reads it."""
+        chosen = self.at(frame)
+        self.readers.show(chosen)
         return chosen
 
 

@@ -225,6 +225,13 @@ ROWS: tuple[Feature, ...] = (
         "looks from its marker on, unless it is hidden in renders",
         "cuts:CameraCuts",
     ),
+    Feature(
+        "file",
+        "driver, constraint or node that reads the scene's camera",
+        HANDLED,
+        "it reads the user's, not the jittered one; Python in a driver that does is noted",
+        "active_camera:CameraReaders",
+    ),
     Feature("file", "several view layers", REFUSED, "until --view-layer chooses one", _REFUSE),
     Feature(
         "file",

@@ -194,7 +194,7 @@ def frame_state(
 ) -> FrameState:
     """Evaluates a frame. ``details`` adds hidden objects, vertex counts and instances, by which wrong motion is
     found."""
-    chosen = cuts.at(frame_number)
+    chosen = cuts.turn_to(frame_number)
     scene.frame_set(frame_number)
     depsgraph = bpy.context.evaluated_depsgraph_get()
     state = FrameState(cam.camera_state(chosen, frame, depsgraph), chosen.name)

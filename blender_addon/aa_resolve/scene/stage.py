@@ -64,7 +64,7 @@ class Stage:
         movement: tuple[float, float] = (0.0, 0.0),
     ) -> None:
         """Gives the scene the frame's jittered camera; both in pixels, y down, as JitterCamera.aim takes them."""
-        source = self.cuts.at(number)
+        source = self.cuts.turn_to(number)
         if source.name_full not in self._cameras:
             self._cameras[source.name_full] = JitterCamera(self.scene, source, "AA Resolve Camera")
         camera = self._cameras[source.name_full]
