@@ -121,17 +121,25 @@ def test_through_cutouts() -> None:
 
 
 def test_meshes_without_material() -> None:
-    """Cycles' default surface has no nodes; instances of it are told apart all the same."""
-    scene = t.new_scene(48, 27)
-    t.add_camera(scene)
-    t.add_sun(scene)
-    collection = source_collection("Bare")
-    for index in range(3):
-        place(scene, collection, f"Instance {index}", (index - 1.0, 0, 0.5))
-    shot, out = exported("--frames", "1", "--passes", "object")
-    assert len(shot["objects"]) == 3
-    color = t.read_part(os.path.join(out, "frames/000001.exr"), "color")
-    assert color["R"].max() > 0.3, "and it still looks like a surface"
+    """Cycles' default surface has no nodes; instances of it are told apart all the same, linked ones too."""
+    library = os.path.join(t.temporary_folder(), "library.blend")
+    for linked in (False, True):
+        scene = t.new_scene(48, 27)
+        t.add_camera(scene)
+        t.add_sun(scene)
+        if linked:
+            with bpy.data.libraries.load(library, link=True) as (_, wanted):
+                wanted.collections = ["Bare"]
+            (collection,) = wanted.collections
+        else:
+            collection = source_collection("Bare")
+            bpy.data.libraries.write(library, {collection})
+        for index in range(3):
+            place(scene, collection, f"Instance {index}", (index - 1.0, 0, 0.5))
+        shot, out = exported("--frames", "1", "--passes", "object")
+        assert len(shot["objects"]) == 3, (linked, shot["objects"])
+        color = t.read_part(os.path.join(out, "frames/000001.exr"), "color")
+        assert color["R"].max() > 0.3, "and it still looks like a surface"
 
 
 def test_surfaces_that_are_nothing() -> None:
@@ -144,6 +152,31 @@ def test_surfaces_that_are_nothing() -> None:
 
     def nothing(tree, output):
         pass
+
+    def without_output(tree, output):
+        tree.nodes.remove(output)
+
+    def for_another_renderer(tree, output):
+        output.target = "EEVEE"
+        tree.links.new(tree.nodes.new("ShaderNodeBsdfDiffuse").outputs[0], output.inputs["Surface"])
+
+    def muted(tree, output):
+        shader = tree.nodes.new("ShaderNodeBsdfDiffuse")
+        tree.links.new(shader.outputs[0], output.inputs["Surface"])
+        shader.mute = True
+
+    def muted_hole(tree, output):
+        """Of two shaders the muted mixture hands on the first."""
+        mix = tree.nodes.new("ShaderNodeMixShader")
+        mix.inputs[0].default_value = 1.0
+        tree.links.new(tree.nodes.new("ShaderNodeBsdfDiffuse").outputs[0], mix.inputs[1])
+        tree.links.new(tree.nodes.new("ShaderNodeBsdfTransparent").outputs[0], mix.inputs[2])
+        tree.links.new(mix.outputs[0], output.inputs["Surface"])
+        mix.mute = True
+
+    def muted_link(tree, output):
+        shader = tree.nodes.new("ShaderNodeBsdfTransparent")
+        tree.links.new(shader.outputs[0], output.inputs["Surface"]).is_muted = True
 
     def mixed_with_nothing(tree, output):
         mix = tree.nodes.new("ShaderNodeMixShader")
@@ -158,7 +191,17 @@ def test_surfaces_that_are_nothing() -> None:
         tree.links.new(tree.nodes.new("ShaderNodeEmission").outputs[0], both.inputs[1])
         tree.links.new(both.outputs[0], output.inputs["Surface"])
 
-    for make in (unlit, nothing, mixed_with_nothing, glowing_gas):
+    surfaces = (
+        unlit,
+        nothing,
+        without_output,
+        for_another_renderer,
+        muted,
+        muted_hole,
+        muted_link,
+        mixed_with_nothing,
+    )
+    for make in (*surfaces, glowing_gas):
         scene = t.new_scene(48, 27)
         t.add_camera(scene, (0, -8, 0), (0, 0, 0))
         material = bpy.data.materials.new("Special")

@@ -35,7 +35,7 @@ def give_every_mesh_a_material() -> None:
     """Cycles' default surface has no nodes to put an output in; this is what it looks like."""
     plain: bpy.types.Material | None = None
     for mesh in list(bpy.data.meshes) + list(bpy.data.curves) + list(bpy.data.metaballs):
-        if mesh.library is None and not any(mesh.materials):
+        if not any(mesh.materials):
             if plain is None:
                 plain = bpy.data.materials.new("AA Resolve Plain")
                 plain.diffuse_color = (0.8, 0.8, 0.8, 1.0)
@@ -62,13 +62,16 @@ def add_output(material: bpy.types.Material) -> bool:
     if any(node.bl_idname == "ShaderNodeOutputAOV" and node.name == CHANNEL for node in tree.nodes):
         return True
     output = tree.get_output_node("CYCLES")
+    if output is None:  # nothing for Cycles, but perhaps for Eevee: a black surface
+        output = tree.nodes.new("ShaderNodeOutputMaterial")
+        output.target = "CYCLES"
     opacity: Value = 1.0
-    if output is not None and output.inputs["Surface"].is_linked:
-        followed = _opacity(tree, output.inputs["Surface"].links[0].from_socket)
+    if output.inputs["Surface"].is_linked:
+        followed = _opacity_of_input(tree, output.inputs["Surface"])
         if followed is None:
             return False
         opacity = followed
-    if output is not None and not _is_volume_alone(output):
+    if not _is_volume_alone(output):
         _keep_surface(tree, output)
     information = tree.nodes.new("ShaderNodeObjectInfo")
     random = Output(information, list(information.outputs.keys()).index("Random"))
@@ -91,7 +94,7 @@ def _keep_surface(tree: bpy.types.NodeTree, output: bpy.types.Node) -> None:
     if not _may_be_nothing(surface):
         return
     black = _black(tree)
-    if surface.is_linked:
+    if surface.is_linked and not surface.links[0].is_muted:
         shown = Output.of(surface.links[0].from_socket)
         both = Output(tree.nodes.new("ShaderNodeAddShader"), 0)
         tree.links.new(shown.socket, both.node.inputs[0])
@@ -105,6 +108,8 @@ def _may_be_nothing(socket: bpy.types.NodeSocket) -> bool:
     if not socket.is_linked:
         return True
     node = socket.links[0].from_node
+    if node.mute or socket.links[0].is_muted:
+        return True
     if node.bl_idname in ("ShaderNodeEmission", "ShaderNodeGroup", "ShaderNodeBackground"):
         return True
     if node.bl_idname in ("NodeReroute", "ShaderNodeMixShader", "ShaderNodeAddShader"):
@@ -159,9 +164,21 @@ def _input(socket: bpy.types.NodeSocket) -> Value:
     return float(socket.default_value)
 
 
+def _opacity_of_input(
+    tree: bpy.types.NodeTree, socket: bpy.types.NodeSocket | None
+) -> Value | None:
+    """Opacity of the shader that an input gets; nothing is black."""
+    if socket is None or not socket.is_linked or socket.links[0].is_muted:
+        return 1.0
+    return _opacity(tree, socket.links[0].from_socket)
+
+
 def _opacity(tree: bpy.types.NodeTree, socket: bpy.types.NodeSocket) -> Value | None:
     """Opacity of a shader; None where a node group hides it."""
     node = socket.node
+    if node.mute:  # it hands on one of its inputs
+        passed = (link.from_socket for link in node.internal_links if link.to_socket == socket)
+        return _opacity_of_input(tree, next(passed, None))
     if node.bl_idname in (
         "ShaderNodeBsdfTransparent",
         "ShaderNodeHoldout",
@@ -171,20 +188,12 @@ def _opacity(tree: bpy.types.NodeTree, socket: bpy.types.NodeSocket) -> Value | 
     if node.bl_idname == "ShaderNodeBsdfPrincipled":
         return _input(node.inputs["Alpha"])
     if node.bl_idname == "NodeReroute":
-        return (
-            _opacity(tree, node.inputs[0].links[0].from_socket) if node.inputs[0].is_linked else 1.0
-        )
+        return _opacity_of_input(tree, node.inputs[0])
     if node.bl_idname == "ShaderNodeGroup":
         return None
     if node.bl_idname in ("ShaderNodeMixShader", "ShaderNodeAddShader"):
         shaders = [index for index, item in enumerate(node.inputs) if item.type == "SHADER"]
-        parts = []
-        for index in shaders:
-            shader = node.inputs[index]
-            linked = shader.is_linked
-            parts.append(
-                _opacity(tree, shader.links[0].from_socket) if linked else 1.0
-            )  # nothing is black
+        parts = [_opacity_of_input(tree, node.inputs[index]) for index in shaders]
         if None in parts:
             return None
         if parts[0] == parts[1] == 1.0:
