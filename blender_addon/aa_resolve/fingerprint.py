@@ -41,7 +41,7 @@ def difference(old: dict, new: dict) -> str | None:
                 return UNNAMED_SCENE
             if key in ("source", "linked"):
                 return f"{_called(key)} has changed"
-            return f"{_called(key)} was {_shown(before)} and now is {_shown(now)}"
+            return f"{_called(key)} was {_shown(key, before)} and now is {_shown(key, now)}"
     return None
 
 
@@ -52,5 +52,12 @@ def _defaults() -> dict:
     return json.loads(json.dumps({k: v for k, v in known.items() if v is not dataclasses.MISSING}))
 
 
-def _shown(value) -> str:
-    return ",".join(map(str, value)) if isinstance(value, list) else str(value)
+def _shown(key: str, value) -> str:
+    """A value as the command line has it; of a flag without one, whether it is there."""
+    for item, known in options_of(Settings):
+        if item.name == key and value is None and known.none:
+            return known.none
+        if item.name == key and isinstance(value, bool):
+            return "off" if value == item.default else "on"
+    between = "x" if key == "resolution" else ","
+    return between.join(map(str, value)) if isinstance(value, list) else str(value)

@@ -53,7 +53,9 @@ class Option:
     repeated: bool = False  # the flag may come again
     decides_content: bool = True  # another value makes other files
     changed: str = ""  # how a change is named when an export resumes, if not by the flag
+    none: str = ""  # what the value None means, in words
     panel: tuple[Widget, ...] = ()
+    label: str = ""  # what a panel calls it, where it has several widgets
     # What stands behind the flag where the panel says it, None where it does not; by default the property's value.
     words: Callable[[Any], list[str] | None] | None = None
     applies: Callable[[Any], bool] = lambda _panel: True  # has an effect with what the panel holds
@@ -187,9 +189,10 @@ def words_of(table: type, panel, **given: list[str]) -> list[str]:
 
 def as_labels(text: str, table: type) -> str:
     """A sentence of the command line for a panel: flags by the labels of their widgets, where they have one."""
-    for item, known in options_of(table):
-        if len(known.panel) == 1:
-            label = f"'{known.panel[0].label}'"
+    for _, known in options_of(table):
+        label = known.label or (known.panel[0].label if len(known.panel) == 1 else "")
+        if label:
+            label = f"'{label}'"
             text = re.sub(rf"(?<![\w-]){known.flag}(?![\w-])", lambda _, label=label: label, text)
     return text
 

@@ -32,9 +32,17 @@ _TRUTH_ITEMS = (
 )
 
 
+def _frame_words(panel) -> list[str]:
+    first, last, step = panel.range()
+    if step == 1:
+        return [f"{first}-{last}"]
+    return [",".join(map(str, range(first, last + 1, step)))]
+
+
 def _truth_words(panel) -> list[str]:
-    first, last = panel.range()
-    ends = f"{first},{(first + last) // 2},{last}"
+    first, last, step = panel.range()
+    steps = (last - first) // step
+    ends = f"{first},{first + steps // 2 * step},{first + steps * step}"
     return [{"ALL": "all", "NONE": "none", "ENDS": ends}[panel.truth]]
 
 
@@ -63,11 +71,17 @@ class Settings:
         metavar="LIST",
         unsaid=None,
         panel=(
-            Widget("Scene Range", "Export the scene's frame range", False, name="use_scene_range"),
+            Widget(
+                "Scene Range",
+                "Export the scene's frame range, in its steps",
+                False,
+                name="use_scene_range",
+            ),
             Widget("First", "First frame", 1, name="first"),
             Widget("Last", "Last frame", 16, name="last"),
         ),
-        words=lambda panel: ["{}-{}".format(*panel.range())],
+        label="Frames",
+        words=_frame_words,
         decides_content=False,  # beyond the first one
         group="What to export",
     )
@@ -110,6 +124,8 @@ class Settings:
             ),
             Widget("Resolution", "Width and height, pixels", (480, 270)),
         ),
+        label="Resolution",
+        none="the scene's",
         words=lambda panel: ["{}x{}".format(*panel.resolution)] if panel.use_resolution else None,
         group="What to export",
     )
@@ -304,6 +320,8 @@ class Settings:
             ),
             Widget("Ambient", "Ambient radiance, linear", (0.2, 0.2, 0.2), subtype="COLOR"),
         ),
+        label="Ambient",
+        none="the world's mean",
         words=lambda panel: [f"{value:.6g}" for value in panel.ambient]
         if panel.use_ambient
         else None,
@@ -332,6 +350,7 @@ class Settings:
         "--view-layer",
         "view layer to render (default: the only one in use)",
         default=None,
+        none="the only one in use",
         metavar="NAME",
         group="What to export",
     )

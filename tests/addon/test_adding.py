@@ -399,8 +399,10 @@ def test_what_makes_other_pictures_is_refused() -> None:
     before = files(out)
     for options, expected in (
         (("--samples", "2"), "--samples was 1 and now is 2"),
-        (("--resolution", "20x12"), "--resolution was None and now is 20,12"),
+        (("--resolution", "20x12"), "--resolution was the scene's and now is 20x12"),
         (("--lighting", "as-is"), "--lighting was noise-free"),
+        (("--no-instance-ids",), "--no-instance-ids was off and now is on"),
+        (("--ambient", "1", "0", "0.5"), "--ambient was the world's mean and now is 1.0,0.0,0.5"),
         (("--jitter", "none"), "--jitter was halton23 and now is none"),
         (("--period", "8"), "--period was 16 and now is 8"),
         (("--source", "another"), "the .blend file, or a script that ran on it, has changed"),

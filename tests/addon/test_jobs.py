@@ -58,6 +58,15 @@ def test_job_reports_and_cancels() -> None:
     while failing.poll():
         pass
     assert failing.error, "a failing child is an error with a sentence"
+    for number, word in ((9, "memory"), (11, "crashed"), (15, "stopped")):
+        # What it said before, in the events of its progress and on its stderr, is not why it ended.
+        script = f'echo \'{{"event": "x", "text": "frame 8"}}\'; echo noise >&2; kill -{number} $$'
+        killed = job.Job([job.Step("Export", ["/bin/sh", "-c", script])], FOLDER + "/none")
+        killed.start()
+        while killed.poll():
+            pass
+        assert killed.error.startswith("Export: ") and word in killed.error, killed.error
+        assert "valid" in killed.error and "noise" not in killed.error, killed.error
 
 
 PROGRAM = """#!{python}
@@ -344,6 +353,10 @@ def test_the_panel_says_what_a_shot_lacks() -> None:
     shown.period = 8
     told = watch.look_now(scene).shot
     assert told.refused and "'Period' was 16 and now is 8" in told.text, told
+    shown.period, shown.use_resolution, shown.resolution = 16, True, (40, 20)
+    sized = watch.look_now(scene).shot
+    assert sized.refused and "'Resolution' was the scene's and now is 40x20" in sized.text, sized
+    shown.use_resolution = False
     assert "--" not in told.text and not told.other_scene, "a panel speaks by its labels"
     shown.overwrite = True
     told = watch.look_now(scene).shot

@@ -141,6 +141,25 @@ def test_the_panel_says_what_it_shows() -> None:
     assert not said().unjitter_textures, "without jitter there is none to take back"
 
 
+def test_the_scenes_range_has_its_steps() -> None:
+    """As on the command line; first, middle and last of what is exported get truth. A long range is said shortly."""
+    shown = registered()
+    scene = bpy.context.scene
+    shown.use_scene_range, shown.truth = True, "ENDS"
+    for first, last, step, frames, truth in (
+        (1, 9, 4, [1, 5, 9], [1, 5, 9]),
+        (2, 12, 3, [2, 5, 8, 11], [2, 5, 11]),
+        (2, 4, 9, [2], [2]),
+        (3, 6, 1, [3, 4, 5, 6], [3, 4, 6]),
+    ):
+        scene.frame_start, scene.frame_end, scene.frame_step = first, last, step
+        full = settings_said(shown.options("/out"))
+        assert (full.frames, full.truth_frames) == (frames, truth), (full.frames, full.truth_frames)
+    assert shown.options("/out")[3] == "3-6", shown.options("/out")
+    scene.frame_step, shown.use_scene_range, shown.first, shown.last = 2, False, 1, 4
+    assert settings_said(shown.options("/out")).frames == [1, 2, 3, 4], "a range of the panel's own"
+
+
 def test_parameters_are_edited_and_said() -> None:
     """Every parameter of every method has a widget with its range and default; changed ones reach the command lines."""
     from aa_resolve import registry
@@ -489,6 +508,7 @@ if __name__ == "__main__":
         test_only_compat_knows_versions,
         test_settings_of_later_versions,
         test_the_panel_says_what_it_shows,
+        test_the_scenes_range_has_its_steps,
         test_parameters_are_edited_and_said,
         test_starts_and_families,
         test_sets_of_methods,

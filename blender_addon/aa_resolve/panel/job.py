@@ -11,6 +11,7 @@ import os
 import queue
 import re
 import shutil
+import signal
 import subprocess
 import tempfile
 import threading
@@ -116,12 +117,7 @@ class Job:
         if not ended:
             return self._process is not None
         if self._process.returncode != 0:
-            told = [line.strip() for line in self._errors if line.strip()]
-            said = [line for line in told if line.startswith("error")] or told[-1:]
-            last = (
-                said[-1] if said else f"{self.message}: ended with code {self._process.returncode}"
-            )
-            self.error = as_labels(re.sub(r"^error: ", "", last), Settings)
+            self.error = as_labels(self._why_failed(self._process.returncode), Settings)
             return self._end()
         self.steps.pop(0)
         if not self.steps:
@@ -132,6 +128,15 @@ class Job:
             return self._end()
         self._launch()
         return True
+
+    def _why_failed(self, code: int) -> str:
+        """The child's own last word, or what became of it."""
+        title = self.steps[0].title
+        if code < 0:  # whatever it said before was not of its end
+            return f"{title}: {_ended_by(-code)}; finished frames are valid"
+        told = [line.strip() for line in self._errors if line.strip()]
+        said = [line for line in told if line.startswith("error")] or told[-1:]
+        return re.sub(r"^error: ", "", said[-1]) if said else f"{title}: ended with code {code}"
 
     def _take(self, line: str) -> None:
         if not line.startswith("{"):
@@ -169,6 +174,17 @@ class Job:
     def _end(self) -> bool:
         shutil.rmtree(self.folder, ignore_errors=True)
         return False
+
+
+def _ended_by(number: int) -> str:
+    """What a signal means for a process that it ended, in words."""
+    known = {item.value: item.name for item in signal.Signals}
+    name = known.get(number, f"signal {number}")
+    if name == "SIGKILL":
+        return f"was killed from outside ({name}), as the system does where memory is short"
+    if name in ("SIGTERM", "SIGINT", "SIGHUP"):
+        return f"was stopped from outside ({name})"
+    return f"the program crashed ({name})"
 
 
 def _drain(stream, target) -> None:

@@ -65,6 +65,14 @@ class AA_RESOLVE_PT_main(_Panel, bpy.types.Panel):
             row = column.row(align=True)
             row.prop(settings, "first", text="Frames")
             row.prop(settings, "last", text="")
+        elif context.scene.frame_step > 1:
+            draw_text(
+                column,
+                context,
+                f"In the scene's steps of {context.scene.frame_step}: no frame has the one before it, so every frame "
+                "starts anew for methods that accumulate",
+                icon="INFO",
+            )
         column.prop(settings, "use_resolution")
         if settings.use_resolution:
             column.prop(settings, "resolution", text="Pixels")

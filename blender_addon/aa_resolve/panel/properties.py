@@ -141,12 +141,12 @@ class AAResolveSettings(bpy.types.PropertyGroup):
             texts.append(f"{choice.id}:{said}" if said else choice.id)
         return texts
 
-    def range(self) -> tuple[int, int]:
-        """First and last frame."""
+    def range(self) -> tuple[int, int, int]:
+        """First and last frame, and the step between two of them."""
         scene = self.id_data
         if self.use_scene_range:
-            return scene.frame_start, scene.frame_end
-        return self.first, self.last
+            return scene.frame_start, scene.frame_end, scene.frame_step
+        return self.first, self.last, 1
 
     def reads_jittered_frames(self) -> bool:
         """True when a chosen method accumulates frames."""
