@@ -38,6 +38,7 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) ->
 
     Raises SceneError for what a shot cannot hold."""
     ownership.begin()
+    scene = linked.local(scene)
     view_layer, notes = suitability.refuse_unsuitable(scene, settings.view_layer)
     notes += linked.notes_on_missing() + scripts.notes_on_blocked()
     notes += suitability.switch_off(scene, view_layer)

@@ -115,6 +115,41 @@ def test_linked_library() -> None:
     assert (os.path.getmtime(library), os.path.getsize(library)) == before
 
 
+def test_a_linked_scene_as_the_open_one() -> None:
+    """It gives the pictures that it gives in its own file; that it is a set of another scene changes nothing."""
+    scene = t.new_scene(48, 27)
+    scene.name = "Set"
+    t.add_camera(scene)
+    t.add_sun(scene)
+    t.key(t.add_object(scene, "Mover"), "location", {1: (0, 0, 0), 3: (1, 0, 0.5)})
+    collection = bpy.data.collections.new("Parts")
+    collection.objects.link(bpy.data.objects.new("Part", t.cube_mesh("Part")))
+    empty = bpy.data.objects.new("Instance", None)
+    empty.instance_type, empty.instance_collection = "COLLECTION", collection
+    empty.location = (1.5, 1, 1)
+    scene.collection.objects.link(empty)
+    library = t.save(scene, os.path.join(t.temporary_folder(), "library.blend"))
+    options = ("--frames", "1-2", "--passes", "motion,object,depth", "--truth-frames", "none")
+    pictures = [exported(*options)[1]]
+    for used in (False, True):
+        scene = t.new_scene()
+        with bpy.data.libraries.load(library, link=True) as (_, wanted):
+            wanted.scenes = ["Set"]
+        if used:
+            scene.background_set = wanted.scenes[0]
+        bpy.context.window.scene = wanted.scenes[0]
+        shot, out = exported(*options)
+        assert any(name.startswith("Mover [library") for name in shot["objects"].values()), shot
+        pictures.append(out)
+    for part in ("color", "depth", "motion"):
+        expected, *found = (
+            t.read_part(os.path.join(out, "frames/000002.exr"), part) for out in pictures
+        )
+        for picture in found:
+            for channel, pixels in expected.items():
+                assert np.array_equal(pixels, picture[channel]), (part, channel)
+
+
 def test_hair_moves_with_its_emitter() -> None:
     """Strands carry their emitter's id, and their motion is that of the emitter to 0.05 px."""
     scene = t.new_scene(64, 36)
@@ -200,6 +235,7 @@ if __name__ == "__main__":
     t.main(
         test_gltf_with_textures_and_cutouts,
         test_linked_library,
+        test_a_linked_scene_as_the_open_one,
         test_hair_moves_with_its_emitter,
         test_text_and_hidden_objects,
         test_centre_frames_beside_jittered_ones,

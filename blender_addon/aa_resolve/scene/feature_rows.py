@@ -310,6 +310,13 @@ ROWS: tuple[Feature, ...] = (
     ),
     Feature(
         "file",
+        "linked scene as the open one",
+        HANDLED,
+        "made local in memory",
+        "linked:local",
+    ),
+    Feature(
+        "file",
         "bump, normal map",
         SHOWN,
         "in the normals of frames and sub-samples alike; sub-samples then use the real materials, which is noted and takes "

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Files that the scene uses and the .blend does not hold: libraries, pictures, caches. Which are missing, and by what an
-export notices that one has changed."""
+export notices that one has changed; and a scene that comes from a library itself."""
 
 from __future__ import annotations
 
@@ -69,6 +69,11 @@ def _digest(path: str) -> str:
         for block in iter(lambda: file.read(1 << 20), b""):
             digest.update(block)
     return digest.hexdigest()
+
+
+def local(scene: bpy.types.Scene) -> bpy.types.Scene:
+    """The scene, in memory a part of the open file: nothing can be added to one that is linked from another."""
+    return scene if scene.library is None else scene.make_local()
 
 
 def notes_on_missing() -> list[str]:
