@@ -76,7 +76,9 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) ->
     notes += surfaces.semi_transparent_note()
     scene.frame_set(settings.first_frame)
     folder = rendering.temporary_folder()
-    light = lighting.set_up(scene, view_layer, settings.lighting, settings.ambient, folder)
+    light = lighting.set_up(
+        scene, view_layer, settings.lighting, settings.ambient, folder, settings.frames
+    )
     lighting.check_visibility_animation(light)
     left_out += light.left_out(frozenset().union(*(item.cycles for item in passes)))
     ids = instances.ObjectIds(scene, view_layer, settings.instance_ids)

@@ -10,6 +10,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import support as t  # noqa: E402
 from support import bpy, np  # noqa: E402
 
+from aa_resolve.errors import SceneError  # noqa: E402
 from aa_resolve.scene import rendering, world_light  # noqa: E402
 
 
@@ -205,8 +206,6 @@ def test_every_light_keeps_its_power() -> None:
 
 def test_animated_power_of_an_unnormalized_light() -> None:
     """An animated power stays the scene's own; what the size is worth goes elsewhere, or is refused."""
-    from aa_resolve.errors import SceneError
-
     if "normalize" not in bpy.types.Light.bl_rna.properties:
         return
 
@@ -512,6 +511,35 @@ def test_an_emitting_mesh_that_instances_lights_is_noted() -> None:
     assert any("instance lights (Lamp)" in note for note in shot["notes"]), shot["notes"]
 
 
+def test_lights_that_are_switched_on_later() -> None:
+    """One that is hidden in the first frame is without size where it shines; beside another it is refused, as it is where
+    it shines in the first frame, unless no frame of the shot shows it."""
+
+    def exported(lights: int, frames: str, *options: str) -> np.ndarray:
+        scene = room()
+        scene.objects["Cube 0"].location.x = -3
+        for _ in range(lights - 1):
+            add_light(scene, "SUN", (3, -4, 6), 1.0, angle=0.0)
+        later = add_light(scene, "SUN", (-3, -4, 4), 2.0, angle=0.5)
+        for frame, hidden in ((1, True), (3, False)):
+            later.hide_render = hidden
+            later.keyframe_insert("hide_render", frame=frame)
+        out = os.path.join(t.temporary_folder(), "shot")
+        shot = t.export(out, "--frames", frames, "--truth-frames", "none", *options)
+        path = os.path.join(out, shot["frames"][-1]["file"])
+        return t.stacked(t.read_part(path, "color"), "R G B").astype(np.float32)
+
+    one, many = (exported(1, "1-3", "--jitter", "none", "--samples", n) for n in ("1", "16"))
+    assert one.max() > 0.1, "it shines"
+    assert np.abs(one - many).max() < 0.02, np.abs(one - many).max()  # edges: a filter of 0.01 px
+    assert exported(2, "1-2").max() > 0.1
+    try:
+        exported(2, "1-3")
+        raise AssertionError("two of which one is switched on were taken")
+    except SceneError as error:
+        assert "its render visibility is animated" in str(error), error
+
+
 if __name__ == "__main__":
     t.main(
         test_no_noise_from_any_light,
@@ -529,4 +557,5 @@ if __name__ == "__main__":
         test_sun_of_a_sky_texture,
         test_exposure_of_the_film_scales_everything,
         test_world_of_the_view_layer,
+        test_lights_that_are_switched_on_later,
     )

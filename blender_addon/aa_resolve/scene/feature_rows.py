@@ -158,8 +158,8 @@ ROWS: tuple[Feature, ...] = (
         "light",
         "POINT SUN SPOT",
         HANDLED,
-        "noise-free light takes their size; as-is keeps it. Several whose visibility is animated "
-        "are refused in noise-free light. Instanced ones shine, too: one at several places at once, by "
+        "noise-free light takes their size; as-is keeps it. Several of which one's visibility is animated "
+        "are refused in noise-free light, shown in the first frame or later. Instanced ones shine, too: one at several places at once, by "
         "collections, faces, particles or nodes, stays noisy, which is noted",
         "lighting:set_up",
     ),

@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 import bpy
 
 from .. import compat
+from .ownership import is_animated
 
 
 _EMITTERS = frozenset(
@@ -21,20 +22,41 @@ _EMITTERS = frozenset(
 )
 
 
-def lights_of(scene: bpy.types.Scene) -> list[bpy.types.Object]:
-    """Light objects that render, wherever they are linked or instanced from."""
+def lights_of(
+    scene: bpy.types.Scene, also: Collection[bpy.types.Object] = ()
+) -> list[bpy.types.Object]:
+    """Light objects that render in the present frame, or at some time (``also``), wherever they are linked or instanced
+    from."""
     shown = set(scene.objects)
-    lights = [
-        item
-        for item in sorted(bpy.data.objects, key=lambda item: item.name_full)
-        if item.type == "LIGHT" and item.users > 0 and not item.hide_render and not is_portal(item)
-    ]
+    lights = [item for item in _lamps() if not item.hide_render or item in also]
     if not shown.issuperset(lights):
         users = bpy.data.user_map()
         lights = [
             item for item in lights if item in shown or not shown.isdisjoint(_showing(item, users))
         ]
     return lights
+
+
+def _lamps() -> list[bpy.types.Object]:
+    """All light objects of the file, in one order, shown or not."""
+    return [
+        item
+        for item in sorted(bpy.data.objects, key=lambda item: item.name_full)
+        if item.type == "LIGHT" and item.users > 0 and not is_portal(item)
+    ]
+
+
+def switched_on(scene: bpy.types.Scene, frames: Collection[int]) -> set[bpy.types.Object]:
+    """Lights that are hidden in the present frame and shown in one of ``frames``."""
+    hidden = {item for item in _lamps() if item.hide_render and is_animated(item, "hide_render")}
+    found = set()
+    if hidden:
+        present = scene.frame_current
+        for number in frames:
+            scene.frame_set(number)
+            found |= {item for item in hidden if not item.hide_render}
+        scene.frame_set(present)
+    return found
 
 
 def instancers_of(lights: list[bpy.types.Object]) -> set[bpy.types.Object]:

@@ -13,6 +13,7 @@ picks one light at random per sample; several lights are therefore rendered one 
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass, field
 
 import bpy
@@ -28,6 +29,7 @@ from .light_sources import (
     lights_of,
     noise_causes,
     shown_several_times,
+    switched_on,
 )
 from .ownership import is_animated, own, own_if_present
 
@@ -82,8 +84,10 @@ def set_up(
     model: str,
     ambient: tuple[float, float, float] | None,
     folder: str,
+    frames: Collection[int] = (),
 ) -> LightPlan:
-    """Brings the open scene (in memory) to the light model and says what had to change.
+    """Brings the open scene (in memory) to the light model and says what had to change. It stands in the first of the
+    shot's ``frames``, which matter where lights are switched on later.
 
     ``ambient`` None: the mean colour of the world, where it lights surfaces at all."""
     world = compat.world_of(scene, view_layer)
@@ -136,7 +140,7 @@ def set_up(
         )
     if world_lights:
         changes += _add_sky_suns(scene, world, folder)
-    plan.lights = lights_of(scene)
+    plan.lights = lights_of(scene, switched_on(scene, frames))
     changes += [change for change in map(_make_delta, plan.lights) if change]
     for material in emissive:
         own(material, **compat.light_sampling_off(material))
