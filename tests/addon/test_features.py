@@ -184,12 +184,20 @@ def test_grease_pencil() -> None:
         sketch = t.add_object(scene, "Sketch", data)
         assert sketch.type in ("GPENCIL", "GREASEPENCIL"), sketch.type
 
-    told, parts = attempt(draw)
-    assert "Grease Pencil 'Sketch' is left out" in told, told
+    def draw_later(scene, *_):
+        draw(scene)
+        sketch = scene.objects["Sketch"]
+        t.key(sketch, "hide_render", {1: False, 2: True})
+        scene.frame_set(2)  # as the file was saved
+        assert sketch.hide_render
+
     _, plain = attempt(lambda *_: None)
-    assert np.allclose(
-        t.stacked(parts["color"], "R G B"), t.stacked(plain["color"], "R G B"), atol=1e-4
-    )
+    for change in (draw, draw_later):
+        told, parts = attempt(change)
+        assert "Grease Pencil 'Sketch' is left out" in told, told
+        assert np.allclose(
+            t.stacked(parts["color"], "R G B"), t.stacked(plain["color"], "R G B"), atol=1e-4
+        )
 
 
 def test_a_portal_does_not_shine() -> None:

@@ -96,6 +96,11 @@ def is_animated(holder: bpy.types.bpy_struct, name: str) -> bool:
     return any(_sets(curve, holder, name) for curve in _curves(holder))
 
 
+def may_render(item: bpy.types.Object) -> bool:
+    """False for an object that is hidden in every render."""
+    return not item.hide_render or is_animated(item, "hide_render")
+
+
 def is_animated_within(holder: bpy.types.bpy_struct) -> bool:
     """True when a curve, a strip or a driver sets anything inside a struct of a data-block."""
     prefix = holder.path_from_id()

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import bpy
 
 from .. import compat
-from .ownership import follow, own, own_if_present
+from .ownership import follow, may_render, own, own_if_present
 
 # Modifier -> pairs of what the viewport reads and what the renderer reads.
 LEVELS: dict[str, tuple[tuple[str, str], ...]] = {
@@ -100,7 +100,7 @@ def _answer_for_the_renderer(tree: bpy.types.NodeTree) -> None:
 
 def _notes_on_adaptive_subdivision(scene: bpy.types.Scene) -> list[str]:
     names = [
-        item.name for item in scene.objects if not item.hide_render and compat.is_diced(scene, item)
+        item.name for item in scene.objects if may_render(item) and compat.is_diced(scene, item)
     ]
     if not names:
         return []

@@ -7,7 +7,7 @@ import bpy
 
 from .. import compat
 from ..errors import SceneError
-from .ownership import is_animated, own
+from .ownership import is_animated, may_render, own
 
 GREASE_PENCIL = ("GPENCIL", "GREASEPENCIL")  # the latter since 4.3
 _LONGEST_LAYER_NAME = 24  # bytes; ".Denoising Albedo.s15.R" follows it
@@ -89,7 +89,7 @@ def switch_off(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> list[
                 told.append(
                     f"depth of field of camera '{item.name}' is switched off: a shot is sharp everywhere"
                 )
-    rendered = [item for item in objects if not item.hide_render]
+    rendered = [item for item in objects if may_render(item)]
     sketches = [item for item in rendered if item.type in GREASE_PENCIL]
     for item in sketches:
         own(item, hide_render=True)

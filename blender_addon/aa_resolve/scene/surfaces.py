@@ -6,7 +6,7 @@ from __future__ import annotations
 import bpy
 
 from .. import compat
-from .ownership import is_animated
+from .ownership import is_animated, may_render
 
 
 def lost_under_override() -> str | None:
@@ -68,7 +68,7 @@ def notes_on_edges() -> list[str]:
     hairy = [
         item.name
         for item in bpy.data.objects
-        if not item.hide_render
+        if may_render(item)
         and (
             item.type == "CURVES"
             or any(
