@@ -352,6 +352,8 @@ class Settings:
         default=None,
         none="the only one in use",
         metavar="NAME",
+        panel=(Widget("Layer", "The view layer to export; empty: the only one in use", ""),),
+        words=lambda panel: [panel.view_layer] if panel.view_layer else None,
         group="What to export",
     )
     instance_ids: bool = option(

@@ -367,6 +367,39 @@ def test_the_panel_says_what_a_shot_lacks() -> None:
     assert told.refused and "smaaS2x" in told.text, told
 
 
+def test_one_of_two_view_layers_is_chosen() -> None:
+    """Two in use are refused, by the panel's label and before anything is begun; the chosen one is exported and shown."""
+    from aa_resolve.panel import watch
+
+    scene = moving_scene("layers.blend")
+    preferences()
+    shown = scene.aa_resolve
+    shown.out = os.path.join(FOLDER, "layers")
+    shown.first, shown.last, shown.truth, shown.truth_samples = 1, 2, "NONE", 2
+    assert "--view-layer" not in shown.options("/out") and not watch.look_now(scene).shot.refused
+    things = bpy.data.collections.new("Things")
+    scene.collection.children.link(things)
+    things.objects.link(bpy.data.objects["Cube"])
+    scene.collection.objects.unlink(bpy.data.objects["Cube"])
+    scene.view_layers.new("Empty").layer_collection.children["Things"].exclude = True
+    told = watch.look_now(scene).shot
+    assert told.refused and "choose one with 'Layer'" in told.text, told
+    shown.view_layer = "Empty"
+    assert not watch.look_now(scene).shot.refused
+    assert bpy.ops.aa_resolve.export() == {"FINISHED"}
+    color = t.read_part(os.path.join(shown.out, "frames", "000001.exr"), "color")
+    assert all(np.ptp(color[name]) == 0.0 for name in "RGB"), "nothing but the world"
+    shown.view_layer = scene.view_layers[0].name
+    told = watch.look_now(scene).shot
+    assert told.refused and "'Layer' was Empty" in told.text, told
+    shown.overwrite = True
+    assert bpy.ops.aa_resolve.preview_light() == {"FINISHED"}
+    light = picture(os.path.join(bpy.app.tempdir, f"aa_resolve_light_{os.getpid()}.png"))
+    assert np.ptp(light[26:, : light.shape[1] // 2 - 3]) > 0.1, "the layer with the cube"
+    shown.view_layer = "Gone"
+    assert "has no layer 'Gone'" in watch.look_now(scene).shot.text
+
+
 def test_a_saved_file_is_added_to() -> None:
     """The panel's settings lie in the file, so that choosing a method changes it: the user may vouch for the scene."""
     from aa_resolve.panel import watch
@@ -493,6 +526,7 @@ if __name__ == "__main__":
         test_python_runs_as_in_the_session,
         test_cancel_stops_and_says_so,
         test_the_panel_says_what_a_shot_lacks,
+        test_one_of_two_view_layers_is_chosen,
         test_a_saved_file_is_added_to,
         test_two_scenes_have_two_shots,
         test_paint_that_is_not_saved_is_refused,

@@ -209,6 +209,8 @@ class AA_RESOLVE_OT_preview_light(JobOperator, bpy.types.Operator):
             words = ["--out", out, "--for", "noaa", "--frames", frame, "--truth-frames", frame]
             words += ["--truth-samples", str(_PREVIEW_SAMPLES), "--lighting", lighting]
             words += _said("resolution", use_resolution=True, resolution=_preview_size(scene))
+            if scene.aa_resolve.view_layer:
+                words += _said("view_layer", view_layer=scene.aa_resolve.view_layer)
             if lighting == "noise-free" and scene.aa_resolve.use_ambient:
                 words += _said("ambient", use_ambient=True, ambient=scene.aa_resolve.ambient)
             steps.append(job.Step(f"{title}: one frame", job.export_command(blend, words)))

@@ -73,6 +73,8 @@ class AA_RESOLVE_PT_main(_Panel, bpy.types.Panel):
                 "starts anew for methods that accumulate",
                 icon="INFO",
             )
+        if settings.view_layer or sum(layer.use for layer in context.scene.view_layers) > 1:
+            column.prop_search(settings, "view_layer", context.scene, "view_layers")
         column.prop(settings, "use_resolution")
         if settings.use_resolution:
             column.prop(settings, "resolution", text="Pixels")

@@ -209,5 +209,5 @@ class AA_RESOLVE_OT_add_preset(AddPresetBase, bpy.types.Operator):
     preset_values = [
         f"bpy.context.scene.aa_resolve.{name}"
         for name in STORED
-        if name not in ("out", "overwrite", "same_scene")
+        if name not in ("out", "overwrite", "same_scene", "view_layer")
     ]

@@ -14,6 +14,7 @@ from ..command_line import build_parser, settings_from
 from ..errors import SceneError, UsageError
 from ..identity import file_identity
 from ..options import as_labels
+from ..scene.suitability import layer_of
 from ..settings import Settings
 from ..store import Store
 from .job import has_unsaved_changes
@@ -66,6 +67,7 @@ def look(scene: bpy.types.Scene, folder: str) -> Told:
             identity = _identity(path, _time(path))
         words = [*settings.options(folder), "--source", identity]
         wanted = settings_from(build_parser().parse_args(words), scene)
+        layer_of(scene, wanted.view_layer)
         if stored is None:
             return Told()
         if settings.overwrite:

@@ -53,7 +53,9 @@ def wish_of(scene: bpy.types.Scene) -> tuple:
     """What decides how long an export takes, as far as the panel and the scene's settings say it."""
     render = scene.render
     size = render.resolution_x, render.resolution_y, render.resolution_percentage
-    return (bpy.data.filepath, scene.name, *scene.aa_resolve.options("", overwrite=[]), *size)
+    layers = tuple(layer.name for layer in scene.view_layers if layer.use)
+    words = scene.aa_resolve.options("", overwrite=[])
+    return (bpy.data.filepath, scene.name, layers, *words, *size)
 
 
 def _shown(scene: bpy.types.Scene) -> tuple:

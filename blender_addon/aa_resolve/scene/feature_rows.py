@@ -232,7 +232,13 @@ ROWS: tuple[Feature, ...] = (
         "it reads the user's, not the jittered one; Python in a driver that does is noted",
         "active_camera:CameraReaders",
     ),
-    Feature("file", "several view layers", REFUSED, "until --view-layer chooses one", _REFUSE),
+    Feature(
+        "file",
+        "several view layers",
+        REFUSED,
+        "until --view-layer, Layer in the panel, chooses one",
+        _REFUSE,
+    ),
     Feature(
         "file",
         "view layer: long name, excluded collections, material override",

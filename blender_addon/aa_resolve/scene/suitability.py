@@ -17,6 +17,23 @@ _WITHOUT_SURFACE = {
 }
 
 
+def layer_of(scene: bpy.types.Scene, name: str | None) -> bpy.types.ViewLayer:
+    """The view layer of that name; without one the only layer in use. Raises SceneError where there is none."""
+    if name is not None:
+        chosen = scene.view_layers.get(name)
+        if chosen is None:
+            known = ", ".join(layer.name for layer in scene.view_layers)
+            raise SceneError(f"--view-layer: the scene has no layer '{name}' (found: {known})")
+        return chosen
+    used = [layer for layer in scene.view_layers if layer.use]
+    if len(used) > 1:
+        names = ", ".join(layer.name for layer in used)
+        raise SceneError(
+            f"the scene renders {len(used)} view layers ({names}): choose one with --view-layer"
+        )
+    return used[0] if used else scene.view_layers[0]
+
+
 def refuse_unsuitable(
     scene: bpy.types.Scene, layer_name: str | None
 ) -> tuple[bpy.types.ViewLayer, list[str]]:
@@ -37,21 +54,7 @@ def refuse_unsuitable(
         raise SceneError(
             "the scene renders stereo views: switch Stereoscopy off, a shot holds one camera"
         )
-    used = [layer for layer in scene.view_layers if layer.use]
-    if layer_name is not None:
-        chosen = scene.view_layers.get(layer_name)
-        if chosen is None:
-            known = ", ".join(layer.name for layer in scene.view_layers)
-            raise SceneError(
-                f"--view-layer: the scene has no layer '{layer_name}' (found: {known})"
-            )
-    elif len(used) > 1:
-        names = ", ".join(layer.name for layer in used)
-        raise SceneError(
-            f"the scene renders {len(used)} view layers ({names}): choose one with --view-layer NAME"
-        )
-    else:
-        chosen = used[0] if used else scene.view_layers[0]
+    chosen = layer_of(scene, layer_name)
     if render.engine != "CYCLES":
         notes.append(f"rendered with Cycles; the scene is set to {render.engine}")
     if render.use_motion_blur:
