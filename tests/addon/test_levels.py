@@ -170,18 +170,30 @@ def test_the_chosen_view_layer_is_the_one_that_is_read() -> None:
     scene.collection.children.link(collection)
     scene.collection.objects.unlink(item)
     collection.objects.link(item)
+    source = bpy.data.collections.new("Source")  # in the scene by an instance alone
+    part = bpy.data.objects.new("Part", t.cube_mesh("Part", 0.5))
+    part.location = (0.9, 0, 0.2)
+    source.objects.link(part)
+    empty = bpy.data.objects.new("Instance", None)
+    empty.instance_type, empty.instance_collection = "COLLECTION", source
+    collection.objects.link(empty)
     second = scene.view_layers.new(
         "A view layer whose name is longer than any pass would allow, by far"
     )
     scene.view_layers[0].layer_collection.children["Left out"].exclude = True
-    out = os.path.join(t.temporary_folder(), "s")
+    name = second.name
+    folder = t.temporary_folder()
+    bpy.ops.wm.open_mainfile(filepath=t.save(scene, os.path.join(folder, "layers.blend")))
+    out = os.path.join(folder, "s")
     shot = t.export(
         out, "--frames", "1", "--truth-frames", "none", "--passes", "edges,object",
-        "--view-layer", second.name, "--for", "rsaa",
+        "--view-layer", name, "--for", "rsaa",
     )  # fmt: skip
     path = os.path.join(out, shot["frames"][0]["file"])
     edges = t.stacked(t.read_part(path, "edges"), "edge.X edge.Y")
     assert (np.abs(edges).min(axis=-1) < 0.5).any(), "no edge of what the chosen layer shows"
+    assert any(name.startswith("Part") for name in shot["objects"].values()), shot["objects"]
+    assert "pixels_without_edges" not in shot["frames"][0], shot["frames"][0]
 
 
 def test_a_node_that_asks_who_looks() -> None:

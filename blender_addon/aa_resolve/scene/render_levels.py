@@ -37,6 +37,9 @@ def show_what_renders(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -
     if bpy.context.window is not None:  # the evaluated scene is that of the window's view layer
         bpy.context.window.scene = scene
         bpy.context.window.view_layer = view_layer
+    # Else the first change of the frame evaluates a layer that was not shown before, and does not tell the objects that
+    # only instances show where they stand: in 3.4 they fall back to the origin at their next change.
+    view_layer.update()
     for layer in _layer_collections(view_layer.layer_collection):
         layer.hide_viewport = False  # no property that animation could reach
     for collection in bpy.data.collections:
