@@ -463,7 +463,7 @@ def test_two_scenes_have_two_shots() -> None:
     assert "the scene was Scene and now is Second" in told.text and not told.other_scene, told
     try:
         bpy.ops.aa_resolve.export()
-        raise SystemExit("another scene must be refused")
+        raise AssertionError("another scene must be refused")
     except RuntimeError as error:
         assert "now is Second" in str(error), error
     shown.out = "//second"
@@ -492,7 +492,7 @@ def test_paint_that_is_not_saved_is_refused() -> None:
     for start in (bpy.ops.aa_resolve.export, bpy.ops.aa_resolve.preview_light):
         try:
             start()
-            raise SystemExit("what is not saved must be named")
+            raise AssertionError("what is not saved must be named")
         except RuntimeError as error:
             assert "'Paint'" in str(error) and "Elsewhere" not in str(error), error
     assert not os.path.exists(os.path.join(FOLDER, "painted"))
