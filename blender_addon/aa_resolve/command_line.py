@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 
 import bpy
 
@@ -20,6 +21,7 @@ _DESCRIPTION = """\
 Exports an animation as a shot for aaresolve. The .blend file is never changed.
 
 A shot that is there is added to: only the frames, passes and truths that it lacks are rendered."""
+_LAST_FRAME = 1048574  # of Blender, on either side of 0; it takes every one beyond for this one
 _EXAMPLES = """\
 examples:
   blender -b FILE.blend --python-exit-code 9 -P headless.py -- --out SHOT --frames 1-16 --for noaa,taaSimplest
@@ -47,16 +49,12 @@ def parse_frames(text: str, option: str) -> list[int]:
     numbers: set[int] = set()
     for part in text.split(","):
         part = part.strip()
-        try:
-            position = part.find("-", 1)
-            if position < 0:
-                numbers.add(int(part))
-                continue
-            first, last = int(part[:position]), int(part[position + 1 :])
-        except ValueError:
-            raise UsageError(
-                f"{option}: expected frames such as 1-16 or 1,4,8, found '{text}'"
-            ) from None
+        found = re.fullmatch(r"(-?[0-9]+)(?:\s*-\s*(-?[0-9]+))?", part)
+        if not found:
+            raise UsageError(f"{option}: expected frames such as 1-16 or 1,4,8, found '{text}'")
+        first, last = int(found[1]), int(found[2] or found[1])
+        if max(abs(first), abs(last)) >= _LAST_FRAME:  # the one beside it is read, too
+            raise UsageError(f"{option}: Blender has no frame beyond {_LAST_FRAME}, found '{part}'")
         if last < first:
             raise UsageError(f"{option}: the range '{part}' ends before it begins")
         numbers.update(range(first, last + 1))
@@ -78,8 +76,6 @@ def settings_from(arguments: argparse.Namespace, scene: bpy.types.Scene) -> Sett
         _check_projection(sequence, passes)
     _check_textures(arguments, sequence)
     check_spans(vars(arguments), Settings)
-    if arguments.ambient and min(arguments.ambient) < 0.0:
-        raise UsageError(f"--ambient: expected three numbers >= 0, found {arguments.ambient}")
     if arguments.ambient and arguments.lighting == "as-is":
         raise UsageError("--ambient: has no effect with --lighting as-is; leave one of them out")
     frames = (

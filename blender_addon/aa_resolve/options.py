@@ -7,6 +7,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import difflib
+import math
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -112,7 +113,7 @@ def whole_number(text: str) -> int:
 
 
 def real_number(text: str) -> float:
-    """An option's value that is a number."""
+    """An option's value that is a finite number."""
     return _read(float, text, "a number")
 
 
@@ -128,8 +129,11 @@ def size(text: str) -> tuple[int, int]:
 
 def _read(kind: type, text: str, expected: str):
     try:
-        return kind(text)
-    except ValueError:
+        value = kind(text)
+        if "_" in text or not math.isfinite(value):  # Python reads both, nobody means them
+            raise ValueError
+        return value
+    except (ValueError, OverflowError):
         raise argparse.ArgumentTypeError(f"expected {expected}, found '{text}'") from None
 
 

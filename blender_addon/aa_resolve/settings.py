@@ -311,6 +311,7 @@ class Settings:
         default=None,
         metavar=("R", "G", "B"),
         number=real_number,
+        span=(0.0, 1.0e6),
         panel=(
             Widget(
                 "Own Ambient",
