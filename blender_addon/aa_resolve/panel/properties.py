@@ -69,9 +69,7 @@ def _property(widget: Widget, default, option: Option):
         return FloatProperty(**more)
     if isinstance(default[0], int):
         return IntVectorProperty(size=len(default), **more)
-    return FloatVectorProperty(
-        size=len(default), subtype=widget.subtype, min=0.0, soft_max=1.0, **more
-    )
+    return FloatVectorProperty(size=len(default), subtype=widget.subtype, soft_max=1.0, **more)
 
 
 def _properties() -> dict:
