@@ -284,6 +284,21 @@ def corner_normals(mesh: bpy.types.Mesh) -> np.ndarray:
     )
 
 
+def bake_folders(modifier: bpy.types.Modifier) -> list[str]:
+    """Where the bakes on disk of a geometry-nodes modifier lie; there are none before 3.6."""
+    own = getattr(modifier, "bake_directory", getattr(modifier, "simulation_bake_directory", ""))
+    if not hasattr(modifier, "bakes"):  # before 4.1
+        return [own] if own else []
+    found = []
+    for bake in modifier.bakes:
+        target = getattr(bake, "bake_target", "DISK")  # since 4.3 it may be in the .blend
+        if target == "INHERIT":
+            target = modifier.bake_target
+        if target == "DISK":
+            found.append(bake.directory if bake.use_custom_path else own)
+    return [folder for folder in dict.fromkeys(found) if folder]
+
+
 def path_options() -> set[str]:
     """Options of a property that holds a path and may begin with ``//``: since 4.5 others are marked as wrong there."""
     return {"PATH_SUPPORTS_BLEND_RELATIVE"} if VERSION >= (4, 5, 0) else set()

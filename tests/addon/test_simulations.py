@@ -187,6 +187,74 @@ def test_caches_on_disk_are_found_and_not_harmed() -> None:
     assert (alone != shown).mean() < 0.02, "what is simulated anew falls the same way"
 
 
+def nodes_that_rise(scene) -> bpy.types.Object:
+    """A cube that geometry nodes lift by the frame; where Blender bakes nodes, at rest by a bake of frame 1 on disk."""
+    item = t.add_object(scene, "Cube")
+    modifier = item.modifiers.new("Nodes", "NODES")
+    modifier.node_group = tree = t.geometry_group("Rising")
+    time = tree.nodes.new("GeometryNodeInputSceneTime")
+    up = tree.nodes.new("ShaderNodeCombineXYZ")
+    lift = tree.nodes.new("GeometryNodeSetPosition")
+    chain = [tree.nodes["Start"], lift, tree.nodes["End"]]
+    if hasattr(bpy.types, "GeometryNodeBake"):
+        chain.insert(2, tree.nodes.new("GeometryNodeBake"))
+    for start, end in zip(chain, chain[1:]):
+        tree.links.new(start.outputs[0], end.inputs[0])
+    tree.links.new(time.outputs["Frame"], up.inputs["Z"])
+    tree.links.new(up.outputs[0], lift.inputs["Offset"])
+    return item
+
+
+def bake_on_disk(item: bpy.types.Object) -> None:
+    modifier = item.modifiers[0]
+    bpy.context.view_layer.update()
+    bake = modifier.bakes[0]
+    bake.bake_mode, modifier.bake_target = "STILL", "DISK"
+    bpy.context.view_layer.objects.active = item
+    item.select_set(True)
+    bpy.ops.object.geometry_node_bake_single(
+        session_uid=item.session_uid, modifier_name=modifier.name, bake_id=bake.bake_id
+    )
+
+
+def test_bakes_of_nodes_are_found() -> None:
+    """The panel's copy finds them, removes nothing of them, and a file without them says so."""
+    from aa_resolve import compat
+
+    folder = t.temporary_folder()
+    scene = t.new_scene(16, 9)
+    item = nodes_that_rise(scene)
+    blend = t.save(scene, os.path.join(folder, "rising.blend"))
+    baked = os.path.join(folder, "blendcache_rising", "Cube_Nodes")
+    kept = compat.bake_folders
+    if hasattr(bpy.types, "GeometryNodeBake"):
+        bake_on_disk(item)
+        t.save(scene, blend)
+    else:
+        assert kept(item.modifiers[0]) == [], "such bakes are younger than this Blender"
+        compat.bake_folders = lambda _: ["//blendcache_rising/Cube_Nodes", "//../elsewhere"]
+        os.makedirs(os.path.join(baked, "1", "blobs"))
+    try:
+        assert os.listdir(baked)
+        copied, copy = job.copy_of_open_file()
+        assert os.path.exists(
+            os.path.join(copied, "blendcache_rising", "Cube_Nodes", *os.listdir(baked)[:1])
+        )
+        bpy.ops.wm.open_mainfile(filepath=copy)
+        item = bpy.data.objects["Cube"]
+        if kept is compat.bake_folders:
+            assert place(bpy.context.scene, item, 5) == 1.0, "as the bake of frame 1 has it"
+            assert simulations.run(bpy.context.scene, [5]) == []
+        shutil.rmtree(copied)  # as the panel does at the end of its job
+        assert os.listdir(baked)
+        shutil.rmtree(baked)
+        bpy.ops.wm.open_mainfile(filepath=blend)
+        told = simulations.run(bpy.context.scene, [5])
+        assert len(told) == 1 and "geometry nodes of Cube is not found" in told[0], told
+    finally:
+        compat.bake_folders = kept
+
+
 if __name__ == "__main__":
     t.main(
         test_frames_out_of_order_are_those_in_order,
@@ -194,4 +262,5 @@ if __name__ == "__main__":
         test_baked_simulations_are_left_alone,
         test_simulation_zones,
         test_caches_on_disk_are_found_and_not_harmed,
+        test_bakes_of_nodes_are_found,
     )

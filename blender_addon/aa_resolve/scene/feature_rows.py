@@ -150,8 +150,8 @@ ROWS: tuple[Feature, ...] = (
         "physics",
         "disk_cache",
         HANDLED,
-        "found beside the original also for the panel's copy; read through links, never written; "
-        "a missing one is noted",
+        "found beside the original also for the panel's copy, and so are bakes of geometry nodes; read through links, "
+        "never written; a missing one is noted",
         "simulations:link_caches",
     ),
     Feature(

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 
 import bpy
 
+from .. import compat
 
 # Modifiers that simulate, and where their state is kept.
 WITH_POINT_CACHE = ("CLOTH", "SOFT_BODY", "DYNAMIC_PAINT", "PARTICLE_SYSTEM")
@@ -38,7 +39,7 @@ class _Cache:
 def run(scene: bpy.types.Scene, frames: list[int]) -> list[str]:
     """Runs what is not baked up to the frame after the last; sentences about what was done and what cannot be."""
     last = frames[-1] + 1
-    told = _notes_on_lost_caches(scene)
+    told = _notes_on_lost_caches(scene) + _notes_on_lost_bakes()
     _keep_disks_untouched(scene)
     unbaked = [known for known in _point_caches(scene) if not known.cache.is_baked]
     steps = _domains_that_replay(scene) + _with_simulation_zones(scene)
@@ -147,20 +148,42 @@ def cache_folder(blend: str) -> str:
 
 
 def link_caches(blend: str, copy: str) -> None:
-    """Lets a copy of a .blend find the caches of the original: links in the folder where it looks for them, or copies
-    of the files where the system has no links."""
-    original, wanted = cache_folder(blend), cache_folder(copy)
-    if not blend or not os.path.isdir(original) or os.path.exists(wanted):
+    """Lets a copy of the open .blend find the caches of the original: links in the folder where it looks for them, or
+    copies where the system has no links."""
+    if not blend:
         return
-    os.makedirs(wanted)
-    for name in os.listdir(original):
-        source, target = os.path.join(original, name), os.path.join(wanted, name)
-        if not os.path.isfile(source):
-            continue
-        try:
-            os.symlink(os.path.realpath(source), target)
-        except OSError:  # Windows without the right to make links
-            shutil.copy2(source, target)
+    original, wanted = cache_folder(blend), cache_folder(copy)
+    if os.path.isdir(original) and not os.path.exists(wanted):
+        os.makedirs(wanted)
+        for name in os.listdir(original):
+            if os.path.isfile(os.path.join(original, name)):
+                _link(os.path.join(original, name), os.path.join(wanted, name))
+    for _, folder in _bakes_of_nodes():
+        beside = os.path.normpath(folder.removeprefix("//"))
+        if folder.startswith("//") and not beside.startswith(
+            os.pardir
+        ):  # else it is out of the copy's reach
+            source, target = (os.path.join(os.path.dirname(path), beside) for path in (blend, copy))
+            if os.path.isdir(source) and not os.path.lexists(target):
+                os.makedirs(os.path.dirname(target), exist_ok=True)
+                _link(source, target)
+
+
+def _link(source: str, target: str) -> None:
+    try:
+        os.symlink(os.path.realpath(source), target)
+    except OSError:  # Windows without the right to make links
+        copy = shutil.copytree if os.path.isdir(source) else shutil.copy2
+        copy(source, target)
+
+
+def _bakes_of_nodes() -> Iterator[tuple[bpy.types.Object, str]]:
+    """Folders of what geometry nodes baked to disk; 4.3 does not find them anew when a file is saved elsewhere."""
+    for item in bpy.data.objects:
+        if item.library is None:
+            for modifier in item.modifiers:
+                for folder in compat.bake_folders(modifier):
+                    yield item, folder
 
 
 def _keep_disks_untouched(scene: bpy.types.Scene) -> None:
@@ -193,6 +216,18 @@ def _notes_on_lost_caches(scene: bpy.types.Scene) -> list[str]:
         return []
     names = sorted({known.owner for known in lost})
     return [f"the cache of {_some(names)} is not in '{folder}', where its bake left it"]
+
+
+def _notes_on_lost_bakes() -> list[str]:
+    lost = {
+        item.name
+        for item, folder in _bakes_of_nodes()
+        if not os.path.isdir(bpy.path.abspath(folder))
+    }
+    if not lost:
+        return []
+    names = _some(sorted(lost))
+    return [f"the bake of the geometry nodes of {names} is not found: they are computed anew"]
 
 
 def _some(names: list[str]) -> str:
