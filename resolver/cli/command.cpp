@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <set>
 #include <sstream>
 
 #include "cli/one_line.h"
@@ -35,7 +36,14 @@ Option& Option::values(int least, int most) {
     return least == most ? option_->expected(least) : option_->expected(least, most), *this;
 }
 Option& Option::excludes(std::string_view name) { return option_->excludes(std::string(name)), *this; }
-Option& Option::typeName(const std::string& name) { return option_->type_name(name), *this; }
+Option& Option::typeName(const std::string& name) {
+    option_->type_name(name);
+    if (const std::set<std::string> ofFiles = {"FILE", "FOLDER", "RUN", "SHOT"}; ofFiles.contains(name)) {
+        const auto refusal = [](std::string& text) { return text.empty() ? "found an empty name" : std::string(); };
+        option_->check(CLI::Validator(refusal, ""));
+    }
+    return *this;
+}
 Option& Option::defaultText(const std::string& text) { return option_->default_str(text), *this; }
 
 Option Command::option(const std::string& names, std::string& to, const std::string& help) {

@@ -31,7 +31,8 @@ class Option {
     Option& values(int least, int most);  // behind one
     Option& excludes(std::string_view name);
     Option& defaultText(const std::string& text);  // that the help shows
-    // What is expected, as the help names it and completion knows it: METHOD, SHOT, RUN, FILE, FOLDER, WxH ...
+    // What is expected, as the help names it and completion knows it: METHOD, SHOT, RUN, FILE, FOLDER, WxH ... A name
+    // of a file or folder is not empty.
     Option& typeName(const std::string& name);
 
   private:

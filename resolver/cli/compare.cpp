@@ -377,14 +377,15 @@ void compare(const CompareArguments& o, Context& context) {
 void addCompare(CommandLine& line, Context& context) {
     auto o = std::make_shared<CompareArguments>();
     Command c = line.command("compare", "Metrics of two images or of two folders of frames; B is the reference");
-    c.option("A", o->a, "PNG (sRGB codes), EXR (linear), or a folder of frames").required();
-    c.option("B", o->b, "the reference, of the same size or with the same frames").required();
+    c.option("A", o->a, "PNG (sRGB codes), EXR (linear), or a folder of frames").required().typeName("FILE");
+    c.option("B", o->b, "the reference, of the same size or with the same frames").required().typeName("FILE");
     c.option("--pair", o->pair,
              "frames of two folders that belong together: name = equal but for the extension, number = by the last "
              "number of the name, order = the first with the first; auto = by name where all agree, else by number")
         .oneOf({"auto", "name", "number", "order"});
     c.option("--metrics", o->metrics, "comma-separated; `ssim` is ssimLuma:" + listOfFigures()).separatedBy(',');
-    c.option("--map", o->map, "picture of the difference on a fixed scale: a PNG, of folders a folder");
+    c.option("--map", o->map, "picture of the difference on a fixed scale: a PNG, of folders a folder")
+        .typeName("FILE");
     c.option("--map-of", o->mapOf, "what it shows; default error:" + listOfMapKinds());
     c.option("--fail-below", o->thresholds, "exit 1 when a pooled figure is below, for example psnr=40")
         .separatedBy(',');

@@ -110,8 +110,11 @@ void addImport(CommandLine& line, Context& context) {
     c.option("DIR", o->from,
              "folder of rendered frames: OpenEXR MultiLayer, the last number of a name is its frame; or what --layout "
              "describes")
-        .required();
-    c.option("-o,--out", o->out, "folder of the shot; an interrupted import goes on there").required();
+        .required()
+        .typeName("FOLDER");
+    c.option("-o,--out", o->out, "folder of the shot; an interrupted import goes on there")
+        .required()
+        .typeName("FOLDER");
     c.option("--view-layer", o->import.viewLayer, "which view layer, where there are several");
     c.option("--view", o->import.view, "which view of a multi-view render (stereo, sub-samples)");
     c.option("--truth", o->truth,

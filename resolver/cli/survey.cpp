@@ -214,17 +214,20 @@ void addMake(Command& survey, Context& context) {
     auto o = std::make_shared<MakeOptions>();
     Command c = survey.command("make", "A page on which viewers judge pictures of runs, and its key");
     o->survey.title = "Which picture is better?";
-    c.option("RUN", o->survey.runs, "output folders of `aaresolve run`, with images").required();
+    c.option("RUN", o->survey.runs, "output folders of `aaresolve run`, with images").required().typeName("RUN");
     c.option("-o,--out", o->out, "the page, NAME.html, or a folder for survey.html; the key NAME.key.json beside it")
-        .required();
+        .required()
+        .typeName("FILE");
     c.option("-Q,--question", o->questions, std::string("one question; repeat for more:\n") + kQuestionForm).oneEach();
-    c.option("--questions", o->file, "a file with a question per line, in the same form; # begins a comment");
+    c.option("--questions", o->file, "a file with a question per line, in the same form; # begins a comment")
+        .typeName("FILE");
     c.option("-m,--method", o->methods,
              "methods for questions that name none, comma-separated, or repeat the option; default all")
         .oneEach()
         .typeName("METHOD");
     c.option("--title", o->survey.title, "what participants read first");
-    c.option("--intro", o->introFile, "a text file in place of the page's introduction, a paragraph per line");
+    c.option("--intro", o->introFile, "a text file in place of the page's introduction, a paragraph per line")
+        .typeName("FILE");
     c.option("--seed", o->seed, "number from which the codes of pictures follow; default by chance");
     c.flag("--overwrite", o->overwrite, "replace the key of another survey: answers to it can then not be scored");
     c.flag("-q,--quiet", o->quiet, "no progress");
@@ -234,11 +237,13 @@ void addMake(Command& survey, Context& context) {
 void addScore(Command& survey) {
     auto o = std::make_shared<ScoreOptions>();
     Command c = survey.command("score", "Scores with intervals from the saved answers, beside the run's metrics");
-    c.option("ANSWERS", o->answers, "JSON files that participants saved, one each").required();
+    c.option("ANSWERS", o->answers, "JSON files that participants saved, one each").required().typeName("FILE");
     c.option("--survey", o->survey,
              "the page, which brings its pictures into the scores' page and whose key lies beside it; or the key")
-        .required();
-    c.option("-o,--out", o->out, "NAME.html, NAME.json or NAME.csv, or a folder for all three; default none");
+        .required()
+        .typeName("FILE");
+    c.option("-o,--out", o->out, "NAME.html, NAME.json or NAME.csv, or a folder for all three; default none")
+        .typeName("FILE");
     c.flag("--json", o->json, "print the scores' JSON instead of the table");
     c.run([o] { score(*o); });
 }

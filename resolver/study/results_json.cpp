@@ -542,7 +542,6 @@ void checkParts(const RunResults& run) {
 }  // namespace
 
 RunResults readResults(const fs::path& path) {
-    if (path.empty()) throw UsageError("expected the folder of a run, found an empty name");
     std::error_code ignored;
     const fs::path file = fs::is_regular_file(path, ignored) ? path : path / "results.json";
     const std::string text = requiredText(file, "; expected the output folder of `aaresolve run SHOT -m ... -o OUT`");

@@ -269,6 +269,15 @@ class Numbers(ProgramTest):
             ("report", ""),
             ("sheet", ""),
             ("survey", "make", "", "-o", self.folder),
+            ("list", "--shot", ""),
+            ("check", ""),
+            ("run", "", "-m", "noaa", "-o", self.folder / "out"),
+            ("run", self.folder, "-m", "noaa", "-o", ""),
+            ("compare", "", ""),
+            ("filter", "noaa", "", "a.png"),
+            ("filter", "noaa", "a.png", ""),
+            ("import", "", "-o", self.folder / "shot"),
+            ("synth", "moving", "-o", ""),
         ):
             done = subprocess.run(
                 [PROGRAM, *words], capture_output=True, text=True, cwd=self.folder
