@@ -326,7 +326,8 @@ ROWS: tuple[Feature, ...] = (
         "bump, normal map",
         SHOWN,
         "in the normals of frames and sub-samples alike; sub-samples then use the real materials, which is noted and takes "
-        "up to twice their time",
+        "up to twice their time. Without them normals at the rims of smooth glossy surfaces, which Cycles bends there, are "
+        "up to 6 degrees from the frame's (0.2 % of the pixels of 25 balls)",
         "surfaces:lost_under_override",
     ),
     Feature(
