@@ -50,6 +50,9 @@ class Missing:
     changed: str | None = (
         None  # what differs from the settings with which the shot was made, in words
     )
+    if_at_rest: bool = (
+        False  # said of a shot at rest, and of frames of which nobody has looked whether they rest
+    )
 
     def groups(self) -> list[tuple[Work, int]]:
         """An example of each sort of work, and how often it comes."""
@@ -65,7 +68,10 @@ class Missing:
             return f"{kept}; nothing to render" if kept else "nothing to render"
         wanted = "; ".join(in_words(item, count) for item, count in self.groups())
         time = f", about {duration(self.seconds)}" if self.seconds is not None else ""
-        return (f"{kept}; " if kept else "") + f"to render: {wanted}{time}"
+        condition = (
+            "; if something moves in the new frames, also motion and truth of all" * self.if_at_rest
+        )
+        return (f"{kept}; " if kept else "") + f"to render: {wanted}{time}{condition}"
 
     def values(self) -> dict:
         """For machines."""
@@ -131,13 +137,27 @@ def settled(settings: Settings, stored: Stored | None) -> Settings:
             f"--frames: the shot in '{settings.out}' begins with frame {first}, and so does its jitter: frame "
             f"{settings.frames[0]} cannot be put before it; choose a new folder, or replace the shot with --overwrite"
         )
+    rests = stored.content["static"]
     return dataclasses.replace(
         settings,
         origin=first,
+        moves=not rests,
+        rested=sorted(stored.records["frames"]) if rests else [],
+        rested_with_truth=rests and bool(stored.records["truth"]),
         frames=sorted({*settings.frames, *stored.records["frames"]}),
-        passes=sorted({*settings.passes, *stored.passes_of("frames")}),
+        passes=sorted({*settings.passes, *stored.passes_of("frames"), *_left_out_at_rest(stored)}),
         centre_passes=sorted({*settings.centre_passes, *stored.passes_of("centre")}),
     )
+
+
+def _left_out_at_rest(stored: Stored) -> set[str]:
+    """Passes of which the shot has none because it rests, and which its methods read once it moves."""
+    if not stored.content["static"]:
+        return set()
+    known = registry.load_methods()
+    choices = [registry.MethodChoice(name) for name in stored.methods if name in known]
+    wanted = passes_named(registry.required_passes(choices, "jittered"))
+    return {item.name for item in wanted if item.from_frame_before}
 
 
 def missing(settings: Settings, store: Store) -> Missing:
@@ -150,6 +170,7 @@ def missing(settings: Settings, store: Store) -> Missing:
     found = lacking(settings, wanted_passes(settings, static), static, stored)
     if stored is not None:
         found.changed = store.changed({**stored.content, **settings.fingerprint()})
+        found.if_at_rest = static and len(settings.frames) > len(stored.records["frames"])
     return found
 
 
@@ -175,6 +196,8 @@ def lacking(
     truths = set(settings.truth_frames)
     if static:
         truths = {first} if truths else truths
+    elif truths and settings.rested_with_truth:
+        truths.update(settings.rested)  # what they shared is the first one's alone
     work = []
     for number in sorted({first, *settings.frames} if static else settings.frames):
         for kind in ("frames", "centre"):

@@ -16,7 +16,7 @@ _CHANGED = {
     "first_frame": "the first of --frames",
     "version": "the version of the add-on",
     "blender": "the version of Blender",
-    "static": "whether nothing moves in --frames",
+    "static": "whether nothing moves in the shot",
 }
 
 
@@ -43,6 +43,12 @@ def difference(old: dict, new: dict) -> str | None:
                 return f"{_called(key)} has changed"
             return f"{_called(key)} was {_shown(key, before)} and now is {_shown(key, now)}"
     return None
+
+
+def reason_against(stored: dict, content: dict) -> str | None:
+    """Why an export cannot join a shot, in words, or None. One at rest goes on as one that moves: its frames stay what
+    they are."""
+    return difference({**stored, "static": stored["static"] and content["static"]}, content)
 
 
 def _defaults() -> dict:

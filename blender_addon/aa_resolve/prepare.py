@@ -7,7 +7,7 @@ from __future__ import annotations
 import bpy
 
 from . import jitter, registry
-from .errors import SceneError
+from .errors import SceneError, UsageError
 from .passes.geometry import ObjectId
 from .passes.subsamples import are_shaded
 from .passes.table import passes_named
@@ -56,7 +56,7 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) ->
     cuts.bring_in(scene, view_layer)
     notes += cuts.readers.notes()
     notes += simulations.run(scene, settings.frames)
-    motion = movement.find_motion(scene, settings.frames, frame, cuts)
+    motion = _motion_of(scene, settings, frame, cuts)
     passes_of = {"frames": set(settings.passes), "centre": set(settings.centre_passes)}
     left_out = _drop_what_rests(passes_of, motion) if motion.static else []
     wanted = passes_of["frames"] | passes_of["centre"]
@@ -111,6 +111,23 @@ def make_plan(scene: bpy.types.Scene, settings: Settings, progress: Progress) ->
     known = sorted(plan.passes)
     progress.say("plan", f"passes: {', '.join(known)}", passes=known, static=plan.static)
     return plan
+
+
+def _motion_of(
+    scene: bpy.types.Scene, settings: Settings, frame: cam.Frame, cuts: CameraCuts
+) -> movement.Motion:
+    """Whether something moves in a new shot, or in one that is added to: one that moves stays one that does, and one at
+    rest becomes one where the frames that it has rest indeed."""
+    if settings.moves:
+        return movement.Motion(False, "the shot was begun as one that moves")
+    motion = movement.find_motion(scene, settings.frames, frame, cuts)
+    had = settings.rested
+    if motion.static or len(had) < 2 or movement.find_motion(scene, had, frame, cuts).static:
+        return motion
+    raise UsageError(
+        f"--out: the frames of '{settings.out}' show one and the same, and something moves in them ({motion.reason}); "
+        "choose a new folder, or replace it with --overwrite"
+    )
 
 
 def _refuse_other_than_perspective(cuts: CameraCuts, frames: list[int]) -> None:

@@ -110,6 +110,11 @@ class Settings:
     centre_passes: list[str] = field(default_factory=list)
     # Where the jitter begins; None: with the first of the frames.
     origin: int | None = None
+    # What the shot that is added to was begun as: one that moves (True) or one at rest, and then its frames, and whether
+    # they share a truth.
+    moves: bool = False
+    rested: list[int] = field(default_factory=list)
+    rested_with_truth: bool = False
     scene: str = ""  # name of the scene in its file; of a shot that does not name its own, empty
     resolution: tuple[int, int] | None = option(
         "--resolution",

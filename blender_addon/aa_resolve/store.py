@@ -24,7 +24,7 @@ from dataclasses import dataclass, field
 from typing import Callable, Iterator
 
 from .errors import SceneError, UsageError
-from .fingerprint import UNNAMED_SCENE, difference
+from .fingerprint import UNNAMED_SCENE, difference, reason_against
 from .manifest import content_of
 
 KINDS = ("frames", "centre", "truth")  # of pictures; each has a folder
@@ -136,7 +136,7 @@ class Store:
     def changed(self, content: dict) -> str | None:
         """What differs from the content that the folder holds, in words; None where ``content`` can join it."""
         stored = self.stored()
-        return difference(stored.content, content) if stored else None
+        return reason_against(stored.content, content) if stored else None
 
     def refuse_other(self, content: dict) -> None:
         """Raises UsageError when the folder was made with settings that make other pictures."""
@@ -176,9 +176,10 @@ class Store:
                 known = {"layout": _LAYOUT, "content": content, "methods": [], "pattern": ""}
             else:
                 known = _read_json(self._settings)
-                changed = difference(known["content"], content)
+                changed = reason_against(known["content"], content)
                 if changed:
                     raise UsageError(self.other_settings(changed))
+                known["content"]["static"] = content["static"]
             known["methods"] = list(dict.fromkeys([*known["methods"], *methods]))
             known["name"] = name or known.get("name") or os.path.basename(self.folder)
             known["pattern"] = pattern or known["pattern"]

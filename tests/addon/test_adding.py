@@ -393,6 +393,60 @@ def test_a_static_shot_is_added_to() -> None:
         BLEND = moving
 
 
+def test_a_trial_is_extended() -> None:
+    """From rest into motion and from motion into rest: the shot is that of all its frames at once."""
+    global BLEND
+    other, BLEND = BLEND, os.path.join(FOLDER, "starts.blend")
+    try:
+        scene = t.new_scene(32, 20)
+        t.add_camera(scene)
+        t.add_sun(scene)
+        item = t.add_object(scene, "Cube", None, (0, 0, 0.5), (0.2, 0.3, 0.4))
+        t.key(item, "location", {3: (0, 0, 0.5), 5: (1, 0, 0.5), 9: (1, 0, 0.5)})
+        for curve in t.curves_of(item):
+            curve.extrapolation = "CONSTANT"
+        t.save(scene, BLEND)
+        wish = (*BOTH_KINDS, "--passes", "object", "--truth-samples", "4")
+        for trial, static, whole in (
+            ("1-3", True, "1-5"),
+            ("1", False, "1-3"),
+            ("5", False, "5-8"),
+        ):
+            out = os.path.join(FOLDER, f"trial{trial}")
+            assert exported(out, "--frames", trial, *wish)["static"] == static
+            said = lacking(out, "--frames", whole, "--truth-samples", "4")
+            assert not said.changed and ("if something moves" in said.sentence()) == static, said
+            shot = exported(out, "--frames", whole, "--truth-samples", "4")
+            assert not shot["static"]
+            if static:
+                exported(f"{out}_fresh", "--frames", whole, *wish)
+                assert_same_shot(f"{out}_fresh", out)
+            else:
+                names = t.part_names(os.path.join(out, shot["frames"][-1]["file"]))
+                assert "motion" in names, names
+                assert len({entry["truth"] for entry in shot["frames"]}) == len(shot["frames"])
+            assert_is_valid(out)
+    finally:
+        BLEND = other
+
+
+def test_a_shot_that_was_wrongly_at_rest_is_refused() -> None:
+    """Its frames show the first one: they cannot be those of a shot that moves."""
+    out = os.path.join(FOLDER, "wrong_rest")
+    exported(out, "--frames", "2-3", "--truth-frames", "none")
+    path = os.path.join(out, ".aa", "settings.json")
+    held = storing._read_json(path)
+    held["content"]["static"] = True
+    storing.write_json(path, held)
+    before = files(out)
+    try:
+        exported(out, "--frames", "2-4", "--truth-frames", "none")
+        raise AssertionError("it was added to")
+    except UsageError as error:
+        assert "show one and the same, and something moves in them" in str(error), error
+    assert files(out) == before
+
+
 def test_what_makes_other_pictures_is_refused() -> None:
     out = os.path.join(FOLDER, "refused")
     exported(out, "--frames", "2-3", "--for", "taaSimplest", "--truth-frames", "none")
@@ -509,6 +563,8 @@ if __name__ == "__main__":
         test_kill_of_a_process_that_adds,
         test_two_processes_add,
         test_a_static_shot_is_added_to,
+        test_a_trial_is_extended,
+        test_a_shot_that_was_wrongly_at_rest_is_refused,
         test_what_makes_other_pictures_is_refused,
         test_methods_at_the_centres_have_theirs_beside_a_jitter,
         test_an_option_younger_than_the_shot_is_at_its_default,
