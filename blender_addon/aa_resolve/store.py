@@ -17,6 +17,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import re
 import shutil
 import socket
 import time
@@ -29,6 +30,7 @@ from .manifest import content_of
 
 KINDS = ("frames", "centre", "truth")  # of pictures; each has a folder
 _COMING = ".coming"  # ends the name of the record of a picture that is about to take its place
+_RECORD = re.compile(rf"(-?[0-9]+)\.json(?:{re.escape(_COMING)})?")  # not what a system adds beside
 _LAYOUT = 2  # of .aa: records that say which passes a picture holds
 
 
@@ -129,8 +131,8 @@ class Store:
     def _records(self, kind: str) -> dict[int, dict]:
         folder = os.path.join(self.private, kind)
         names = os.listdir(folder) if os.path.isdir(folder) else []
-        stems = {name.split(".")[0] for name in names if name.endswith((".json", _COMING))}
-        found = {number: self.record(kind, number) for number in sorted(map(int, stems))}
+        numbers = {int(found[1]) for name in names if (found := _RECORD.fullmatch(name))}
+        found = {number: self.record(kind, number) for number in sorted(numbers)}
         return {number: record for number, record in found.items() if record is not None}
 
     def changed(self, content: dict) -> str | None:

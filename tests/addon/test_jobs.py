@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import json
 import os
@@ -346,6 +347,22 @@ def test_the_panel_says_what_a_shot_lacks() -> None:
     told = watch.look_now(scene).shot
     assert not told.refused and "The shot has 2 frames" in told.text, told
     assert "nothing to render" in told.text, told
+    records = os.path.join(shown.out, ".aa", "frames")
+    for name in ("._000001.json", ".DS_Store", "000001 2.json", "x.json.coming"):
+        with open(os.path.join(records, name), "wb") as file:
+            file.write(b"\0\x05\x16\x07")
+    assert watch.shot.look(scene, shown.out) == told, "what a system adds is no record"
+    listed = os.listdir
+
+    def closed(path: str) -> list[str]:
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), path)
+
+    os.listdir = closed
+    try:
+        refused = watch.shot.look(scene, shown.out)
+    finally:
+        os.listdir = listed
+    assert refused.refused and f"{records}: Permission denied" in refused.text, refused
     shown.method_karis = True
     shown.last = 3
     told = watch.look_now(scene).shot

@@ -11,7 +11,7 @@ import bpy
 
 from ..adding import missing
 from ..command_line import build_parser, settings_from
-from ..errors import SceneError, UsageError
+from ..errors import SceneError, UsageError, way_out
 from ..identity import file_identity
 from ..options import as_labels
 from ..scene.suitability import layer_of
@@ -77,8 +77,8 @@ def look(scene: bpy.types.Scene, folder: str) -> Told:
             text = store.other_settings(found.changed)
             vouch = "--same-scene" in text or identity != stored.content["source"]
             return Told(as_labels(text, Settings), True, vouch)
-    except (UsageError, SceneError) as error:
-        return Told(as_labels(str(error), Settings), True)
+    except (UsageError, SceneError, OSError) as error:
+        return Told(as_labels(way_out(error)[0], Settings), True)
     text = f"The shot has {found.sentence().removeprefix('kept: ')}"
     if found.work and has_unsaved_changes() and not settings.same_scene:
         text += (
