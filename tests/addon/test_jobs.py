@@ -263,6 +263,27 @@ def test_preview_shows_both_lights() -> None:
     assert right[row, column, 0] > right[row, column, 2] + 0.1, "the ambient of the panel"
 
 
+def test_preview_of_a_file_in_another_space() -> None:
+    """The preview shows the same colours whatever space the file computes in."""
+    if not hasattr(bpy.data, "colorspace"):
+        return  # before 5.0 there is one
+    shown = []
+    for space in ("Linear Rec.709", "ACEScg"):
+        scene = t.new_scene(16, 9)
+        preferences()
+        t.add_camera(scene)
+        scene.world = bpy.data.worlds.new("Red")
+        background = scene.world.node_tree.nodes["Background"]
+        background.inputs["Color"].default_value = (0.9, 0.02, 0.02, 1.0)
+        scene.view_settings.view_transform = "Standard"
+        bpy.ops.wm.set_working_color_space(working_space=space, convert_colors=True)
+        assert bpy.ops.aa_resolve.preview_light() == {"FINISHED"}
+        light = picture(os.path.join(bpy.app.tempdir, f"aa_resolve_light_{os.getpid()}.png"))
+        shown.append(light[30, 8, :3])
+    assert 0.1 < shown[0][1] < shown[0][0], "red, and not as red as can be"
+    assert np.abs(shown[0] - shown[1]).max() < 2 / 255, shown
+
+
 def test_python_runs_as_in_the_session() -> None:
     """The child runs the file's Python where this Blender does, and what it notes is kept for the panel."""
     from aa_resolve.panel import job
@@ -540,6 +561,7 @@ if __name__ == "__main__":
         test_compare_runs_the_chosen,
         test_a_stale_estimate_goes,
         test_preview_shows_both_lights,
+        test_preview_of_a_file_in_another_space,
         test_python_runs_as_in_the_session,
         test_cancel_stops_and_says_so,
         test_the_panel_says_what_a_shot_lacks,

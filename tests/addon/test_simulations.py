@@ -197,7 +197,10 @@ def nodes_that_rise(scene) -> bpy.types.Object:
     lift = tree.nodes.new("GeometryNodeSetPosition")
     chain = [tree.nodes["Start"], lift, tree.nodes["End"]]
     if hasattr(bpy.types, "GeometryNodeBake"):
-        chain.insert(2, tree.nodes.new("GeometryNodeBake"))
+        bake = tree.nodes.new("GeometryNodeBake")
+        if not bake.bake_items:  # in recent versions it begins with none
+            bake.bake_items.new("GEOMETRY", "Geometry")
+        chain.insert(2, bake)
     for start, end in zip(chain, chain[1:]):
         tree.links.new(start.outputs[0], end.inputs[0])
     tree.links.new(time.outputs["Frame"], up.inputs["Z"])

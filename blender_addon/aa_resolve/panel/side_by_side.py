@@ -97,6 +97,7 @@ def main(words: list[str]) -> None:
     """Makes the picture."""
     left, left_text, right, right_text, out = words
     scene = bpy.context.scene
+    compat.render_in_rec709()  # as the shots were: what is linear here is read as the file's own space
     pixels = join(truth_of(left), left_text, truth_of(right), right_text)
     save(pixels, out, scene)
 
