@@ -73,8 +73,8 @@ def problem(preferred: str = "") -> str:
 
 
 def why_not(path: str, shot: str, methods: Sequence[str] = ()) -> dict[str, str]:
-    """Of every method, or of those named with their parameters, why the program cannot run it on a shot; empty where it
-    can. Raises RuntimeError with the program's own words."""
+    """Of every method, or of those named, why the program cannot run it on a shot; empty where it can. Raises
+    RuntimeError with the program's own words."""
     try:
         ended = subprocess.run(
             [path, "list", *methods, "--shot", shot, "--json"],

@@ -164,6 +164,7 @@ settings = bpy.context.scene.aa_resolve
 settings.out, settings.first, settings.last = {str(shot)!r}, 1, 3
 settings.use_resolution, settings.resolution = True, (96, 54)
 settings.truth_samples, settings.method_fxaa311 = 4, True
+settings.widgets_taaSimplest.set_k = 0.8
 assert bpy.ops.aa_resolve.compare() == {{"FINISHED"}}, running.State.result
 best = watch.look_now(bpy.context.scene).outcome.best
 assert best and best[0].gain is not None, best
@@ -182,7 +183,7 @@ aa_resolve.unregister()
         self.blender(blend, "--python-exit-code", 9, "-P", script)
         results = json.loads((self.folder / "shot_results/results.json").read_text())
         self.assertEqual(
-            [m["text"] for m in results["methods"]], ["noaa", "fxaa311", "taaSimplest"]
+            [m["text"] for m in results["methods"]], ["noaa", "fxaa311", "taaSimplest:k=0.8"]
         )
 
     def test_hard_edges(self) -> None:

@@ -137,7 +137,8 @@ class _Served:
 
     def words(self) -> list[str]:
         """The methods as `run` takes them. Raises RuntimeError where there are none."""
-        answers = program.why_not(self.program, self.shot, self.texts)
+        names = [text.partition(":")[0] for text in self.texts]
+        answers = program.why_not(self.program, self.shot, names)
         self.left_out = {name: reason for name, reason in answers.items() if reason}
         served = [text for text in self.texts if text.partition(":")[0] not in self.left_out]
         if not served:
