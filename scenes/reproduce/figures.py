@@ -35,8 +35,20 @@ class Difference:
     resolved: bool
 
     def __str__(self) -> str:
-        interval = f"{signed(self.low)} to {signed(self.high)}"
-        return f"{signed(self.db)} dB ({interval})" + ("" if self.resolved else f", {self.doubt}")
+        return f"{signed(self.db)} dB ({self.interval})" + (
+            "" if self.resolved else f", {self.doubt}"
+        )
+
+    @property
+    def interval(self) -> str:
+        """Its 95 % interval in dB; half of one, or none, where errors sit in too few places of the picture."""
+        if math.isinf(self.low) and math.isinf(self.high):
+            return "no interval"
+        if math.isinf(self.high):
+            return f"{signed(self.low)} and more"
+        if math.isinf(self.low):
+            return f"{signed(self.high)} and less"
+        return f"{signed(self.low)} to {signed(self.high)}"
 
     @property
     def doubt(self) -> str:
@@ -168,7 +180,7 @@ def verdict(difference: Difference | None, better: str = "better", worse: str = 
     if difference is None:
         return "**Cannot be said**: no such figure in this shot."
     along, word = (difference, better) if difference.db >= 0 else (-difference, worse)
-    size = f"{signed(along.db).lstrip('+')} dB {word} (95 %: {signed(along.low)} to {signed(along.high)})"
+    size = f"{signed(along.db).lstrip('+')} dB {word} (95 %: {along.interval})"
     if not difference.resolved:
         return f"**{difference.doubt.capitalize()}**: {size}."
     return f"**{'Yes' if difference.db > 0 else 'No'}**, {size}."

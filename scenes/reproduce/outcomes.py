@@ -307,10 +307,13 @@ def _codes(o: Outcome, catalogue: dict[str, Shot], shop: Workshop) -> None:
     folder = make(catalogue, catalogue[name], shop)
     for number, row in enumerate(e.rows):
         flags = (*e.protocol.flags, *row.get("flags", ()))
-        run = run_methods(folder, f"{e.key}.{number}", [row["method"]], shop, flags, row["write"])
+        # Pictures of codes with floats beside them: the truth is written like the pictures, and must not be rounded.
+        write = {"png": "exr,png"}.get(row["write"], row["write"])
+        run = run_methods(folder, f"{e.key}.{number}", [row["method"]], shop, flags, write)
         images = run.data["truth"]["images"]
         truth = run.folder / images[max(images, key=int)]
-        picture = run.folder / _last_picture(run.methods[row["method"]])
+        last = run.folder / _last_picture(run.methods[row["method"]])
+        picture = last.with_suffix("." + row["write"])
         o.pictures[row["name"]] = picture
         o.by_name[row["name"]] = compared(
             picture,

@@ -503,7 +503,9 @@ def write_index(study: studies.Study, index: list[str], form: str, docs: Path) -
             "sources have 1600 × 900 and 1920 × 1080, so that edges are a larger share of them; truth of 12 to 64 samples per half, whose "
             "own error stands with every table, and in bold where it exceeds 1 % of the smallest error that is ranked.",
             "full": "This is the full form (`FULL=1`): tables at their published sizes.",
-            "whole": "",
+            "whole": "Pictures of 480 × 270, where the sources have 1600 × 900 and 1920 × 1080, so that edges are a larger share of them and "
+            "fewer differences are told from chance; `FULL=1` renders the tables at their published sizes. The truth's own error stands with "
+            "every table, and in bold where it exceeds 1 % of the smallest error that is ranked.",
         }[form],
     )
     if study.runs:
@@ -514,7 +516,7 @@ def write_index(study: studies.Study, index: list[str], form: str, docs: Path) -
     page.say(
         "How to read them: gains are decibels of PSNR over no anti-aliasing on display-encoded values (in the thesis's question on",
         "displayed values without gamma), where 3 dB is half the squared error; intervals are 95 %; *not resolved* means that the difference is within the truth's own noise or",
-        "depends on the part of the picture.",
+        "depends on the part of the picture; *no interval*: its errors sit in too few places of the picture for one.",
     )
     if study.runs:
         made = next(iter(study.runs.values())).data["run"]

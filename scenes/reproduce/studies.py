@@ -31,11 +31,7 @@ def _ranking(run: Run, over_time: bool = True) -> tuple[list[str], list[list[str
             else ("resolved" if run.gain(before, text).resolved else "not resolved")
         )
         row = [code(text), f"{run.psnr(text):.2f}"]
-        row += (
-            ["", ""]
-            if text == "noaa"
-            else [signed(gain.db), f"{signed(gain.low)} to {signed(gain.high)}"]
-        )
+        row += ["", ""] if text == "noaa" else [signed(gain.db), gain.interval]
         row += [step, f"{run.methods[text]['pooled']['ssimLuma']:.5f}"]
         if flicker:
             row.append(_figure(run.temporal(text, "flickerStatic")))
@@ -240,7 +236,7 @@ def static_page(study: Study) -> Page:
 
 
 def _interval(d: Difference) -> str:
-    return f"{signed(d.low)} to {signed(d.high)}"
+    return d.interval
 
 
 def _short(d: Difference) -> str:
@@ -648,7 +644,7 @@ def scenes_page(runs: dict[str, Run]) -> Page:
         rows.sort(key=lambda r: r[2].mse(r[0]))
         page.table(
             ["method", "shot", "PSNR dB", "over noaa, dB", "95 %"],
-            [[code(m), shot, f"{run.psnr(m):.2f}", signed(run.gain(m).db), f"{signed(run.gain(m).low)} to {signed(run.gain(m).high)}"]
+            [[code(m), shot, f"{run.psnr(m):.2f}", signed(run.gain(m).db), run.gain(m).interval]
              for m, shot, run in rows],
         )  # fmt: skip
     return page

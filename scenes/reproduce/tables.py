@@ -119,18 +119,14 @@ def _table(page: Page, o: Outcome) -> None:
         elif listed and base is not None:
             theirs = o.published(name, "psnr") - base
         row.append("–" if theirs is None else signed(theirs))
-        row += (
-            [signed(gain.db), f"{signed(gain.low)} to {signed(gain.high)}"]
-            if text != "noaa"
-            else ["", ""]
-        )
+        row += [signed(gain.db), gain.interval] if text != "noaa" else ["", ""]
         rows.append(row)
     for text in ("unchartedNorm", "unchartedNoSharpen", "master:unjitter=off"):
         if text in o.run and text not in e.methods.values():
             gain = o.run.gain(text)
             ours = outcomes.pooled(o.run, text, e.protocol.codes)
             rows.append([code(text), *(_cell(None, ours[c], _DIGITS[c]) for c in columns), "–", signed(gain.db),
-                         f"{signed(gain.low)} to {signed(gain.high)}"])  # fmt: skip
+                         gain.interval])  # fmt: skip
     page.table(
         ["method", *(_HEADS[c] for c in columns), "gain, published", "gain, ours", "95 %"], rows
     )

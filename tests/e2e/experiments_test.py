@@ -237,6 +237,9 @@ class Outcomes(ProgramTest):
         o = self.outcome("half_plane", "codes", {}, claims, **more)
         self.assertEqual(set(o.by_name["codes"]), {"banding", "grain", "mse", "psnr"})
         self.assertNotEqual(o.by_name["floats"]["mse"], o.by_name["codes"]["mse"])
+        endings = {name: picture.suffix for name, picture in o.pictures.items()}
+        written = {"floats": ".exr", "codes": ".png", "dithered": ".png", "Truth": ".exr"}
+        self.assertEqual(endings, written)
         self.assertEqual({v.answer for v in o.verdicts}, {"holds", "does not hold"})
         page = "\n".join(tables.source_page("T", [o], {}, {}).lines)
         self.assertIn("| dithered (`accum --dither`, PNG) |", page)
