@@ -251,8 +251,8 @@ void compare(const CompareArguments& o, Context& context) {
         throw UsageError(
             "compare: --flip-ppd: the device looks at FLIP from the usual distance alone; leave out --device");
     const Viewing viewing = viewingOf(o.viewing, Viewing{}.framesPerSecond);
-    if (!o.map.empty()) requireNoInput(o.map);
-    if (!o.map.empty()) pairs.size() > 1 ? makeWritableFolder(o.map) : requireWritable(o.map);
+    if (!o.map.empty() && pairs.size() > 1) requireNoInput(o.map), makeWritableFolder(o.map);
+    if (!o.map.empty() && pairs.size() == 1) requireWritable(o.map);
     Measuring device{.session = o.work.session()};
     if (device.session && device.session->fast())
         throw UsageError("compare: --gpu-precision fast: pictures are compared in 32 bits alone");

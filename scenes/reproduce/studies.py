@@ -185,7 +185,7 @@ def static_page(study: Study) -> Page:
         ["method", "published", "the thesis's question", "95 %", "ours", "95 %"],
         [
             [code(text), signed(theirs[text]) if text in theirs else "–",
-             signed(thesis.gain(text).db), _interval(thesis.gain(text)), signed(run.gain(text).db), _interval(run.gain(text))]
+             signed(thesis.gain(text).db), thesis.gain(text).interval, signed(run.gain(text).db), run.gain(text).interval]
             for text in [*theirs, "unchartedNorm", "unchartedNoSharpen", "master:unjitter=off"]
         ],
     )  # fmt: skip
@@ -233,10 +233,6 @@ def static_page(study: Study) -> Page:
         "history read the same centre-sampled picture in every frame of a static shot, so theirs is 0.",
     )
     return page
-
-
-def _interval(d: Difference) -> str:
-    return d.interval
 
 
 def _short(d: Difference) -> str:

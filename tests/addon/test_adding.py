@@ -9,6 +9,8 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import support as t  # noqa: E402
@@ -368,15 +370,23 @@ def test_two_processes_add() -> None:
     assert_same_shot(fresh, out)
 
 
-def test_a_static_shot_is_added_to() -> None:
-    """Its one truth and its one centre picture are added once, and motion never is."""
+@contextmanager
+def another_file(name: str) -> Iterator[tuple[bpy.types.Scene, bpy.types.Object]]:
+    """Within this the tests' .blend is another one: a cube in the sun, to be keyed and saved."""
     global BLEND
-    moving, BLEND = BLEND, os.path.join(FOLDER, "static.blend")
+    before, BLEND = BLEND, os.path.join(FOLDER, name)
     try:
         scene = t.new_scene(32, 20)
         t.add_camera(scene)
         t.add_sun(scene)
-        t.add_object(scene, "Cube", None, (0, 0, 0.5), (0.2, 0.3, 0.4))
+        yield scene, t.add_object(scene, "Cube", None, (0, 0, 0.5), (0.2, 0.3, 0.4))
+    finally:
+        BLEND = before
+
+
+def test_a_static_shot_is_added_to() -> None:
+    """Its one truth and its one centre picture are added once, and motion never is."""
+    with another_file("static.blend") as (scene, _):
         t.save(scene, BLEND)
         out, fresh = os.path.join(FOLDER, "static"), os.path.join(FOLDER, "static_fresh")
         wish = (*BOTH_KINDS, "--passes", "object,motion", "--truth-samples", "4")
@@ -389,19 +399,11 @@ def test_a_static_shot_is_added_to() -> None:
         exported(out, "--frames", "1-4", *wish)
         exported(fresh, "--frames", "1-4", *wish)
         assert_same_shot(fresh, out)
-    finally:
-        BLEND = moving
 
 
 def test_a_trial_is_extended() -> None:
     """From rest into motion and from motion into rest: the shot is that of all its frames at once."""
-    global BLEND
-    other, BLEND = BLEND, os.path.join(FOLDER, "starts.blend")
-    try:
-        scene = t.new_scene(32, 20)
-        t.add_camera(scene)
-        t.add_sun(scene)
-        item = t.add_object(scene, "Cube", None, (0, 0, 0.5), (0.2, 0.3, 0.4))
+    with another_file("starts.blend") as (scene, item):
         t.key(item, "location", {3: (0, 0, 0.5), 5: (1, 0, 0.5), 9: (1, 0, 0.5)})
         for curve in t.curves_of(item):
             curve.extrapolation = "CONSTANT"
@@ -426,8 +428,6 @@ def test_a_trial_is_extended() -> None:
                 assert "motion" in names, names
                 assert len({entry["truth"] for entry in shot["frames"]}) == len(shot["frames"])
             assert_is_valid(out)
-    finally:
-        BLEND = other
 
 
 def test_a_shot_that_was_wrongly_at_rest_is_refused() -> None:

@@ -9,12 +9,11 @@ from dataclasses import dataclass
 
 import bpy
 
+from .changing import constraints_of
 from .scripts import drivers
 
-_TRACKING = (
-    "FOLLOW_TRACK",
-    "OBJECT_SOLVER",
-)  # without a camera of their own they take the active one
+# Constraints that take the active camera where they have none of their own.
+_TRACKING = ("FOLLOW_TRACK", "OBJECT_SOLVER")
 _IN_PYTHON = re.compile(r"\.camera\b")
 
 
@@ -58,8 +57,7 @@ class CameraReaders:
         self._constraints = [
             constraint
             for item in bpy.data.objects
-            for holder in (item, *(item.pose.bones if item.pose else ()))
-            for constraint in holder.constraints
+            for constraint in constraints_of(item)
             if constraint.type in _TRACKING and constraint.camera is None
         ]
         self._sockets = [

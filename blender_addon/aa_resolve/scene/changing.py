@@ -13,12 +13,14 @@ import bpy
 from .. import compat
 from .ownership import has_animation, is_animated_within
 from .scripts import foreign_handlers
+from .shader_nodes import nodes_within
 
 # Modifiers that can change a mesh although nothing in the file is keyed.
 _TIME_MODIFIERS = {
     "CLOTH", "SOFT_BODY", "FLUID", "DYNAMIC_PAINT", "OCEAN", "WAVE", "BUILD", "EXPLODE", "PARTICLE_SYSTEM",
     "PARTICLE_INSTANCE", "MESH_CACHE", "MESH_SEQUENCE_CACHE", "COLLISION",
 }  # fmt: skip
+_TIME_NODES = ("GeometryNodeInputSceneTime", "GeometryNodeSimulationInput", "GeometryNodeBake")
 # Constraints that read a movie clip at the scene's frame.
 _CLIP_CONSTRAINTS = {"FOLLOW_TRACK", "CAMERA_SOLVER", "OBJECT_SOLVER"}
 # Lists of blocks that no picture shows.
@@ -45,13 +47,17 @@ def _seen_blocks() -> Iterator[bpy.types.ID]:
             yield from getattr(bpy.data, known.identifier)
 
 
+def constraints_of(item: bpy.types.Object) -> Iterator[bpy.types.Constraint]:
+    """Those of an object and of its bones."""
+    for holder in (item, *(item.pose.bones if item.pose else ())):
+        yield from holder.constraints
+
+
 def _may_move_by_itself(item: bpy.types.Object) -> bool:
     if item.particle_systems:
         return True
-    bones = item.pose.bones if item.pose else ()
-    for holder in (item, *bones):
-        if any(constraint.type in _CLIP_CONSTRAINTS for constraint in holder.constraints):
-            return True
+    if any(constraint.type in _CLIP_CONSTRAINTS for constraint in constraints_of(item)):
+        return True
     return any(
         modifier.type in _TIME_MODIFIERS or _nodes_read_time(modifier)
         for modifier in item.modifiers
@@ -83,7 +89,7 @@ def unseen_change(scene: bpy.types.Scene) -> str | None:
             return f"hair '{settings.name}' is animated"
     if any(settings.type == "EMITTER" for settings in bpy.data.particles):
         for block in (*bpy.data.materials, *bpy.data.node_groups):
-            tree = block if isinstance(block, bpy.types.NodeTree) else block.node_tree
+            tree = _tree_of(block)
             if tree and any(node.bl_idname == "ShaderNodeParticleInfo" for node in tree.nodes):
                 return f"'{block.name}' looks as old as its particles"
     return None
@@ -140,30 +146,14 @@ def _uses_moving_images(tree: bpy.types.NodeTree) -> bool:
 
 def _nodes_read_time(modifier: bpy.types.Modifier) -> bool:
     tree = modifier.node_group if modifier.type == "NODES" else None
-    return tree is not None and _reads_time(tree, set())
-
-
-def _reads_time(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
-    if tree.name in seen:
-        return False
-    seen.add(tree.name)
-    return any(
-        node.bl_idname
-        in ("GeometryNodeInputSceneTime", "GeometryNodeSimulationInput", "GeometryNodeBake")
-        or (
-            node.bl_idname == "GeometryNodeGroup"
-            and node.node_tree
-            and _reads_time(node.node_tree, seen)
-        )
-        for node in tree.nodes
-    )
+    return any(node.bl_idname in _TIME_NODES for node in nodes_within(tree))
 
 
 def pointed_at() -> list[bpy.types.Object]:
     """Objects whose place or shape the nodes of a surface, the world or a modifier read, rendered or not."""
     found: set[bpy.types.Object] = set()
     for block in (*bpy.data.materials, *bpy.data.lights, *bpy.data.worlds, *bpy.data.node_groups):
-        tree = block if isinstance(block, bpy.types.NodeTree) else block.node_tree
+        tree = _tree_of(block)
         for node in tree.nodes if tree else ():
             found.update(_objects_in(getattr(node, "object", None)))
             for socket in node.inputs:
@@ -174,6 +164,11 @@ def pointed_at() -> list[bpy.types.Object]:
                 for value in compat.inputs_of_nodes(modifier):
                     found.update(_objects_in(value))
     return sorted(found, key=lambda item: item.name_full)
+
+
+def _tree_of(block: bpy.types.ID) -> bpy.types.NodeTree | None:
+    """That of a block with nodes, used or not; a group's is itself."""
+    return block if isinstance(block, bpy.types.NodeTree) else block.node_tree
 
 
 def _objects_in(value: object) -> list[bpy.types.Object]:

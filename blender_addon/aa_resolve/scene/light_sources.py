@@ -10,6 +10,7 @@ import bpy
 
 from .. import compat
 from .ownership import is_animated
+from .shader_nodes import nodes_within
 
 
 _EMITTERS = frozenset(
@@ -122,16 +123,13 @@ def emissive_materials() -> list[bpy.types.Material]:
     found = []
     for material in bpy.data.materials:
         tree = compat.shader_tree(material)
-        if tree and _emits(tree, set()):
+        if tree and _emits(tree):
             found.append(material)
     return found
 
 
-def _emits(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
-    if tree.name in seen:
-        return False
-    seen.add(tree.name)
-    for node in tree.nodes:
+def _emits(tree: bpy.types.NodeTree) -> bool:
+    for node in nodes_within(tree):
         if node.bl_idname in _EMITTERS:
             return True
         if node.bl_idname == "ShaderNodeBsdfPrincipled":
@@ -140,8 +138,6 @@ def _emits(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
             if socket and (strength is None or strength.is_linked or strength.default_value > 0.0):
                 if socket.is_linked or max(socket.default_value[:3]) > 0.0:
                     return True
-        if node.bl_idname == "ShaderNodeGroup" and node.node_tree and _emits(node.node_tree, seen):
-            return True
     return False
 
 

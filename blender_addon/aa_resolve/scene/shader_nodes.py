@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shorthand for building shader nodes in code, and walks along their links."""
+"""Shorthand for building shader nodes in code, and walks along the links of nodes and into their groups."""
 
 from __future__ import annotations
 
@@ -94,6 +94,23 @@ def feed_instead(
     ]
     for fed_node, position in fed:  # sockets are looked up each time: a change may make them anew
         tree.links.new(other.outputs[index], fed_node.inputs[position])
+
+
+def nodes_within(tree: bpy.types.NodeTree | None) -> Iterator[bpy.types.Node]:
+    """The nodes of a tree of shader or geometry nodes, those of a group behind its node, each group once; of None, none."""
+    yield from _nodes_of(tree, set())
+
+
+def _nodes_of(tree: bpy.types.NodeTree | None, seen: set[int]) -> Iterator[bpy.types.Node]:
+    if (
+        tree is None or tree.as_pointer() in seen
+    ):  # by address: groups of several libraries may have one name
+        return
+    seen.add(tree.as_pointer())
+    for node in tree.nodes:
+        yield node
+        if node.bl_idname in ("ShaderNodeGroup", "GeometryNodeGroup"):
+            yield from _nodes_of(node.node_tree, seen)
 
 
 def upstream(socket: Socket) -> Iterator[bpy.types.Node]:

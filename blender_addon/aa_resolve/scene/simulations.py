@@ -18,6 +18,7 @@ from dataclasses import dataclass
 import bpy
 
 from .. import compat
+from .shader_nodes import nodes_within
 
 # Modifiers that simulate, and where their state is kept.
 WITH_POINT_CACHE = ("CLOTH", "SOFT_BODY", "DYNAMIC_PAINT", "PARTICLE_SYSTEM")
@@ -120,25 +121,14 @@ def _with_simulation_zones(scene: bpy.types.Scene) -> list[tuple[str, int]]:
     for item in scene.objects:
         for modifier in item.modifiers:
             if modifier.type == "NODES" and modifier.node_group and modifier.show_render:
-                if simulates(modifier.node_group, set()):
+                if simulates(modifier.node_group):
                     found.append((item.name, scene.frame_start))
     return found
 
 
-def simulates(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
+def simulates(tree: bpy.types.NodeTree) -> bool:
     """True when a geometry-nodes tree holds a simulation zone, itself or in a group."""
-    if tree.name in seen:
-        return False
-    seen.add(tree.name)
-    return any(
-        node.bl_idname == "GeometryNodeSimulationInput"
-        or (
-            node.bl_idname == "GeometryNodeGroup"
-            and node.node_tree
-            and simulates(node.node_tree, seen)
-        )
-        for node in tree.nodes
-    )
+    return any(node.bl_idname == "GeometryNodeSimulationInput" for node in nodes_within(tree))
 
 
 def cache_folder(blend: str) -> str:

@@ -7,6 +7,7 @@ import bpy
 
 from .. import compat
 from .ownership import is_animated, may_render
+from .shader_nodes import nodes_within
 
 
 def lost_under_override() -> str | None:
@@ -16,7 +17,7 @@ def lost_under_override() -> str | None:
     to what has no slot for them, and what is hidden now may be seen later."""
     for material in bpy.data.materials:
         if material.users > int(material.use_fake_user) and compat.shader_tree(material):
-            if _makes_geometry(material.node_tree, set()):
+            if _makes_geometry(material.node_tree):
                 return material.name
     return None
 
@@ -29,12 +30,9 @@ _SEE_THROUGH = (
 )
 
 
-def _makes_geometry(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
+def _makes_geometry(tree: bpy.types.NodeTree) -> bool:
     """True where the nodes may decide depth, normal or id of what is seen."""
-    if tree.name in seen:
-        return False
-    seen.add(tree.name)
-    for node in tree.nodes:
+    for node in nodes_within(tree):
         if node.bl_idname in _SEE_THROUGH or _bends_normals(node):
             return True
         if node.bl_idname == "ShaderNodeBsdfPrincipled":
@@ -46,12 +44,6 @@ def _makes_geometry(tree: bpy.types.NodeTree, seen: set[str]) -> bool:
                 return True
             if node.inputs["Volume"].is_linked and not node.inputs["Surface"].is_linked:
                 return True
-        if (
-            node.bl_idname == "ShaderNodeGroup"
-            and node.node_tree
-            and _makes_geometry(node.node_tree, seen)
-        ):
-            return True
     return False
 
 

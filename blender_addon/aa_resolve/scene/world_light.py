@@ -17,7 +17,7 @@ from mathutils import Vector
 from .. import compat
 from . import rendering
 from .ownership import is_animated, release
-from .shader_nodes import feed_instead
+from .shader_nodes import feed_instead, nodes_within
 
 _PANORAMA = 64, 32  # pixels
 _SUN_PIXELS = 32  # of a square view of a sun
@@ -55,7 +55,7 @@ def mean_radiance(
 def suns_of(scene: bpy.types.Scene, world: bpy.types.World, folder: str) -> list[SkySun]:
     """The suns that sky textures draw on the world; of a texture that nothing shows, none."""
     suns: list[SkySun] = []
-    if not any(_discs(compat.shader_tree(world), set())):
+    if not any(_discs(compat.shader_tree(world))):
         return suns
     with _Received(world) as seen, _Sky(scene, seen, folder) as sky, _without_discs(seen) as discs:
         for node in discs:
@@ -85,24 +85,19 @@ def suns_of(scene: bpy.types.Scene, world: bpy.types.World, folder: str) -> list
     return suns
 
 
-def _discs(tree: bpy.types.NodeTree | None, seen: set[str]) -> Iterator[bpy.types.Node]:
+def _discs(tree: bpy.types.NodeTree | None) -> Iterator[bpy.types.Node]:
     """Sky textures that draw a sun."""
-    if tree is None or tree.name in seen:
-        return
-    seen.add(tree.name)
-    for node in tree.nodes:
+    for node in nodes_within(tree):
         if node.bl_idname == "ShaderNodeTexSky" and node.sun_disc:
             if node.sky_type not in ("PREETHAM", "HOSEK_WILKIE"):
                 yield node
-        elif node.bl_idname == "ShaderNodeGroup":
-            yield from _discs(node.node_tree, seen)
 
 
 class _without_discs:
     """Within this context no sky texture of the world draws its sun."""
 
     def __init__(self, world: bpy.types.World) -> None:
-        self.nodes = list(_discs(compat.shader_tree(world), set()))
+        self.nodes = list(_discs(compat.shader_tree(world)))
 
     def __enter__(self) -> list[bpy.types.Node]:
         for node in self.nodes:
@@ -124,7 +119,7 @@ class _Received:
 
     def __enter__(self) -> bpy.types.World:
         visibility = self.world.cycles_visibility
-        if visibility.camera and not _asks_for_the_ray(compat.shader_tree(self.world), set()):
+        if visibility.camera and not _asks_for_the_ray(compat.shader_tree(self.world)):
             return self.world
         copy = self.world.copy()
         self.copies.append(copy)
@@ -141,7 +136,7 @@ class _Received:
     ) -> None:
         """Lets Light Path nodes speak of a diffuse ray; groups that hold some are copied. ``known``: by their names."""
         for node in list(tree.nodes) if tree else ():
-            if node.bl_idname == "ShaderNodeGroup" and _asks_for_the_ray(node.node_tree, set()):
+            if node.bl_idname == "ShaderNodeGroup" and _asks_for_the_ray(node.node_tree):
                 name = node.node_tree.name_full
                 if name not in known:
                     known[name] = node.node_tree.copy()
@@ -156,17 +151,9 @@ class _Received:
                         feed_instead(tree, node, name, answer)
 
 
-def _asks_for_the_ray(tree: bpy.types.NodeTree | None, seen: set[int]) -> bool:
+def _asks_for_the_ray(tree: bpy.types.NodeTree | None) -> bool:
     """True where a tree, or a group in it, has a Light Path node."""
-    if tree is None or tree.as_pointer() in seen:
-        return False
-    seen.add(tree.as_pointer())
-    return any(
-        node.bl_idname == "ShaderNodeLightPath"
-        or node.bl_idname == "ShaderNodeGroup"
-        and _asks_for_the_ray(node.node_tree, seen)
-        for node in tree.nodes
-    )
+    return any(node.bl_idname == "ShaderNodeLightPath" for node in nodes_within(tree))
 
 
 class _Sky:
